@@ -1,0 +1,42 @@
+#pragma once
+
+#include "common/check.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace aeolis {
+
+/// First in, first out, at most N values held in place.
+template <typename T, std::size_t N>
+class FixedQueue {
+  public:
+    static constexpr std::size_t capacity() { return N; }
+    constexpr std::size_t size() const { return size_; }
+    constexpr bool empty() const { return size_ == 0; }
+    constexpr bool full() const { return size_ == N; }
+
+    /// False, and nothing added, when full.
+    [[nodiscard]] constexpr bool try_push(const T& value) {
+        if (full()) return false;
+        values_[(first_ + size_) % N] = value;
+        ++size_;
+        return true;
+    }
+    constexpr const T& front() const {
+        AEOLIS_CHECK(!empty());
+        return values_[first_];
+    }
+    constexpr void pop() {
+        AEOLIS_CHECK(!empty());
+        first_ = (first_ + 1) % N;
+        --size_;
+    }
+
+  private:
+    std::array<T, N> values_{};
+    std::size_t first_ = 0;
+    std::size_t size_ = 0;
+};
+
+}  // namespace aeolis

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "common/check.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace aeolis {
+
+/// A vector of at most N values, held in place. Copying it copies the values; nothing is ever allocated.
+template <typename T, std::size_t N>
+class FixedVector {
+  public:
+    static constexpr std::size_t capacity() { return N; }
+    constexpr std::size_t size() const { return size_; }
+    constexpr bool empty() const { return size_ == 0; }
+    constexpr bool full() const { return size_ == N; }
+    constexpr void clear() { size_ = 0; }
+
+    /// False, and nothing added, when full.
+    [[nodiscard]] constexpr bool try_push_back(const T& value) {
+        if (full()) return false;
+        values_[size_++] = value;
+        return true;
+    }
+    /// The caller knows that there is room.
+    constexpr void push_back(const T& value) {
+        AEOLIS_CHECK(!full());
+        values_[size_++] = value;
+    }
+    constexpr void pop_back() {
+        AEOLIS_CHECK(!empty());
+        --size_;
+    }
+    /// Order is kept.
+    constexpr void erase_at(std::size_t index) {
+        AEOLIS_CHECK(index < size_);
+        for (std::size_t i = index + 1; i < size_; ++i) values_[i - 1] = values_[i];
+        --size_;
+    }
+
+    constexpr T& operator[](std::size_t index) {
+        AEOLIS_CHECK(index < size_);
+        return values_[index];
+    }
+    constexpr const T& operator[](std::size_t index) const {
+        AEOLIS_CHECK(index < size_);
+        return values_[index];
+    }
+    constexpr T& back() { return (*this)[size_ - 1]; }
+    constexpr const T& back() const { return (*this)[size_ - 1]; }
+    constexpr T* begin() { return values_.data(); }
+    constexpr T* end() { return values_.data() + size_; }
+    constexpr const T* begin() const { return values_.data(); }
+    constexpr const T* end() const { return values_.data() + size_; }
+    constexpr std::span<const T> span() const { return {values_.data(), size_}; }
+
+  private:
+    std::array<T, N> values_{};
+    std::size_t size_ = 0;
+};
+
+}  // namespace aeolis

@@ -1,0 +1,96 @@
+#include "common/space_packet.hpp"
+
+#include "common/bytes.hpp"
+#include "common/crc.hpp"
+
+namespace aeolis {
+namespace {
+
+constexpr unsigned unsegmented = 3;
+
+bool whole_with_good_crc(std::span<const std::uint8_t> packet, const PrimaryHeader& header) {
+    return packet.size() == header.packet_octets() && packet.size() >= primary_header_octets + packet_crc_octets &&
+           crc16(packet.first(packet.size() - packet_crc_octets)) ==
+               read_bits(packet, (packet.size() - packet_crc_octets) * 8, 16);
+}
+
+void write_primary_header(BitWriter& writer, const PrimaryHeader& header) {
+    writer.put(0, 3);
+    writer.put(header.telecommand, 1);
+    writer.put(header.secondary_header, 1);
+    writer.put(header.apid.value, 11);
+    writer.put(unsegmented, 2);
+    writer.put(header.count, 14);
+    writer.put(header.length, 16);
+}
+
+void write_crc(std::span<std::uint8_t> packet) {
+    const std::uint16_t crc = crc16(packet.first(packet.size() - packet_crc_octets));
+    packet[packet.size() - 2] = static_cast<std::uint8_t>(crc >> 8);
+    packet[packet.size() - 1] = static_cast<std::uint8_t>(crc & 0xFF);
+}
+
+void clear(std::span<std::uint8_t> octets) {
+    for (auto& octet : octets) octet = 0;
+}
+
+}  // namespace
+
+std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets) {
+    if (octets.size() < primary_header_octets) return std::nullopt;
+    BitReader reader{octets};
+    if (reader.get(3) != 0) return std::nullopt;
+    PrimaryHeader header;
+    header.telecommand = reader.get(1) != 0;
+    header.secondary_header = reader.get(1) != 0;
+    header.apid = {static_cast<std::uint16_t>(reader.get(11))};
+    if (reader.get(2) != unsegmented) return std::nullopt;
+    header.count = static_cast<std::uint16_t>(reader.get(14));
+    header.length = static_cast<std::uint16_t>(reader.get(16));
+    return header;
+}
+
+std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet) {
+    const auto primary = read_primary_header(packet);
+    if (!primary || primary->telecommand || !primary->secondary_header || packet.size() < tm_overhead_octets ||
+        !whole_with_good_crc(packet, *primary))
+        return std::nullopt;
+    const auto coarse = static_cast<double>(read_bits(packet, 48, 32));
+    const auto fine = static_cast<double>(read_bits(packet, 80, 16));
+    return TmHeader{*primary, Sclk{coarse + fine / 65536.0}, static_cast<std::uint16_t>(read_bits(packet, 96, 16))};
+}
+
+void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Sclk time,
+                    std::uint16_t dictionary_id) {
+    AEOLIS_CHECK(packet.size() >= tm_overhead_octets && packet.size() <= 65536 + primary_header_octets);
+    clear(packet.first(tm_data_offset_octets));
+    BitWriter writer{packet};
+    write_primary_header(writer,
+                         {false, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    const auto coarse = static_cast<std::uint64_t>(time.seconds);
+    writer.put(coarse, 32);
+    writer.put(static_cast<std::uint64_t>((time.seconds - static_cast<double>(coarse)) * 65536.0), 16);
+    writer.put(dictionary_id, 16);
+    write_crc(packet);
+}
+
+void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Opcode opcode) {
+    AEOLIS_CHECK(packet.size() >= tc_overhead_octets && packet.size() <= 65536 + primary_header_octets);
+    clear(packet.first(tc_arguments_offset_octets));
+    BitWriter writer{packet};
+    // The opcode is the packet's secondary header.
+    write_primary_header(writer,
+                         {true, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    writer.put(opcode.value, 16);
+    write_crc(packet);
+}
+
+std::optional<TcPacket> read_tc_packet(std::span<const std::uint8_t> packet) {
+    const auto primary = read_primary_header(packet);
+    if (!primary || !primary->telecommand || packet.size() < tc_overhead_octets || !whole_with_good_crc(packet, *primary))
+        return std::nullopt;
+    return TcPacket{*primary, Opcode{static_cast<std::uint16_t>(read_bits(packet, 48, 16))},
+                    packet.subspan(tc_arguments_offset_octets, packet.size() - tc_overhead_octets)};
+}
+
+}  // namespace aeolis

@@ -1,0 +1,64 @@
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/time.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace aeolis {
+
+/// CCSDS space packet, as our vehicle writes it. [ccsds-133.0-b-2]
+///
+///   primary header 6 octets | telemetry: CUC coarse 4, fine 2, dictionary id 2 | data | CRC-16 2
+///                           | telecommand: opcode 2                            | data | CRC-16 2
+inline constexpr std::size_t primary_header_octets = 6;
+inline constexpr std::size_t tm_secondary_header_octets = 8;
+inline constexpr std::size_t tm_data_offset_octets = primary_header_octets + tm_secondary_header_octets;
+inline constexpr std::size_t packet_crc_octets = 2;
+inline constexpr std::size_t tm_overhead_octets = tm_data_offset_octets + packet_crc_octets;
+inline constexpr std::size_t packet_octets_max = 1024;  ///< ours: one packet fits a message of the recorder
+
+struct PrimaryHeader {
+    bool telecommand = false;
+    bool secondary_header = true;
+    Apid apid;
+    std::uint16_t count = 0;       ///< 14 bits, per APID
+    std::uint16_t length = 0;      ///< octets after the primary header, less one
+
+    constexpr std::size_t packet_octets() const { return primary_header_octets + length + std::size_t{1}; }
+    constexpr auto operator<=>(const PrimaryHeader&) const = default;
+};
+
+struct TmHeader {
+    PrimaryHeader primary;
+    Sclk time;                     ///< CUC 4+2 octets, agency epoch; 1/65536 s holds 1/64 s exactly
+    std::uint16_t dictionary_id = 0;
+};
+
+/// None when shorter than a header, of another version, or segmented.
+std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets);
+
+/// The header of a whole telemetry packet. None when the length field disagrees with the octets or the CRC is wrong.
+std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet);
+
+/// Writes both headers and the CRC around the data that already stands at `tm_data_offset_octets`.
+/// `packet` is the whole packet: tm_overhead_octets + data.
+void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Sclk time,
+                    std::uint16_t dictionary_id);
+
+/// A telecommand packet: writes header, opcode and CRC around arguments that already stand at offset 8.
+inline constexpr std::size_t tc_arguments_offset_octets = primary_header_octets + 2;
+inline constexpr std::size_t tc_overhead_octets = tc_arguments_offset_octets + packet_crc_octets;
+void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t count, Opcode opcode);
+
+struct TcPacket {
+    PrimaryHeader primary;
+    Opcode opcode;
+    std::span<const std::uint8_t> arguments;
+};
+/// None when it is not a whole, unsegmented telecommand packet with a good CRC.
+std::optional<TcPacket> read_tc_packet(std::span<const std::uint8_t> packet);
+
+}  // namespace aeolis

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace aeolis {
+
+inline constexpr double seconds_per_tick = 1.0 / 64.0;
+
+/// Spacecraft clock [s], an exact multiple of 1/64 s: arithmetic with offsets that are such multiples is exact. R21
+struct Sclk {
+    double seconds = 0.0;
+
+    static constexpr Sclk from_ticks(std::int64_t ticks) { return {static_cast<double>(ticks) * seconds_per_tick}; }
+    constexpr std::int64_t ticks() const { return static_cast<std::int64_t>(seconds * 64.0); }
+    constexpr auto operator<=>(const Sclk&) const = default;
+};
+constexpr double operator-(Sclk a, Sclk b) { return a.seconds - b.seconds; }
+constexpr Sclk operator+(Sclk t, double offset_s) { return {t.seconds + offset_s}; }
+constexpr Sclk operator-(Sclk t, double offset_s) { return {t.seconds - offset_s}; }
+
+/// UTC at the spacecraft, and UTC at the receiving station on Earth: microseconds since 2000-01-01T12:00:00 UTC,
+/// leap seconds not counted (as POSIX does).
+struct Scet {
+    std::int64_t microseconds = 0;
+    constexpr auto operator<=>(const Scet&) const = default;
+};
+struct Ert {
+    std::int64_t microseconds = 0;
+    constexpr auto operator<=>(const Ert&) const = default;
+};
+
+/// Day-of-year form with milliseconds: 2012-219T05:10:47.400.
+std::string day_of_year_text(Scet time);
+std::string day_of_year_text(Ert time);
+
+/// SCLK and SCET run together through one known instant. Drift and leap seconds come with the time service.
+struct ClockCorrelation {
+    Sclk sclk;
+    Scet scet;
+
+    constexpr Scet scet_of(Sclk t) const {
+        return {scet.microseconds + static_cast<std::int64_t>((t - sclk) * 1.0e6)};
+    }
+};
+
+/// `t` cut to the resolution of a clock of `hz` (a power of two up to 64): what `clk_1_hz` … `clk_64_hz` return. R21
+constexpr Sclk at_resolution(Sclk t, std::int64_t hz) {
+    const std::int64_t ticks_per_step = 64 / hz;
+    const std::int64_t ticks = t.ticks();
+    const std::int64_t remainder = ((ticks % ticks_per_step) + ticks_per_step) % ticks_per_step;
+    return Sclk::from_ticks(ticks - remainder);
+}
+
+constexpr bool is_multiple_of_tick(double seconds) {
+    const double ticks = seconds * 64.0;
+    return ticks >= -9.0e15 && ticks <= 9.0e15 && ticks == static_cast<double>(static_cast<std::int64_t>(ticks));
+}
+
+/// An offset in seconds, or undefined. R13
+using MaybeOffset = std::optional<double>;
+
+/// A time or "undefined", which spreads through arithmetic and is false in every comparison. R13
+class MaybeTime {
+  public:
+    constexpr MaybeTime() = default;
+    constexpr MaybeTime(Sclk time) : time_(time) {}
+
+    constexpr bool defined() const { return time_.has_value(); }
+    constexpr const std::optional<Sclk>& get() const { return time_; }
+
+    friend constexpr MaybeTime operator+(MaybeTime t, MaybeOffset offset_s) {
+        if (!t.time_ || !offset_s) return {};
+        return *t.time_ + *offset_s;
+    }
+    friend constexpr bool operator>=(Sclk now, MaybeTime t) { return t.time_ && now >= *t.time_; }
+
+  private:
+    std::optional<Sclk> time_;
+};
+
+}  // namespace aeolis

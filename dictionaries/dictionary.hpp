@@ -1,0 +1,232 @@
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/result.hpp"
+#include "common/time.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// A mission's words, loaded and checked: XTCE for commands, channels, packets and events; CSV for timeline, anchors,
+// tones and parameters. Plain values; every part of the ground, and the autocoder, reads the same ones.
+namespace aeolis::dictionary {
+
+// ---- types -----------------------------------------------------------------------------------------------------
+
+enum class Encoding { unsigned_integer, twos_complement, ieee754 };
+enum class ValueKind { integer, real, enumerated, boolean };
+
+struct EnumValue {
+    std::int64_t value = 0;
+    std::string label;
+};
+
+/// Calibrated = sum of coefficient[i] · raw^i; empty: calibrated is raw.
+using Polynomial = std::vector<double>;
+
+enum class Severity { none, watch, warning, distress, critical, severe };
+
+struct AlarmRange {
+    Severity severity = Severity::none;
+    std::optional<double> below;  ///< in alarm when value < below
+    std::optional<double> above;  ///< in alarm when value > above
+};
+struct EnumAlarm {
+    Severity severity = Severity::none;
+    std::int64_t value = 0;
+};
+struct Alarms {
+    std::vector<AlarmRange> ranges;  ///< nested, least severe first
+    std::vector<EnumAlarm> values;
+    std::uint32_t min_violations = 1;  ///< samples in a row before the alarm is raised
+};
+
+/// How one number stands in a packet or a command, and what it means.
+struct Type {
+    std::string name;
+    ValueKind kind = ValueKind::integer;
+    Encoding encoding = Encoding::unsigned_integer;
+    unsigned bits = 0;
+    std::string unit;  ///< "1" for a pure number
+    Polynomial calibrator;
+    std::vector<EnumValue> enumeration;
+    std::optional<double> valid_min, valid_max;
+    Alarms alarms;
+};
+
+// ---- telemetry -------------------------------------------------------------------------------------------------
+
+/// One telemetered quantity (EHA channel). Its ChannelId is its index in Dictionary::channels.
+struct Channel {
+    ChannelId id;
+    std::string name;   ///< XTCE parameter name, snake_case with the unit last: "altitude_m"
+    std::string alias;  ///< "GNC-0101"
+    std::string text;   ///< one line for people
+    Type type;
+};
+
+/// A field of a packet: a channel, or a header field or an argument that is no channel.
+struct Field {
+    std::string name;
+    Type type;
+    std::optional<ChannelId> channel;
+    unsigned position_bits = 0;                  ///< from the first octet of the packet
+    std::optional<unsigned> validity_bit;        ///< position of the bit that says whether the value is defined
+};
+
+/// One concrete container: what a packet with this APID (and, for events, this event id) holds.
+struct Packet {
+    std::string name;  ///< "GncNavigation"
+    std::string text;
+    Apid apid;
+    std::optional<EvrId> event;  ///< set for the containers of events
+    unsigned octets = 0;         ///< whole packet with headers and CRC
+    std::vector<Field> fields;   ///< after the secondary header, in order
+    std::optional<double> expected_rate_hz;
+};
+
+enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
+
+/// Event report (EVR). Its arguments are the fields of its packet; `format` names them in braces: "speed {speed_mps} m/s".
+struct Event {
+    EvrId id;
+    std::string name;
+    EventLevel level = EventLevel::diagnostic;
+    std::string format;
+    std::size_t packet = 0;  ///< index in Dictionary::packets
+};
+
+// ---- commands --------------------------------------------------------------------------------------------------
+
+struct Argument {
+    std::string name;
+    std::string text;
+    Type type;
+    unsigned position_bits = 0;  ///< from the first octet of the argument field
+    std::optional<double> default_value;
+};
+
+enum class Significance { none, watch, warning, distress, critical, severe };
+
+/// A condition on a channel's latest value that must hold before the command may be released.
+struct Precondition {
+    ChannelId channel;
+    std::string comparison;  ///< "==", "!=", "<", "<=", ">", ">="
+    double value = 0.0;
+    std::string text;
+};
+
+/// What shows that a stage was reached: an event whose `opcode` field equals the command's.
+struct Verifier {
+    std::string stage;  ///< "accepted", "executed", "verified"
+    EvrId event;
+    std::optional<EvrId> failure_event;
+    double window_s = 0.0;  ///< from release, light time excluded
+};
+
+struct Command {
+    Opcode opcode;
+    std::string name;
+    std::string text;
+    Significance significance = Significance::none;
+    std::string reason_for_warning;
+    std::vector<Argument> arguments;
+    unsigned argument_octets = 0;
+    std::vector<Precondition> preconditions;
+    std::vector<Verifier> verifiers;
+};
+
+// ---- timeline, tones, parameters -------------------------------------------------------------------------------
+
+/// A row of timeline.csv. R11, R13
+struct TimelineRow {
+    TimepointId id;
+    std::string name;
+    std::optional<AnchorId> anchor;  ///< none: relative to the previous timepoint
+    MaybeOffset desired_offset_s;
+    MaybeOffset minimum_offset_s;    ///< from the previous timepoint
+    std::string action;              ///< name of a function in aeolis::flight::actions; empty: none
+    std::optional<double> reply_timeout_s;  ///< set when the action's reply is waited for
+    std::string backtrack;           ///< timepoint to go back to after a reboot in pre-EDL; empty: none
+    bool essential = true;           ///< kept in Second Chance
+    std::optional<ToneId> tone;
+    std::string event;               ///< name of an event emitted on firing; empty: none
+    std::string note;
+    unsigned line = 0;               ///< in timeline.csv
+};
+
+struct AnchorRow {
+    AnchorId id;
+    std::string name;
+    std::optional<AnchorId> parent;  ///< none: the root
+    MaybeOffset offset_s;            ///< from the parent; undefined until flight or a command sets it
+    std::string note;
+};
+
+enum class ToneSet { prime, second_chance, spare };
+
+struct ToneRow {
+    ToneId id;
+    ToneSet set = ToneSet::spare;
+    std::string name;     ///< empty for spares
+    std::string meaning;  ///< for people
+    int priority = 0;     ///< larger is more important
+    double expires_s = 0.0;  ///< a request older than this is dropped
+    std::string supersedes;  ///< name of a tone whose outstanding request this one drops; empty: none
+};
+
+/// A flight parameter: parameters.csv.
+struct ParameterRow {
+    std::string name;
+    double default_value = 0.0;
+    double min = 0.0, max = 0.0;
+    std::string unit;
+    std::string text;
+    std::string source;
+};
+
+// ---- the whole -------------------------------------------------------------------------------------------------
+
+struct Dictionary {
+    std::string mission;               ///< SpaceSystem name
+    std::uint16_t id = 0;              ///< in every telemetry packet: changes with every change of any file
+    std::uint16_t timeline_version = 0;
+    std::vector<Channel> channels;
+    std::vector<Packet> packets;
+    std::vector<Event> events;
+    std::vector<Command> commands;
+    std::vector<TimelineRow> timeline;
+    std::vector<AnchorRow> anchors;
+    std::vector<ToneRow> tones;        ///< 256, by id
+    std::vector<ParameterRow> parameters;
+
+    const Channel* channel(std::string_view name_or_alias) const;
+    const Command* command(std::string_view name) const;
+    const Command* command(Opcode opcode) const;
+    const Event* event(EvrId id) const;
+    const Event* event(std::string_view name) const;
+    const Packet* packet(std::string_view name) const;
+};
+
+/// One broken rule: "timeline.csv:12: timepoint 'x': desired offset 0.3 s is not a multiple of 1/64 s".
+struct Finding {
+    std::string file;
+    unsigned line = 0;
+    std::string message;
+    std::string text() const;
+};
+
+/// Everything a mission's folder says, or every rule that it breaks; never half of it.
+struct Loaded {
+    std::optional<Dictionary> dictionary;  ///< none when there are findings
+    std::vector<Finding> findings;
+};
+
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv.
+Loaded load(const std::filesystem::path& directory);
+
+}  // namespace aeolis::dictionary

@@ -1,0 +1,147 @@
+#pragma once
+
+#include "common/fixed_vector.hpp"
+#include "common/ids.hpp"
+#include "common/space_packet.hpp"
+#include "common/time.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+// What crosses the border between a flight computer and the vehicle it flies. The simulation knows flight by this
+// folder and by the computer's one step, and nothing else. Plain numbers in SI; no Eigen types, no pointers.
+//
+// Frames (docs/frames_and_units.md): M is fixed to rotating Mars, origin its centre, z along the spin axis, x through
+// the prime meridian. B is fixed to the vehicle, z along the symmetry axis: towards the heatshield in entry, down in
+// powered descent. A quaternion q_MB is {w, x, y, z}, unit, and turns components in B into components in M.
+namespace aeolis::flight {
+
+// ---- to the computer -------------------------------------------------------------------------------------------
+
+/// One reading of the IMU, 200 Hz: what it integrated since the reading before, in B.
+struct ImuSample {
+    std::uint32_t count = 0;             ///< 200 Hz count since the unit was started
+    std::array<double, 3> delta_v_mps{};  ///< specific force × time
+    std::array<double, 3> delta_angle_rad{};  ///< rate relative to inertial space × time
+};
+
+/// Attitude at start, from cruise attitude determination (star scanner): sent once a second until separation.
+struct CruiseAttitude {
+    std::array<double, 4> q_MB{1, 0, 0, 0};
+};
+
+/// One velocity and slant-range measurement of the landing radar along one beam.
+struct RadarBeam {
+    std::uint8_t beam = 0;                    ///< 0 … 5
+    std::array<double, 3> direction_B{};      ///< unit, from the vehicle towards the ground
+    bool valid = false;
+    double range_m = 0.0;
+    double range_rate_mps = 0.0;              ///< positive: the range grows
+};
+
+enum class PyroId : std::uint8_t {
+    cruise_cable_cutter, cruise_stage_separation, cruise_balance_1, cruise_balance_2, entry_balance_1, entry_balance_2,
+    entry_balance_3, parachute_mortar, heatshield_separation, engine_valves, backshell_separation, rover_separation,
+    bridle_cutter, coolant_vent,
+};
+inline constexpr std::size_t pyro_count = 14;
+
+/// A device says that what was asked of it is done.
+struct PyroReply {
+    PyroId pyro{};
+    bool fired = false;
+};
+enum class SwitchId : std::uint8_t { radar, uhf, descent_imu, entry_antenna, parachute_antenna, thruster_heaters };
+struct SwitchReply {
+    SwitchId id{};
+    bool on = false;
+};
+struct EngineReply {
+    bool running = false;
+    double thrust_N = 0.0;            ///< sum of the engines, as their pressure sensors tell
+};
+struct ThrusterReply {
+    bool enabled = false;
+};
+struct BridleReply {
+    double payed_out_m = 0.0;         ///< 0 … 7.5
+};
+
+/// A telecommand packet from the receiver, as it came: nothing about it is trusted.
+struct UplinkPacket {
+    std::array<std::uint8_t, packet_octets_max> octets{};
+    std::uint16_t size = 0;
+};
+
+/// Everything that reaches the computer with one tick of its clock.
+struct DeviceInputs {
+    Sclk now;                                     ///< the tick
+    FixedVector<ImuSample, 4> imu;                ///< 3 or 4 in a cycle
+    std::optional<CruiseAttitude> cruise_attitude;
+    FixedVector<RadarBeam, 6> radar;              ///< each beam at 20 Hz
+    FixedVector<PyroReply, 8> pyro_replies;
+    FixedVector<SwitchReply, 8> switch_replies;
+    std::optional<EngineReply> engines;           ///< each cycle once valves are open
+    std::optional<ThrusterReply> thrusters;       ///< on change
+    std::optional<BridleReply> bridle;            ///< each cycle after rover separation
+    FixedVector<UplinkPacket, 2> uplink;
+    std::uint32_t nvm_used_octets = 0;
+    std::uint32_t nvm_capacity_octets = 0;
+};
+
+// ---- from the computer -----------------------------------------------------------------------------------------
+
+/// Where the vehicle shall point. The mode says which field counts; the vehicle turns at a limited rate (issue A:
+/// a kinematic attitude; with six degrees of freedom these become thruster on-times).
+struct AttitudeCommand {
+    enum class Mode : std::uint8_t {
+        idle,          ///< keep the inertial attitude (before GNC starts: spin-stabilised)
+        entry_bank,    ///< trim attitude in the wind with the lift vector at `bank_rad`
+        suspended,     ///< under the parachute: hangs as it will
+        thrust,        ///< z of B opposes `thrust_direction_M`
+    };
+    Mode mode = Mode::idle;
+    double bank_rad = 0.0;                          ///< positive: lift to the right of the velocity
+    std::array<double, 3> thrust_direction_M{};     ///< unit, direction in which the engines push the vehicle
+};
+
+struct EngineCommand {
+    bool ignited = false;
+    std::array<double, 8> throttle{};  ///< of each engine, 0 … 1 of its largest thrust
+};
+
+/// One packet to be kept for ever, or to be sent.
+struct PacketOut {
+    std::array<std::uint8_t, packet_octets_max> octets{};
+    std::uint16_t size = 0;
+};
+
+/// Octets of whole packets, one after another.
+template <std::size_t N>
+using OctetBuffer = FixedVector<std::uint8_t, N>;
+
+/// Everything that leaves the computer in one cycle.
+struct DeviceOutputs {
+    FixedVector<PyroId, 8> pyros;                              ///< fire now
+    FixedVector<SwitchReply, 8> switches;                      ///< switch `id` to `on`
+    std::optional<bool> thrusters_enabled;
+    AttitudeCommand attitude;
+    EngineCommand engines;
+    bool pay_out_bridle = false;
+    std::optional<ToneId> tone;                                ///< what X-band sends during this cycle; none: carrier only
+    OctetBuffer<65536> nvm;                                    ///< packets to append to the recording, in order
+    OctetBuffer<8192> uhf;                                     ///< packets to radiate, a subset of what was recorded
+
+    /// Back to nothing commanded, for the next cycle; attitude and engines keep their last command.
+    void begin_cycle() {
+        pyros.clear();
+        switches.clear();
+        thrusters_enabled.reset();
+        nvm.clear();
+        uhf.clear();
+    }
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+// What is loaded into a flight computer before the first tick and never changes in flight by itself: mission design
+// values that are not commands. The scenario fills it; the ground's navigation comes by EDL_SET_PARAMETERS.
+namespace aeolis::flight {
+
+/// The reference that entry guidance follows, tabulated against planet-relative velocity, made from a scenario by
+/// simulation/entry_reference and never by hand. Rows ascend in velocity. [apollo-entry-guidance]
+struct EntryReferenceRow {
+    double velocity_mps = 0.0;
+    double range_to_go_m = 0.0;
+    double drag_mps2 = 0.0;
+    double altitude_rate_mps = 0.0;
+    double d_range_d_drag_s2 = 0.0;
+    double d_range_d_altitude_rate_s = 0.0;
+    double d_range_d_lift_to_drag_m = 0.0;
+    double lift_to_drag = 0.0;      ///< vertical L/D flown on the reference
+};
+struct EntryReference {
+    std::array<EntryReferenceRow, 64> rows{};
+    std::uint32_t row_count = 0;
+};
+
+enum class Plan : std::uint8_t { mission, wideband };
+
+struct Load {
+    double uhf_rate_bps = 8000.0;             ///< rate of the real-time link
+    Plan telemetry_plan = Plan::mission;      ///< wideband: a synthetic load for benchmarks
+    double entry_mass_kg = 3153.0;
+    double entry_lift_to_drag = 0.24;
+    double powered_descent_mass_kg = 2269.0;  ///< at backshell separation
+    double descent_stage_dry_kg = 983.0;
+    double rover_mass_kg = 899.0;
+    double engine_max_thrust_N = 3603.0;      ///< one engine
+    double engine_min_thrust_N = 31.0;
+    double engine_isp_s = 210.0;
+    double divert_m = 304.0;
+    double divert_azimuth_deg = 112.0;
+    EntryReference entry_reference;
+};
+
+}  // namespace aeolis::flight

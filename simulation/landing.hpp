@@ -1,0 +1,134 @@
+#pragma once
+
+#include "common/space_packet.hpp"
+#include "common/time.hpp"
+#include "flight/computer.hpp"
+#include "simulation/scenario.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+// A landing: the vehicle with its computer, Mars, and the links home. A value: copy it and the landing is forked.
+namespace aeolis::simulation {
+
+/// What ground's navigators deliver: the scenario's truth with the delivery's knowledge error. Frame M, Mars-relative.
+struct NavigationSolution {
+    std::uint16_t solution_id = 1;
+    Sclk epoch;
+    std::array<double, 3> p_MoB_M_m{};
+    std::array<double, 3> v_MB_M_mps{};
+    Sclk entry;
+    Target target;
+    double parachute_speed_mps = 405.0;
+    double heatshield_speed_mps = 142.0;
+    double backshell_altitude_m = 1660.0;
+};
+
+enum class LinkId : std::uint8_t { uhf_live, relay };
+
+/// A space packet as it reaches Earth.
+struct ReceivedPacket {
+    LinkId link{};
+    Ert ert;
+    std::vector<std::uint8_t> octets;
+};
+
+/// A tone decision of the receiver (statistical model: drawn from the exact symbol error at the scenario's C/N0).
+struct ReceivedTone {
+    Ert start, end;                    ///< of the symbol; 10 s
+    std::optional<ToneId> tone;        ///< none: erasure
+    double likelihood = 0.0;           ///< 0 … 1 that the decision is right
+    std::optional<ToneId> runner_up;
+    double runner_up_likelihood = 0.0;
+    double c_n0_dbhz = 0.0;
+    double doppler_hz = 0.0;
+    bool locked = false;
+    std::optional<ToneId> sent;        ///< truth, for the run's score only: never shown as received
+    Sclk sent_at;
+};
+
+/// The state of a link, told when it changes.
+struct LinkState {
+    LinkId link{};
+    bool x_band = false;               ///< else `link`
+    Ert ert;
+    bool up = false;
+    std::string reason;                ///< "plasma blackout", "Earth set", "not switched on", "nominal"
+};
+
+/// A moment of the truth, named as in the design's table.
+struct TruthEvent {
+    std::string name;
+    Sclk sclk;
+    double e_s = 0.0;                  ///< from the truth's entry interface
+    double altitude_m = 0.0;           ///< descent stage's (before separation the vehicle's) above the landing radius
+    double speed_mps = 0.0;            ///< planet-relative
+};
+
+struct TruthState {
+    Sclk sclk;
+    double e_s = 0.0;
+    std::array<double, 3> p_MoB_M_m{};
+    std::array<double, 3> v_MB_M_mps{};
+    double altitude_m = 0.0, speed_mps = 0.0, sensed_mps2 = 0.0;
+};
+
+enum class Outcome : std::uint8_t { running, touchdown, impact, lost, not_commanded, timeout };
+
+struct TouchdownReport {
+    double vertical_mps = 0.0, horizontal_mps = 0.0, miss_m = 0.0, latitude_deg = 0.0, longitude_deg = 0.0;
+};
+
+/// What happened in one 64 Hz cycle. The vectors live until the next step; they keep their capacity.
+struct CycleReport {
+    std::span<const std::uint8_t> recorded;      ///< whole packets appended to NVM in this cycle
+    std::span<const std::uint8_t> radiated;      ///< whole packets given to the UHF transmitter
+    std::vector<ReceivedPacket> packets;         ///< that reach Earth by the end of this cycle
+    std::vector<ReceivedTone> tones;
+    std::vector<LinkState> links;
+    std::vector<TruthEvent> events;
+};
+
+class Landing {
+  public:
+    /// `case_number` selects an independent draw of all dispersions under the same seed.
+    Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0);
+    Landing(const Landing&);
+    Landing& operator=(const Landing&);
+    Landing(Landing&&) noexcept;
+    Landing& operator=(Landing&&) noexcept;
+    ~Landing();
+
+    /// One cycle of 1/64 s. After the outcome is known and the last packet has arrived, finished() is true.
+    const CycleReport& step();
+
+    /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
+    void uplink(std::span<const std::uint8_t> packet);
+
+    Sclk sclk() const;                 ///< at the vehicle
+    Scet scet() const;
+    Ert ert_now() const;               ///< what Earth's clocks show at this moment: SCET of the vehicle's now
+    double light_time_s() const;
+    ClockCorrelation correlation() const;
+    const NavigationSolution& solution() const;
+    TruthState truth() const;
+    Outcome outcome() const;
+    std::string outcome_reason() const;
+    bool finished() const;             ///< outcome known, links empty, recording down
+    std::optional<TouchdownReport> touchdown() const;
+    double peak_deceleration_mps2() const;
+    flight::Computer::Counters counters() const;
+    std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
+    double relay_progress() const;     ///< 0 … 1 of the recording that has come down
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace aeolis::simulation

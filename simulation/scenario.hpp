@@ -1,0 +1,114 @@
+#pragma once
+
+#include "common/time.hpp"
+#include "flight/load.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+// All that makes one landing what it is. Filled by the server from a text file, checked there with `validate`.
+namespace aeolis::simulation {
+
+/// Truth at the epoch, relative to rotating Mars, or at entry interface, from where it is propagated back. [facts]
+struct EntryState {
+    double radius_m = 3522200.0;
+    double latitude_deg = -3.9226;        ///< areocentric
+    double longitude_deg = 126.703;       ///< east
+    double speed_mps = 5845.2;            ///< planet-relative
+    double flight_path_deg = -16.14;
+    double azimuth_deg = 93.35;           ///< of the velocity, from north to east
+};
+
+struct Target {
+    double latitude_deg = -4.6019;
+    double longitude_deg = 137.4102;
+    double radius_m = 3391148.0;
+};
+
+struct Masses {
+    double cruise_stage_kg = 539.0;
+    double cruise_balance_each_kg = 75.0;  ///< two
+    double entry_kg = 3153.0;
+    double entry_balance_each_kg = 25.0;   ///< six
+    double heatshield_kg = 385.0;
+    double backshell_and_parachute_kg = 349.0;
+    double powered_descent_kg = 2269.0;
+    double propellant_kg = 387.0;          ///< of the powered descent mass
+    double rover_kg = 899.0;
+};
+
+/// One standard deviation of each seeded error; 0 switches it off.
+struct Dispersions {
+    double delivery_flight_path_deg = 0.0167;
+    double delivery_position_m = 900.0;
+    double knowledge_position_m = 930.0;   ///< ground's solution against the truth
+    double knowledge_velocity_mps = 0.67;
+    double density_fraction = 0.04;
+    double drag_fraction = 0.01;
+    double parachute_drag_fraction = 0.033;
+    double wind_mps = 6.0;
+    double imu_bias_mps2 = 3.3e-4;
+    double gyro_bias_rps = 8.0e-8;
+    double attitude_rad = 1.5e-3;
+    double radar_range_fraction = 0.0067;
+    double radar_velocity_mps = 0.033;
+};
+
+/// Atmosphere scale by height above the landing radius: density = table × scale.
+struct DensityScale {
+    double altitude_m = 0.0;
+    double scale = 1.0;
+};
+
+struct Radio {
+    double light_time_s = 0.0;
+    double uhf_rate_bps = 8000.0;
+    double blackout_start_speed_mps = 5400.0;  ///< plasma: between these two speeds after entry, while decelerating
+    double blackout_end_speed_mps = 2400.0;
+    double blackout_start_altitude_m = 65000.0;
+    double uhf_loss_fraction = 0.0;            ///< packets lost at random outside the blackout
+    double x_band_c_n0_dbhz = 22.0;            ///< total power to noise density; the statistical tone model uses it
+    double earth_set_after_entry_s = 299.0;    ///< no tone after that
+    double relay_rate_bps = 2.0e6;             ///< of the recording, after landing
+    double relay_start_after_touchdown_s = 20.0;
+};
+
+/// A command of the scenario itself ("commands scripted"), by name as a controller would send it.
+struct ScriptedCommand {
+    double send_before_entry_s = 0.0;
+    std::string command;
+    std::vector<std::pair<std::string, double>> arguments;
+    bool from_solution = false;   ///< fill the arguments from ground's navigation solution
+};
+
+struct Scenario {
+    std::string name;
+    std::string title;            ///< a line for people
+    Scet entry_scet;              ///< of entry interface, 2012-08-06T05:10:47.4
+    Sclk entry_sclk{397501715.0}; ///< at entry interface
+    double start_before_entry_s = 1200.0;
+    double end_after_touchdown_s = 30.0;
+    double timeout_after_entry_s = 900.0;
+    EntryState entry;
+    Target target;
+    Masses masses;
+    Dispersions dispersions;
+    std::vector<DensityScale> density_scale;
+    double parachute_drag_area_m2 = 205.0;   ///< CD·S at terminal speed
+    double steady_wind_east_mps = 0.0;
+    double steady_wind_north_mps = 0.0;
+    Radio radio;
+    flight::Plan telemetry_plan = flight::Plan::mission;
+    double parachute_speed_mps = 405.0;      ///< trigger of ground's solution
+    double heatshield_speed_mps = 142.0;
+    double backshell_altitude_m = 1660.0;
+    std::vector<ScriptedCommand> commands;
+};
+
+/// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.
+std::vector<std::string> impossible_values(const Scenario& scenario);
+
+}  // namespace aeolis::simulation
