@@ -1,0 +1,72 @@
+# Sourced by ./run, ./test, .ci/run and bench/run: brings what they need, as root or with sudo, and removes nothing.
+# What is already there costs a fraction of a second. Every function ends the script with 2 when it cannot.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root" || exit 2
+say() { printf 'aeolis: %s\n' "$*" >&2; }
+stop() { say "$@"; exit 2; }
+
+# Names of the packages of the given kinds (run, test, check, node).
+packages_for() {
+    awk -F'|' -v kinds=" $* " '!/^#/ && NF >= 4 { gsub(/ /, "", $1); gsub(/ /, "", $2); if (index(kinds, " " $2 " ")) print $1 }' \
+        setup/debian-packages.txt
+}
+
+is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+# need_packages KIND...: installs what is missing of these kinds.
+need_packages() {
+    command -v dpkg-query >/dev/null || stop "this set-up knows Debian 12 only; install what setup/debian-packages.txt lists, then see README.md"
+    local missing=() package as_root=()
+    for package in $(packages_for "$@"); do is_installed "$package" || missing+=("$package"); done
+    [ ${#missing[@]} -eq 0 ] && return
+    if [[ " ${missing[*]} " == *" libboost1.81-dev "* ]] && is_installed libboost1.74-dev; then
+        stop "Debian allows one Boost's headers at a time: libboost1.74-dev is installed, Aeolis needs libboost1.81-dev." \
+             "We remove nothing: when you can do without it, 'apt-get remove libboost1.74-dev' and start again."
+    fi
+    if [ "$(id -u)" -ne 0 ]; then
+        if command -v sudo >/dev/null && { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }; }; then
+            as_root=(sudo)
+        else
+            say "these Debian packages are missing, and installing them takes root or sudo. As root:"
+            printf '  apt-get update && apt-get install --no-remove --no-install-recommends %s\n' "${missing[*]}" >&2
+            exit 2
+        fi
+    fi
+    say "installing ${#missing[@]} Debian packages: ${missing[*]}"
+    local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
+    mkdir -p build
+    { "${apt[@]}" update && "${apt[@]}" install -y --no-remove --no-install-recommends "${missing[@]}"; } >build/apt.log 2>&1 </dev/null || {
+        tail -n 20 build/apt.log >&2
+        stop "apt-get could not install: ${missing[*]} (whole output in build/apt.log; where it says 'remove is disabled', a package of yours conflicts)"
+    }
+}
+
+node_is_new_enough() {
+    command -v node >/dev/null && command -v npm >/dev/null || return 1
+    node -e 'const [major, minor] = process.versions.node.split(".").map(Number); process.exit(major > 20 || (major === 20 && minor >= 19) ? 0 : 1)'
+}
+
+# npm_ci FOLDER: node_modules as the folder's lock file says; nothing to do while it is newer than the lock.
+npm_ci() {
+    local stamp=$1/node_modules/.aeolis-installed
+    [ -e "$stamp" ] && [ "$stamp" -nt "$1/package-lock.json" ] && return
+    [ -e "$1/package-lock.json" ] || stop "$1/package-lock.json is missing: the npm packages are pinned there"
+    say "installing the npm packages of $1"
+    (cd "$1" && npm ci --no-audit --no-fund --loglevel=error --prefer-offline </dev/null >&2) || stop "npm ci failed in $1"
+    touch "$stamp"
+}
+
+# A Node that the web build accepts: the system's, or else the one that setup/node pins (Debian 12's own is 18).
+need_node() {
+    node_is_new_enough && return
+    local pinned=$root/setup/node/node_modules/.bin
+    if [ ! -x "$pinned/node" ] || [ setup/node/package-lock.json -nt setup/node/node_modules/.aeolis-installed ]; then
+        [ "$(uname -m)" = x86_64 ] || stop "the pinned Node is for x86_64; install Node >= 20.19 with npm, then start again"
+        need_packages node
+        npm_ci setup/node
+    fi
+    PATH=$pinned:$PATH
+    hash -r
+    node_is_new_enough || stop "the Node of setup/node does not start: $("$pinned/node" --version 2>&1)"
+}
