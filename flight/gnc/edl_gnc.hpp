@@ -31,6 +31,7 @@ struct Solution {
 struct Configuration {
     bool enabled = false;              ///< GNC enable has fired
     bool cruise_stage_gone = false;
+    bool turning_to_entry = false;     ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
     bool guidance_armed = false;       ///< may start entry guidance when drag says so
     bool sufr_allowed = false;
     bool parachute_out = false;        ///< mortar fired
@@ -52,9 +53,11 @@ struct Configuration {
     bool engines_off = false;
 };
 
-/// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. R25
+/// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
+/// navigation/radar_batch.hpp; the filter averages its own past over the same span, so the delay does no harm. R25
 struct RadarSolution {
-    Sclk time;
+    Sclk time;                             ///< middle of the measurements averaged
+    double span_s = 0.0;                   ///< from the first measurement averaged to the last
     double altitude_m = 0.0;               ///< above the ground below
     std::array<double, 3> v_MB_M_mps{};
     std::uint16_t beams = 0;
@@ -93,6 +96,7 @@ struct Output {
     // Telemetry: the navigated state and what guidance wants. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
+    std::array<double, 4> q_MB{1, 0, 0, 0};    ///< navigated attitude, what EdlBg needs to use the radar's beams
     double altitude_m = 0.0;                   ///< above the target's radius, or above ground once the radar locked
     double speed_mps = 0.0;
     double descent_rate_mps = 0.0;
