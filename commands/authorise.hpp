@@ -1,0 +1,25 @@
+#pragma once
+
+#include "commands/preconditions.hpp"
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+
+#include <span>
+#include <string>
+
+namespace aeolis::commands {
+
+/// Significance critical or severe: needs arming and the command's name typed.
+bool is_hazardous(const dictionary::Command& command);
+
+struct Intent {
+    bool armed = false;
+    std::string confirmation; ///< what the controller typed
+};
+
+/// Whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or its
+/// name was not typed exactly, or when a precondition fails or is not known. R23
+Result<void> authorise(const dictionary::Command& command, const Intent& intent,
+                       std::span<const PreconditionState> preconditions);
+
+} // namespace aeolis::commands

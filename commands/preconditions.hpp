@@ -1,0 +1,32 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::commands {
+
+/// The latest value of a channel that ground has received.
+struct LatestValue {
+    std::optional<double> value; ///< none: never received, or undefined on board
+    double age_s = 0.0;          ///< since it was received; light time comes on top
+};
+
+/// Older than this it says nothing about now. Ours: thirty missed samples of a 1 Hz channel.
+inline constexpr double stale_after_s = 30.0;
+
+struct PreconditionState {
+    enum class State { holds, fails, unknown };
+    State state = State::unknown;
+    std::optional<double> value;
+    std::string text; ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
+};
+
+/// Each transmission constraint of the command against the latest values, which are indexed by ChannelId.
+std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
+                                     std::span<const LatestValue> latest);
+
+} // namespace aeolis::commands

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+// Telemetry in words for people. Pure functions of the dictionary and one decoded packet.
+namespace aeolis::telemetry {
+
+/// The number alone, with digits that suit the unit (metres and m/s to a tenth, degrees to a hundredth, …; ours), or
+/// the label of an enumeration, "true"/"false", "undefined".
+std::string number_text(const dictionary::Type& type, std::optional<double> value);
+
+/// With the unit: "404.6 m/s", "parachute_descent", "undefined".
+std::string value_text(const dictionary::Type& type, std::optional<double> value);
+
+/// "12.3 m/s" for a number whose unit is only known from a name's ending: ("speed_mps", 12.3). R38
+std::string named_value_text(std::string_view name, double value);
+
+const char* name_of(dictionary::EventLevel level); ///< "ACTIVITY_HI"
+
+/// The event of a packet that is one, else none.
+const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, const Decoded& decoded);
+
+/// The event's format with its arguments put in; a brace that names no argument stays as it is.
+std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
+                       const Decoded& decoded);
+
+struct Condition {
+    std::string quantity;
+    double value = 0.0;
+    std::string comparison; ///< "<", "<=", "==", ">=", ">"
+    double bound = 0.0;
+    bool holds = false;
+};
+
+/// A decision of the flight software and the conditions that led to it. R38
+struct Explanation {
+    std::string text; ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
+    std::string decision, verdict;
+    std::string subject; ///< name of the timepoint, command or tone that it is about; may be empty
+    std::vector<Condition> conditions;
+};
+
+/// Of a packet named "Explanation", else none.
+std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
+
+} // namespace aeolis::telemetry
