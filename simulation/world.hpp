@@ -1,0 +1,86 @@
+#pragma once
+
+#include "common/time.hpp"
+#include "flight/devices/device_messages.hpp"
+#include "simulation/landing.hpp"
+#include "simulation/scenario.hpp"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+// What the flight software flies: Mars, the vehicle, its sensors and devices, without a computer and without the links
+// home. A closed-loop harness steps it like this:
+//
+//     World world{scenario, seed, case_number};
+//     flight::DeviceOutputs out;
+//     while (world.outcome() == Outcome::running) {
+//         const flight::DeviceInputs& in = world.sense();   // everything that reaches the computer with this tick
+//         out.begin_cycle();  computer(in, out);            // what it commands in this cycle
+//         world.advance(out);                               // 1/64 s later
+//     }
+namespace aeolis::simulation {
+
+/// In       DeviceOutputs of each 64 Hz cycle             Out   DeviceInputs of the next tick, truth and its events
+/// Memory   about 10 kB, made once; advance() allocates nothing but an event's name
+/// Faults   a state that is not finite ends the run as `lost`
+/// Copying a world is a fork: two copies fed the same outputs stay bit-identical.
+class World {
+  public:
+    /// `case_number` selects an independent draw of all dispersions under the same seed.
+    World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0);
+    World(const World&);
+    World& operator=(const World&);
+    World(World&&) noexcept;
+    World& operator=(World&&) noexcept;
+    ~World();
+
+    /// What reaches the computer with the tick that is now. Once for each tick; valid until the next call.
+    const flight::DeviceInputs& sense();
+
+    /// The vehicle takes the commands of this cycle and flies on to the next tick.
+    void advance(const flight::DeviceOutputs& out);
+
+    /// A telecommand packet reaches the receiver with the next tick; false when it is too long for one.
+    bool receive(std::span<const std::uint8_t> telecommand);
+    /// The vehicle's recorder tells the computer how full it is.
+    void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
+
+    Sclk sclk() const;                          ///< of the tick that is now
+    TruthState truth() const;
+    /// Moments that the last sense() or advance() brought to light; a moment's own time may lie some cycles back.
+    std::span<const TruthEvent> events() const;
+    Outcome outcome() const;                    ///< `touchdown` once the rover stands and the stage has flown away
+    const std::string& outcome_reason() const;
+    const std::optional<TouchdownReport>& touchdown() const;   ///< from the rover's first contact
+    std::optional<Sclk> contact() const;        ///< when that was
+    double peak_deceleration_mps2() const;
+    const NavigationSolution& solution() const;
+
+    /// What a test or a report may want to see of the truth, and flight never does.
+    struct Inspection {
+        double mass_kg = 0.0;                   ///< of all that flies on
+        double propellant_kg = 0.0;
+        double mach = 0.0;
+        double dynamic_pressure_Pa = 0.0;
+        double angle_of_attack_deg = 0.0;       ///< total, against the wind
+        double bank_deg = 0.0;                  ///< lift vector, positive to the right
+        double density_kgm3 = 0.0;
+        double thrust_N = 0.0;
+        double bridle_m = 0.0;
+        std::array<double, 4> q_MB{1, 0, 0, 0};
+        bool uhf_on = false;                    ///< transmitter on and an antenna selected
+        bool parachute_open = false;
+    };
+    Inspection inspect() const;
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace aeolis::simulation
