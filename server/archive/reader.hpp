@@ -1,0 +1,123 @@
+#pragma once
+
+#include "aeolis/v1/items.pb.h"
+#include "aeolis/v1/run.pb.h"
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::archive {
+
+inline constexpr std::size_t items_page_max = 10'000;     ///< items in one answer: some 2 MB encoded
+inline constexpr std::size_t packets_page_max = 1'000;    ///< packets with their fields in one answer: about 1 MB
+inline constexpr std::size_t rows_page_max = 10'000;      ///< events, explanations in one answer
+inline constexpr std::size_t channels_max = 64;           ///< channels in one series query
+inline constexpr std::size_t exact_samples_max = 200'000; ///< samples of one channel in one exact answer; more: thin
+inline constexpr std::size_t thinned_points_max = 20'000; ///< points asked for when thinning
+inline constexpr std::size_t rows_scanned_max = 200'000;  ///< rows looked at for one page of a filtered list
+
+/// From and to, both included; none: open. Upside down is an Error.
+struct SclkRange {
+    std::optional<double> from_s, to_s;
+};
+
+struct ItemPage {
+    std::vector<v1::Item> items;   ///< in order of seq
+    Sequence complete_through = 0; ///< every item up to here has been given, or lies before `after`
+    bool more = false;
+};
+
+struct SeriesQuery {
+    std::vector<std::string> channels; ///< names or aliases
+    SclkRange range;
+    std::optional<std::size_t> points; ///< thin to at most so many; none: exact
+};
+
+struct PacketQuery {
+    std::optional<std::string> name; ///< of the packet: "GncNavigation"
+    SclkRange range;
+    Sequence after = 0;
+    std::size_t limit = 100;
+    bool fields = true;
+};
+
+struct EventQuery {
+    SclkRange range;
+    std::vector<std::string> levels; ///< empty: all
+    std::string text;                ///< part of name or text, any case; empty: all
+    bool duplicates = false;         ///< also those of the recording that were seen in real time
+    Sequence after = 0;
+    std::size_t limit = 1'000;
+};
+
+struct ExplanationQuery {
+    SclkRange range;
+    std::string decision; ///< empty: all
+    bool duplicates = false;
+    Sequence after = 0;
+    std::size_t limit = 1'000;
+};
+
+struct ChannelValue {
+    ChannelId channel;
+    double value = 0.0;
+    Sclk sclk;
+    Source source{};
+};
+
+/// Questions to an archive, while its writer goes on or after.
+///
+/// In       run, names, ranges: anything a client may send        Out   the schema's messages, or an Error in words
+/// Sees     what was committed before the question was asked. Samples are read from segments and, for what is not yet
+///          in a segment, made again from the raw units, so that nothing durable is missing.
+/// Limits   those above; an answer that would be longer is refused or comes in pages
+/// Threads  one owner a Reader; many Readers may be open. The dictionary must outlive it.
+class Reader {
+  public:
+    static Result<Reader> open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary);
+
+    Reader(Reader&&) noexcept;
+    Reader& operator=(Reader&&) noexcept;
+    ~Reader();
+
+    /// All runs, newest first. A run that goes on is `running`; pace and clocks are the rehearsal's to fill in.
+    Result<v1::RunList> runs();
+    Result<v1::RunState> run(RunId run);
+
+    /// Items with a larger sequence number, of all kinds, as they were published. Units and samples can be left out:
+    /// complete_through counts them as given.
+    struct ItemKinds {
+        bool samples = true;
+        bool units = true;
+    };
+    Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
+    Result<ItemPage> items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds);
+    Result<Sequence> last_seq(RunId run);
+
+    /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
+    Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
+    /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
+    Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
+
+    Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
+    Result<v1::EventList> events(RunId run, const EventQuery& query);
+    Result<v1::ToneList> tones(RunId run, SclkRange range);
+    Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);
+    Result<v1::CommandList> commands(RunId run);
+    Result<v1::TimepointList> timepoints(RunId run);
+    Result<v1::RecordingSummary> recording(RunId run);
+
+  private:
+    struct State;
+    explicit Reader(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+} // namespace aeolis::archive

@@ -1,0 +1,199 @@
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/time.hpp"
+#include "telemetry/text.hpp"
+#include "telemetry/unit_identity.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+// What the archive keeps, as plain values: one struct a table. A batch of them is committed whole or not at all.
+namespace aeolis::archive {
+
+using RunId = Id<struct RunTag, std::uint32_t>;
+
+/// Number of an item within its run, from 1, given in the order of arrival. Published only when durable.
+using Sequence = std::uint64_t;
+
+/// Numbers are those of Source in schema/aeolis/v1/items.proto.
+enum class Source : std::uint8_t { realtime = 1, recorded = 2, ground = 3 };
+
+enum class Link : std::uint8_t { uhf_live = 1, relay = 2, x_band = 3 };
+const char* name_of(Link link);
+
+/// Octets, or numbers, that stand in a buffer of the batch.
+struct Slice {
+    std::size_t first = 0;
+    std::size_t count = 0;
+};
+
+/// A unit as received. Its samples, when it has any, are the item seq + 1: they are made again from the octets.
+struct UnitRecord {
+    Sequence seq = 0;
+    Apid apid;
+    std::optional<std::uint16_t> packet; ///< index in the dictionary's packets; none: not decoded
+    std::string refusal;                 ///< why not decoded
+    Sclk sclk;
+    Ert ert;
+    Link link{};
+    Source source{};
+    telemetry::Standing standing{};
+    bool sampled = false; ///< its values are in the series
+    Slice octets;         ///< in Batch::octets
+
+    /// Seen before with the same octets.
+    bool duplicate() const {
+        return standing == telemetry::Standing::again || standing == telemetry::Standing::duplicate;
+    }
+};
+
+/// The values of one sampled unit, one column a channel of its packet; NaN where undefined. Only for publishing and
+/// for segments: it has no row of its own.
+struct SampleRecord {
+    Sequence seq = 0;
+    std::uint16_t packet = 0;
+    Sclk sclk;
+    Source source{};
+    Slice values; ///< in Batch::values
+};
+
+struct EventRecord {
+    Sequence seq = 0;
+    Sequence unit = 0;
+    EvrId id;
+    std::string name, level, text;
+    Sclk sclk;
+    Ert ert;
+    Source source{};
+    bool duplicate = false;
+};
+
+struct ToneRecord {
+    Sequence seq = 0;
+    Ert start, end;
+    std::optional<ToneId> tone; ///< none: erasure
+    std::string name, meaning;
+    double likelihood = 0.0;
+    std::optional<ToneId> runner_up;
+    double runner_up_likelihood = 0.0;
+    double c_n0_dbhz = 0.0;
+    double doppler_hz = 0.0;
+    bool locked = false;
+    std::string model;
+    Sclk sclk; ///< of the vehicle when the symbol began, by light time
+};
+
+/// A stage of a command. The first record of a command carries its arguments and octets.
+struct StageRecord {
+    Sequence seq = 0;
+    std::uint64_t command = 0; ///< number of the command in its run, from 1
+    std::string name, stage, status, evidence;
+    Ert at;
+    std::string arguments;
+    std::uint32_t count = 0;
+    std::vector<std::uint8_t> octets;
+};
+
+struct FiringRecord {
+    Sequence seq = 0;
+    Sequence unit = 0;
+    TimepointId timepoint;
+    std::string name, verdict;
+    Sclk triggered, fired;
+    Source source{};
+    bool duplicate = false;
+};
+
+struct ExplanationRecord {
+    Sequence seq = 0;
+    Sequence unit = 0;
+    Sclk sclk;
+    telemetry::Explanation explanation;
+    Source source{};
+    bool duplicate = false;
+};
+
+struct LinkRecord {
+    Sequence seq = 0;
+    Link link{};
+    bool up = false;
+    std::string reason;
+    Ert ert;
+};
+
+struct AlarmRecord {
+    Sequence seq = 0;
+    Sequence unit = 0;
+    ChannelId channel;
+    std::string severity; ///< "none": cleared
+    double value = 0.0;
+    Sclk sclk;
+    std::string limit;
+};
+
+/// Samples of one packet and source, column by column. Written once, when full or when the run ends.
+struct SegmentRecord {
+    std::uint16_t packet = 0;
+    Source source{};
+    Sequence first_unit = 0, last_unit = 0; ///< the units between them, of this packet and source, that are sampled
+    std::vector<double> sclk_s;             ///< in the order of receipt
+    std::vector<ChannelId> channels;
+    std::vector<double> values; ///< channel by channel, sclk_s.size() each; NaN: undefined
+};
+
+/// Real time against the recording, and how much of the recording has come down.
+struct RecordingTotals {
+    std::uint64_t recorded = 0, recorded_octets = 0, realtime = 0, realtime_not_recorded = 0, realtime_differs = 0,
+                  never_seen_live = 0, not_decoded = 0;
+    double progress = 0.0;
+};
+
+struct RunStart {
+    std::string scenario, title;
+    std::string venue = "rehearsal";
+    std::uint64_t seed = 0;
+    std::uint64_t case_number = 0;
+    double pace = 0.0;
+    std::string started; ///< wall clock, ISO 8601
+    Sclk start, entry;   ///< entry as predicted
+    ClockCorrelation correlation;
+    double light_time_s = 0.0;
+    std::string tone_model;
+    std::string scenario_text; ///< the whole scenario as Protobuf text: with the seed, the run can be flown again
+    std::vector<std::pair<std::string, double>> solution; ///< ground's navigation solution
+};
+
+struct RunEnd {
+    std::string outcome; ///< touchdown, impact, lost, not_commanded, timeout, stopped
+    std::string reason;
+    std::string digest;
+    std::string ended; ///< wall clock, ISO 8601
+};
+
+/// What becomes durable together.
+struct Batch {
+    Sequence first_seq = 0, last_seq = 0; ///< of all items in it; both 0 when it has none
+    std::vector<std::uint8_t> octets;
+    std::vector<double> values;
+    std::vector<UnitRecord> units;
+    std::vector<SampleRecord> samples;
+    std::vector<EventRecord> events;
+    std::vector<ToneRecord> tones;
+    std::vector<StageRecord> stages;
+    std::vector<FiringRecord> firings;
+    std::vector<ExplanationRecord> explanations;
+    std::vector<LinkRecord> links;
+    std::vector<AlarmRecord> alarms;
+    std::vector<SegmentRecord> segments;
+    std::optional<RecordingTotals> totals;
+    std::optional<RunEnd> end;
+
+    bool empty() const { return last_seq == 0 && segments.empty() && !totals && !end; }
+    void clear(); ///< keeps capacity
+};
+
+} // namespace aeolis::archive
