@@ -1,0 +1,165 @@
+#include "tests/structure/source_tree.hpp"
+#include "tests/support/catch.hpp"
+
+#include <map>
+#include <regex>
+
+namespace {
+
+using namespace aeolis::structure;
+
+struct Include {
+    std::string file;
+    std::size_t line;
+    std::string target; // as written, without the marks
+    bool system;
+};
+
+const std::vector<std::string>& folders() {
+    static const std::vector<std::string> names{"common",   "dictionaries", "flight", "simulation", "telemetry",
+                                                "commands", "server",       "tests",  "bench"};
+    return names;
+}
+
+std::vector<Include> all_includes() {
+    static const std::regex pattern{R"(^\s*#\s*include\s*([<"])([^">]+)[">])"};
+    std::vector<Include> found;
+    for (const std::string& folder : folders()) {
+        for (const std::string& file : files_under(folder, {".hpp", ".cpp"})) {
+            const auto lines = lines_of(file);
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                std::smatch match;
+                if (std::regex_search(lines[i], match, pattern)) {
+                    found.push_back({file, i + 1, match[2], match[1] == "<"});
+                }
+            }
+        }
+    }
+    return found;
+}
+
+bool starts_with_any(const std::string& text, const std::vector<std::string>& prefixes) {
+    return std::any_of(prefixes.begin(), prefixes.end(), [&](const std::string& p) { return text.starts_with(p); });
+}
+
+std::string top_folder(const std::string& path) { return path.substr(0, path.find('/')); }
+
+std::string where(const Include& include) {
+    return include.file + ":" + std::to_string(include.line) + " includes " + include.target;
+}
+
+/// What each folder may include of ours, by prefix. The order is that of docs/architecture.md.
+const std::map<std::string, std::vector<std::string>>& allowed() {
+    static const std::map<std::string, std::vector<std::string>> graph{
+        {"common", {"common/"}},
+        {"dictionaries", {"common/", "dictionaries/"}},
+        {"flight", {"common/", "dictionaries/", "flight/", "generated/"}},
+        {"simulation", {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "simulation/"}},
+        {"telemetry", {"common/", "dictionaries/", "telemetry/"}},
+        {"commands", {"common/", "dictionaries/", "commands/"}},
+        {"server",
+         {"common/", "dictionaries/", "flight/", "simulation/", "telemetry/", "commands/", "server/", "generated/",
+          "aeolis/v1/"}},
+        {"tests", {""}},
+        {"bench", {""}},
+    };
+    return graph;
+}
+
+/// Where each third party, or part of the standard library, may be named. The first rule whose prefix fits counts.
+struct Home {
+    std::string header;
+    std::vector<std::string> files;
+    std::string why;
+};
+
+const std::vector<Home>& homes() {
+    static const std::vector<std::string> with_effects{"server/", "tests/", "bench/"};
+    static const std::vector<Home> rules{
+        {"pugixml", {"dictionaries/", "tests/"}, "pugixml is at home in dictionaries/"},
+        {"Eigen/", {"flight/gnc/", "simulation/", "telemetry/mfsk", "tests/", "bench/"}, "Eigen: flight/gnc, simulation, telemetry/mfsk"},
+        {"google/protobuf/", with_effects, "Protobuf is at home in server/"},
+        {"aeolis/v1/", with_effects, "Protobuf is at home in server/"},
+        {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
+        {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
+        {"boost/", with_effects, "Boost is at home in server/"},
+        {"spdlog/", with_effects, "only server/ logs"},
+        {"CLI/", with_effects, "only server/ reads a command line"},
+        {"catch2/", {"tests/support/"}, "Catch2 is reached through tests/support/catch.hpp"},
+        {"chrono", with_effects, "only server/ knows the real clock"},
+        {"ctime", with_effects, "only server/ knows the real clock"},
+        {"thread", with_effects, "only server/ has threads"},
+        {"mutex", with_effects, "only server/ has threads"},
+        {"atomic", with_effects, "only server/ has threads"},
+        {"future", with_effects, "only server/ has threads"},
+        {"condition_variable", with_effects, "only server/ has threads"},
+        {"sys/socket", with_effects, "only server/ has sockets"},
+        {"fstream", {"dictionaries/", "server/", "tests/", "bench/"}, "only server/, and the dictionary's loader, read files"},
+        {"filesystem", {"dictionaries/", "server/", "tests/", "bench/"}, "only server/, and the dictionary's loader, read files"},
+        {"iostream", {"dictionaries/", "server/", "tests/", "bench/"}, "only programs print"},
+    };
+    return rules;
+}
+
+} // namespace
+
+TEST_CASE("a folder includes only what stands before it in the house", "[structure][R47]") {
+    std::string broken;
+    std::size_t seen = 0;
+    for (const Include& include : all_includes()) {
+        const std::string target = top_folder(include.target);
+        const bool ours = std::find(folders().begin(), folders().end(), target) != folders().end();
+        if (!ours && !include.target.starts_with("generated/")) {
+            continue;
+        }
+        ++seen;
+        if (!starts_with_any(include.target, allowed().at(top_folder(include.file)))) {
+            broken += where(include) + "\n";
+        }
+    }
+    CHECK(seen > 20);
+    INFO(broken);
+    CHECK(broken.empty());
+}
+
+TEST_CASE("each third party and each effect has one home", "[structure][R46]") {
+    std::string broken;
+    for (const Include& include : all_includes()) {
+        for (const Home& home : homes()) {
+            const bool whole_name = home.header.back() == '/' || include.target == home.header ||
+                                    include.target.starts_with(home.header + ".");
+            if (include.target.starts_with(home.header) && whole_name) {
+                if (!starts_with_any(include.file, home.files)) {
+                    broken += where(include) + ": " + home.why + "\n";
+                }
+                break;
+            }
+        }
+    }
+    INFO(broken);
+    CHECK(broken.empty());
+}
+
+TEST_CASE("no header names Boost, so that Beast is compiled in few files", "[structure]") {
+    std::string broken;
+    for (const Include& include : all_includes()) {
+        if (include.target.starts_with("boost/") && include.file.ends_with(".hpp")) {
+            broken += where(include) + "\n";
+        }
+    }
+    INFO(broken);
+    CHECK(broken.empty());
+}
+
+TEST_CASE("flight and simulation use nothing whose order or value changes from run to run", "[structure]") {
+    std::string broken;
+    for (const Include& include : all_includes()) {
+        const bool deterministic = include.file.starts_with("flight/") || include.file.starts_with("simulation/");
+        const bool unsteady = include.target == "random" || include.target.starts_with("unordered_");
+        if (deterministic && include.system && unsteady) {
+            broken += where(include) + "\n";
+        }
+    }
+    INFO(broken);
+    CHECK(broken.empty());
+}
