@@ -46,7 +46,7 @@ struct Answer {
 /// Rules    a stage is ok only by evidence. `received` is not observed: it is inferred from an answer, and says so.
 ///          Silence until the window (of the dictionary, from radiation) plus light time both ways is `unknown`, with
 ///          words: the answer may be lost, or come later with the recording; it then still counts. A refusal, or a
-///          read-back that differs, is `failed`. Ok never changes again.
+///          read-back that differs, is `failed`. Ok never changes again; failed only when a later read-back is equal.
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:
@@ -54,8 +54,7 @@ class CommandLifecycle {
     /// exist for it. The command must outlive this.
     CommandLifecycle(const dictionary::Command& command, std::uint16_t count, double light_time_s, bool read_back);
 
-    /// One of ground's own stages, queued … radiated, was done, or failed; later ones follow by themselves: `failed`
-    /// ends the command.
+    /// One of ground's own stages, queued … radiated, was done (ok) or failed, which ends the command.
     void ground_stage(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
 
     void on(const Answer& answer, std::vector<StageChange>& out);
@@ -63,24 +62,26 @@ class CommandLifecycle {
     void pass(Ert now, std::vector<StageChange>& out);
 
     Status status(Stage stage) const { return status_[static_cast<std::size_t>(stage)]; }
-    bool exists(Stage stage) const { return stage != Stage::verified || verifiable_; }
+    bool exists(Stage stage) const;
     /// Nothing can change any more: every stage is ok or failed.
     bool finished() const;
     std::uint16_t count() const { return count_; }
-    const dictionary::Command& command() const { return command_; }
+    const dictionary::Command& command() const { return *command_; }
 
   private:
     void set(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
+    void await_answers(Ert at, std::vector<StageChange>& out);
     void infer_before(Stage stage, const Answer& answer, std::vector<StageChange>& out);
     void fail_after(Stage stage, const std::string& why, Ert at, std::vector<StageChange>& out);
+    static std::optional<Stage> stage_named(const std::string& name);
     const dictionary::Verifier* verifier(Stage stage) const;
-    double window_s(Stage stage) const;
+    double total_window_s(Stage stage) const;
+    Ert deadline(Stage stage) const;
 
-    const dictionary::Command& command_;
+    const dictionary::Command* command_;
     std::uint16_t count_ = 0;
     double light_time_s_ = 0.0;
     bool read_back_ = false;
-    bool verifiable_ = false;
     std::array<Status, stage_count> status_{};
     std::optional<Ert> radiated_;
     std::optional<Sclk> executed_sclk_;

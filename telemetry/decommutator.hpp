@@ -3,6 +3,7 @@
 #include "common/space_packet.hpp"
 #include "dictionaries/dictionary.hpp"
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -62,13 +63,17 @@ class Decommutator {
         std::uint32_t octets = 0;
     };
     struct EventPlan {
+        std::uint16_t apid = 0;
         std::uint16_t event = 0;
         std::uint32_t packet = 0;
+        auto operator<=>(const EventPlan&) const = default;
     };
     static constexpr std::uint32_t no_validity_bit = 0xFFFFFFFF;
     static constexpr std::uint16_t no_packet = 0xFFFF;
 
-    std::optional<std::size_t> event_packet(std::span<const std::uint8_t> packet) const;
+    Step compile(const dictionary::Field& field, const dictionary::Packet& packet);
+    std::optional<std::size_t> event_packet(Apid apid, std::span<const std::uint8_t> packet) const;
+    std::optional<double> calibrated(const Step& step, std::uint64_t raw) const;
 
     std::uint16_t dictionary_id_ = 0;
     std::vector<Plan> plans_; ///< by index in Dictionary::packets
@@ -76,7 +81,7 @@ class Decommutator {
     std::vector<double> coefficients_;
     std::vector<std::uint16_t> by_apid_; ///< 2048: index of the packet, or no_packet
     std::vector<bool> holds_events_;     ///< 2048
-    std::vector<EventPlan> events_;      ///< sorted by event
+    std::vector<EventPlan> events_;      ///< sorted by APID, then event id
 };
 
 /// The field's index in the packet, by name; for people and for the few fields that ground itself interprets.

@@ -20,9 +20,10 @@ struct Proof {
     bool holds() const { return realtime_not_recorded == 0 && realtime_differs == 0 && unregistered == 0; }
 };
 
-Proof prove(const UnitRegister& units);
+Proof prove(const UnitRegister& register_of_run);
 
-/// "every one of 4120 real-time units is in the recording, bit for bit; 61 003 recorded units were never seen live".
+/// "all 4120 units seen in real time are in the recording, bit for bit; of 65123 units recorded, 61003 were never seen
+/// …"
 std::string text_of(const Proof& proof);
 
 } // namespace aeolis::telemetry

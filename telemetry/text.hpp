@@ -18,7 +18,8 @@ std::string number_text(const dictionary::Type& type, std::optional<double> valu
 /// With the unit: "404.6 m/s", "parachute_descent", "undefined".
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
-/// "12.3 m/s" for a number whose unit is only known from a name's ending: ("speed_mps", 12.3). R38
+/// For a number whose unit is only known from the ending of its name, "speed_mps": "speed" and "12.3 m/s".
+std::string_view without_unit(std::string_view name); ///< "speed"
 std::string named_value_text(std::string_view name, double value);
 
 const char* name_of(dictionary::EventLevel level); ///< "ACTIVITY_HI"
@@ -29,24 +30,5 @@ const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, cons
 /// The event's format with its arguments put in; a brace that names no argument stays as it is.
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded);
-
-struct Condition {
-    std::string quantity;
-    double value = 0.0;
-    std::string comparison; ///< "<", "<=", "==", ">=", ">"
-    double bound = 0.0;
-    bool holds = false;
-};
-
-/// A decision of the flight software and the conditions that led to it. R38
-struct Explanation {
-    std::string text; ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
-    std::string decision, verdict;
-    std::string subject; ///< name of the timepoint, command or tone that it is about; may be empty
-    std::vector<Condition> conditions;
-};
-
-/// Of a packet named "Explanation", else none.
-std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
 } // namespace aeolis::telemetry

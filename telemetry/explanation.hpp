@@ -1,0 +1,35 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+struct Condition {
+    std::string quantity; ///< "speed_mps"
+    double value = 0.0;
+    std::string comparison; ///< "<", "<=", "==", ">=", ">"
+    double bound = 0.0;
+    bool holds = false; ///< as flight found it; ground does not judge again
+};
+
+/// A decision of the flight software and the conditions that led to it, in words. R38
+struct Explanation {
+    std::string text; ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
+    std::string decision, verdict;
+    std::string subject; ///< name of the timepoint, command or tone that it is about; may be empty
+    std::vector<Condition> conditions;
+};
+
+/// Of the packet named "Explanation", else none.
+///
+/// The packet's fields: decision, verdict, subject, condition_count, then slots of five, in this order: quantity,
+/// value, bound, comparison (lt, le, eq, ge, gt), holds. `subject` is the number of a timepoint, a tone or an opcode,
+/// as the decision's label says; of other decisions the label is enough.
+std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
+
+} // namespace aeolis::telemetry

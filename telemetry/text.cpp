@@ -1,0 +1,147 @@
+#include "telemetry/text.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace aeolis::telemetry {
+namespace {
+
+/// How a unit is written and how many decimals tell a person enough. Ours.
+struct Notation {
+    std::string_view unit;   ///< as in the dictionary
+    std::string_view suffix; ///< as the ending of a name
+    int decimals;
+};
+constexpr std::array notations{
+    Notation{"m/s2", "mps2", 2}, Notation{"m/s^2", "", 2},        Notation{"m/s", "mps", 1},
+    Notation{"deg/s", "dps", 2}, Notation{"deg", "deg", 2},       Notation{"rad", "rad", 4},
+    Notation{"km", "km", 2},     Notation{"m", "m", 1},           Notation{"s", "s", 3},
+    Notation{"s", "sclk", 3},    Notation{"g", "g", 2},           Notation{"kg", "kg", 1},
+    Notation{"N", "N", 0},       Notation{"Pa", "Pa", 1},         Notation{"%", "percent", 1},
+    Notation{"percent", "", 1},  Notation{"octets", "octets", 0}, Notation{"Hz", "hz", 2},
+    Notation{"dBHz", "dbhz", 1},
+};
+
+bool is_whole(double value) {
+    return value == std::floor(value) && std::abs(value) < 1e15;
+}
+
+std::string digits(double value, std::optional<int> decimals) {
+    char buffer[400]; // a double printed whole has at most 309 digits before the point
+    if (decimals && std::abs(value) < 1e12)
+        std::snprintf(buffer, sizeof buffer, "%.*f", *decimals, value);
+    else
+        std::snprintf(buffer, sizeof buffer, "%.6g", value);
+    // "-0.0" is a sign without a number.
+    std::string text = buffer;
+    if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+    return text;
+}
+
+const Notation* notation_of_unit(std::string_view unit) {
+    for (const Notation& notation : notations)
+        if (notation.unit == unit) return &notation;
+    return nullptr;
+}
+
+const Notation* notation_of_name(std::string_view name) {
+    const std::size_t underscore = name.rfind('_');
+    const std::string_view ending = underscore == std::string_view::npos ? name : name.substr(underscore + 1);
+    for (const Notation& notation : notations)
+        if (!notation.suffix.empty() && notation.suffix == ending) return &notation;
+    return nullptr;
+}
+
+const std::string* label_of(const dictionary::Type& type, double value) {
+    for (const dictionary::EnumValue& entry : type.enumeration)
+        if (static_cast<double>(entry.value) == value) return &entry.label;
+    return nullptr;
+}
+
+} // namespace
+
+std::string number_text(const dictionary::Type& type, std::optional<double> value) {
+    if (!value) return "undefined";
+    switch (type.kind) {
+    case dictionary::ValueKind::boolean:
+        return *value != 0.0 ? "true" : "false";
+    case dictionary::ValueKind::enumerated: {
+        const std::string* label = label_of(type, *value);
+        return label != nullptr ? *label : digits(*value, 0) + " (no label)";
+    }
+    case dictionary::ValueKind::integer:
+        if (is_whole(*value)) return digits(*value, 0);
+        break; // calibrated to a fraction
+    case dictionary::ValueKind::real:
+        break;
+    }
+    const Notation* notation = notation_of_unit(type.unit);
+    return digits(*value, notation != nullptr ? std::optional{notation->decimals} : std::nullopt);
+}
+
+std::string value_text(const dictionary::Type& type, std::optional<double> value) {
+    const std::string number = number_text(type, value);
+    const bool bare = !value || type.unit.empty() || type.unit == "1" || type.kind == dictionary::ValueKind::boolean ||
+                      type.kind == dictionary::ValueKind::enumerated;
+    return bare ? number : number + " " + type.unit;
+}
+
+std::string_view without_unit(std::string_view name) {
+    if (notation_of_name(name) == nullptr) return name;
+    const std::size_t underscore = name.rfind('_');
+    return underscore == std::string_view::npos ? name : name.substr(0, underscore);
+}
+
+std::string named_value_text(std::string_view name, double value) {
+    const Notation* notation = notation_of_name(name);
+    if (notation == nullptr) return digits(value, is_whole(value) ? std::optional{0} : std::nullopt);
+    return digits(value, notation->decimals) + " " + std::string{notation->unit};
+}
+
+const char* name_of(dictionary::EventLevel level) {
+    switch (level) {
+    case dictionary::EventLevel::fatal:
+        return "FATAL";
+    case dictionary::EventLevel::warning_hi:
+        return "WARNING_HI";
+    case dictionary::EventLevel::warning_lo:
+        return "WARNING_LO";
+    case dictionary::EventLevel::command:
+        return "COMMAND";
+    case dictionary::EventLevel::activity_hi:
+        return "ACTIVITY_HI";
+    case dictionary::EventLevel::activity_lo:
+        return "ACTIVITY_LO";
+    case dictionary::EventLevel::diagnostic:
+        return "DIAGNOSTIC";
+    }
+    return "";
+}
+
+const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, const Decoded& decoded) {
+    const auto& id = dictionary.packets[decoded.packet].event;
+    return id ? dictionary.event(*id) : nullptr;
+}
+
+std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
+                       const Decoded& decoded) {
+    const dictionary::Packet& packet = dictionary.packets[decoded.packet];
+    std::string text;
+    std::string_view rest = event.format;
+    while (!rest.empty()) {
+        const std::size_t open = rest.find('{');
+        const std::size_t close = open == std::string_view::npos ? open : rest.find('}', open);
+        if (close == std::string_view::npos) break;
+        text += rest.substr(0, open);
+        const auto field = field_index(packet, rest.substr(open + 1, close - open - 1));
+        if (field && *field < decoded.value.size())
+            text += number_text(packet.fields[*field].type, decoded.value[*field]);
+        else
+            text += rest.substr(open, close - open + 1);
+        rest.remove_prefix(close + 1);
+    }
+    return text.append(rest);
+}
+
+} // namespace aeolis::telemetry
