@@ -2,6 +2,7 @@
 
 #include "common/check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -28,6 +29,12 @@ class FixedVector {
     constexpr void push_back(const T& value) {
         AEOLIS_CHECK(!full());
         values_[size_++] = value;
+    }
+    /// All of `values`; the caller knows that there is room.
+    constexpr void append(std::span<const T> values) {
+        AEOLIS_CHECK(values.size() <= N - size_);
+        std::copy(values.begin(), values.end(), values_.data() + size_);
+        size_ += values.size();
     }
     constexpr void pop_back() {
         AEOLIS_CHECK(!empty());

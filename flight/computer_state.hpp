@@ -1,0 +1,53 @@
+#pragma once
+
+#include "common/fixed_queue.hpp"
+#include "flight/commands/command_dispatcher.hpp"
+#include "flight/devices/device_managers.hpp"
+#include "flight/edl/edl_main.hpp"
+#include "flight/edl_bg/edl_bg.hpp"
+#include "flight/edl_comm/edl_comm.hpp"
+#include "flight/kernel/sync.hpp"
+#include "flight/load.hpp"
+#include "flight/mfsk/tone_selector.hpp"
+
+#include <array>
+#include <type_traits>
+
+namespace aeolis::flight {
+
+inline constexpr std::size_t mailbox_messages_max = 64;  ///< ours: an IMU, radar and reply burst twice over
+
+/// Everything that a flight computer holds: its modules, their mailboxes, and the messages of one cycle for the next.
+struct ComputerState {
+    ComputerState(const Load& its_load, Sclk start)
+        : load(its_load), now(start), edl(its_load), mfsk(tone_specs), edl_comm(its_load) {}
+
+    Load load;
+    Sclk now;
+
+    Sync sync;
+    RadarManager radar;
+    ImuManager imu;
+    EdlMain edl;
+    PyroManager pyro;
+    DescentEngines descent_engines;
+    Thrusters thrusters;
+    PowerManager power;
+    CommandDispatcher command_dispatcher;
+    EdlBg edl_bg;
+    ToneSelector mfsk;
+    EdlComm edl_comm;
+
+    std::array<FixedQueue<Message, mailbox_messages_max>, module_count> mailboxes;
+    // What modules outside the rate group sent: delivered at the start of the next cycle, whatever the executive.
+    FixedVector<Envelope, 128> next_cycle;
+    Outbox outbox;
+
+    std::uint32_t mailbox_overflows = 0;
+    std::uint32_t unexpected_messages = 0;
+    std::uint32_t resets = 0;
+};
+static_assert(std::is_copy_constructible_v<ComputerState> && std::is_trivially_destructible_v<ComputerState>,
+              "copying a computer is a snapshot");
+
+}  // namespace aeolis::flight

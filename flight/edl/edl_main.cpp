@@ -1,0 +1,189 @@
+#include "flight/edl/edl_main.hpp"
+
+#include "flight/edl/gnc_triggers.hpp"
+#include "flight/timeline/actions.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace aeolis::flight {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180.0;
+constexpr double late_cruise_before_entry_s = 18000.0;  // ours: pre-EDL ends four hours before entry [facts], plus one
+constexpr double do_edl_margin_s = 1.0;                 // ours: accepted this long before the first timepoint is due
+
+void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
+    out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
+}
+
+gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
+    gnc::Solution solution;
+    solution.epoch = Sclk{p.epoch_sclk};
+    solution.p_MoB_M_m = {p.position_x_m, p.position_y_m, p.position_z_m};
+    solution.v_MB_M_mps = {p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps};
+    solution.entry = Sclk{p.entry_sclk};
+    solution.target_latitude_rad = p.target_latitude_deg * radians_per_degree;
+    solution.target_longitude_rad = p.target_longitude_deg * radians_per_degree;
+    solution.target_radius_m = p.target_radius_m;
+    solution.parachute_speed_mps = p.parachute_speed_mps;
+    solution.heatshield_speed_mps = p.heatshield_speed_mps;
+    solution.backshell_altitude_m = p.backshell_altitude_m;
+    return solution;
+}
+
+}  // namespace
+
+EdlMain::EdlMain(const Load& load) : plan_(load.telemetry_plan), timeline_(timeline_specs, anchor_specs), gnc_(load) {}
+
+// ---- the cycle -------------------------------------------------------------------------------------------------
+
+void EdlMain::on(const Tick& tick, Outbox& out) {
+    ++cycle_count_;
+    timeline_.begin_cycle();
+    run_timeline(tick.now, out);
+    run_gnc(tick.now, out);
+    take_triggers(tick.now, out);
+    run_timeline(tick.now, out);
+    update_phase(tick.now, out);
+    record_channels(tick.now, out);
+    out.send(ModuleId::sync, Confirm{ModuleId::edl});
+}
+
+void EdlMain::run_timeline(Sclk now, Outbox& out) {
+    ActionContext context{out, configuration_};
+    Firings firings;
+    timeline_.pass(now, context, firings);
+    for (const Firing& firing : firings) {
+        out.record(packet::TimepointFired{.timepoint = firing.timepoint.value,
+                                          .triggered_sclk = firing.triggered.seconds,
+                                          .fired_sclk = firing.fired.seconds,
+                                          .verdict = firing.verdict});
+        if (firing.verdict == FiringVerdict::timed_out)
+            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
+    }
+}
+
+void EdlMain::run_gnc(Sclk now, Outbox& out) {
+    gnc_inputs_.now = now;
+    gnc_.cycle(gnc_inputs_, configuration_, output_);
+    gnc_inputs_.imu.clear();
+    gnc_inputs_.engines.reset();
+    gnc_inputs_.bridle.reset();
+    if (!configuration_.enabled) return;
+    out.send(ModuleId::thrusters, PointVehicle{output_.attitude});
+    if (configuration_.engines_primed) out.send(ModuleId::descent_engines, RunEngines{output_.engines});
+    if (configuration_.radar_on) {
+        const auto& p = output_.p_MoB_M_m;
+        const double radius_m = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        out.send(ModuleId::edl_bg,
+                 NavigatedAttitude{output_.q_MB, {p[0] / radius_m, p[1] / radius_m, p[2] / radius_m}});
+    }
+}
+
+void EdlMain::take_triggers(Sclk now, Outbox& out) {
+    for (const gnc::Trigger trigger : output_.triggers) {
+        if (const auto started = anchor_of(trigger)) timeline_.set_anchor_now(*started, now);
+        announce(trigger, output_, out);
+        explain(trigger, output_, out);
+    }
+    if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
+}
+
+void EdlMain::update_phase(Sclk now, Outbox& out) {
+    const EdlPhase phase = phase_of(output_.mode, configuration_, late_cruise(now));
+    if (phase == phase_) return;
+    phase_ = phase;
+    out.send(ModuleId::edl_comm, PhaseChanged{phase});
+    out.event(evr::EDL_PHASE_CHANGED{.phase = phase});
+}
+
+// ---- what the device managers send -----------------------------------------------------------------------------
+
+void EdlMain::on(const ImuReadings& readings, Outbox&) {
+    gnc_inputs_.imu = readings.samples;
+}
+
+void EdlMain::on(const EngineReply& reply, Outbox&) {
+    gnc_inputs_.engines = reply;
+}
+
+void EdlMain::on(const BridleReply& reply, Outbox&) {
+    gnc_inputs_.bridle = reply;
+}
+
+void EdlMain::on(const CruiseAttitude& attitude, Outbox&) {
+    gnc_.on(attitude);
+}
+
+void EdlMain::on(const gnc::RadarSolution& solution, Outbox&) {
+    gnc_.on(solution);
+}
+
+void EdlMain::on(const ActionReply& reply, Outbox&) {
+    timeline_.reply(reply);
+}
+
+// ---- commands --------------------------------------------------------------------------------------------------
+
+bool EdlMain::late_cruise(Sclk now) const {
+    return now >= entry() + MaybeOffset{-late_cruise_before_entry_s};
+}
+
+bool EdlMain::too_late(Sclk now) const {
+    return now >= timeline_.first_desired() + MaybeOffset{-do_edl_margin_s};
+}
+
+void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
+    // Once GNC navigates by itself, a solution from Earth is older than what it knows.
+    if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
+    parameters_ = update.parameters;
+    gnc_.set_solution(solution_of(*parameters_), out.now());
+    const Sclk entry = Sclk::from_ticks(std::llround(parameters_->entry_sclk * 64.0));
+    AEOLIS_CHECK(timeline_.set_anchor_offset(anchor::entry, entry.seconds));
+    timeline_.compute_anchors();
+    out.record(parameters_held());
+    answer(out, update.tag, std::nullopt);
+}
+
+void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
+    std::optional<CommandRefusal> refused;
+    if (!parameters_)
+        refused = CommandRefusal::no_parameters;
+    else if (timeline_.begun())
+        refused = CommandRefusal::already_running;
+    else if (!late_cruise(out.now()))
+        refused = CommandRefusal::too_early;
+    else if (too_late(out.now()))
+        refused = CommandRefusal::too_late;
+    explain_do_edl(refused, entry(), timeline_.first_desired(), late_cruise_before_entry_s, out);
+    if (!refused) {
+        timeline_.begin(out.now());
+        out.event(evr::EDL_BEGUN{});
+    }
+    answer(out, command.tag, refused);
+}
+
+void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
+    const auto& arguments = command.arguments;
+    const bool possible = is_multiple_of_tick(arguments.desired_offset_s) &&
+                          is_multiple_of_tick(arguments.minimum_offset_s) &&
+                          timeline_.set_timepoint_offsets(TimepointId{arguments.timepoint}, arguments.desired_offset_s,
+                                                          arguments.minimum_offset_s);
+    if (possible)
+        out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
+                                                .desired_offset_s = arguments.desired_offset_s,
+                                                .minimum_offset_s = arguments.minimum_offset_s});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+}
+
+void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
+    const auto& arguments = command.arguments;
+    const bool possible = is_multiple_of_tick(arguments.offset_s) &&
+                          timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
+    if (possible)
+        out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "flight/edl/phase.hpp"
+#include "flight/gnc/edl_gnc.hpp"
+#include "flight/kernel/outbox.hpp"
+#include "flight/timeline/timeline.hpp"
+
+#include <optional>
+
+namespace aeolis::flight {
+
+/// EdlMain: the one thread of EDL. Each 64 Hz cycle it runs the timeline, GNC exactly once, and the timeline again, so
+/// that what GNC decides happens in the same cycle. R15, R17, R18, R47
+///
+/// In      Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
+///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand
+/// Out     actions to the managers of devices; tones; events, firings, explanations and channels to EdlComm; Confirm
+/// Gate    nothing runs before parameters came and then "do edl", in late cruise, and not too late for it. R23
+class EdlMain {
+  public:
+    explicit EdlMain(const Load& load);
+
+    void on(const Tick& tick, Outbox& out);
+
+    void on(const ImuReadings& readings, Outbox& out);
+    void on(const EngineReply& reply, Outbox& out);
+    void on(const BridleReply& reply, Outbox& out);
+    void on(const CruiseAttitude& attitude, Outbox& out);
+    void on(const gnc::RadarSolution& solution, Outbox& out);
+    void on(const ActionReply& reply, Outbox& out);
+
+    void on(const ParametersUpdate& update, Outbox& out);
+    void on(const DoEdlCommand& command, Outbox& out);
+    void on(const SetTimepointOffsetCommand& command, Outbox& out);
+    void on(const SetAnchorOffsetCommand& command, Outbox& out);
+
+    const Timeline& timeline() const { return timeline_; }
+    EdlPhase phase() const { return phase_; }
+
+  private:
+    void run_timeline(Sclk now, Outbox& out);
+    void run_gnc(Sclk now, Outbox& out);
+    void take_triggers(Sclk now, Outbox& out);
+    void update_phase(Sclk now, Outbox& out);
+    void record_channels(Sclk now, Outbox& out);
+    void record_descent(Outbox& out) const;
+    packet::ParametersHeld parameters_held() const;
+    MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
+    bool late_cruise(Sclk now) const;
+    bool too_late(Sclk now) const;
+
+    Plan plan_;
+    Timeline timeline_;
+    gnc::EdlGnc gnc_;
+    gnc::Configuration configuration_;
+    gnc::Output output_;
+    DeviceInputs gnc_inputs_;  // what the device managers sent for this cycle
+    std::optional<command::EDL_SET_PARAMETERS> parameters_;
+    EdlPhase phase_ = EdlPhase::pre_edl;
+    std::uint32_t cycle_count_ = 0;
+};
+
+}  // namespace aeolis::flight

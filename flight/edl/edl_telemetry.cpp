@@ -1,0 +1,129 @@
+#include "flight/edl/edl_main.hpp"
+
+#include <cmath>
+#include <numbers>
+
+// The channels that EdlMain records, and how often. What of them goes to ground is EdlComm's plan.
+namespace aeolis::flight {
+namespace {
+
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+constexpr double standard_gravity_mps2 = 9.80665;
+constexpr double parts_in_percent = 100.0;
+
+/// Whether a packet of `hz` (a power of two up to 64) is due in this cycle.
+bool due(Sclk now, std::int64_t hz) {
+    return at_resolution(now, hz) == now;
+}
+
+float f(double value) {
+    return static_cast<float>(value);
+}
+
+std::optional<double> seconds(MaybeTime time) {
+    if (!time.defined()) return std::nullopt;
+    return time.get()->seconds;
+}
+
+packet::GncNavigation navigation(const gnc::Output& gnc) {
+    return {.nav_position_x_m = gnc.p_MoB_M_m[0],
+            .nav_position_y_m = gnc.p_MoB_M_m[1],
+            .nav_position_z_m = gnc.p_MoB_M_m[2],
+            .nav_velocity_x_mps = f(gnc.v_MB_M_mps[0]),
+            .nav_velocity_y_mps = f(gnc.v_MB_M_mps[1]),
+            .nav_velocity_z_mps = f(gnc.v_MB_M_mps[2]),
+            .altitude_m = f(gnc.altitude_m),
+            .speed_mps = f(gnc.speed_mps),
+            .descent_rate_mps = f(gnc.descent_rate_mps),
+            .flight_path_deg = f(gnc.flight_path_deg),
+            .horizontal_speed_mps = f(gnc.horizontal_speed_mps),
+            .bank_deg = f(gnc.bank_deg),
+            .angle_of_attack_deg = f(gnc.angle_of_attack_deg)};
+}
+
+packet::GncEntry entry_guidance(const gnc::Output& gnc) {
+    return {.drag_mps2 = f(gnc.drag_mps2),
+            .range_to_go_m = f(gnc.range_to_go_m),
+            .crossrange_m = f(gnc.crossrange_m),
+            .bank_command_deg = f(gnc.bank_command_deg),
+            .predicted_range_m = f(gnc.predicted_range_m),
+            .lift_to_drag_command = f(gnc.lift_to_drag_command),
+            .reversal_count = gnc.reversals,
+            .dynamic_pressure_Pa = f(gnc.dynamic_pressure_Pa),
+            .mach = f(gnc.mach)};
+}
+
+packet::GncImu imu(const gnc::Output& gnc) {
+    const auto& a = gnc.acceleration_B_mps2;
+    const auto& w = gnc.rate_B_rps;
+    return {.acceleration_x_mps2 = f(a[0]),
+            .acceleration_y_mps2 = f(a[1]),
+            .acceleration_z_mps2 = f(a[2]),
+            .sensed_deceleration_g = f(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) / standard_gravity_mps2),
+            .rate_x_dps = f(w[0] * degrees_per_radian),
+            .rate_y_dps = f(w[1] * degrees_per_radian),
+            .rate_z_dps = f(w[2] * degrees_per_radian)};
+}
+
+packet::GncDescent descent(const gnc::Output& gnc) {
+    const auto& throttle = gnc.engines.throttle;
+    double sum = 0.0;
+    for (const double one : throttle) sum += one;
+    const auto percent = [&](std::size_t engine) { return f(throttle[engine] * parts_in_percent); };
+    return {.thrust_command_N = f(gnc.thrust_command_N),
+            .throttle_mean_percent = f(sum / static_cast<double>(throttle.size()) * parts_in_percent),
+            .throttle_1_percent = percent(0),
+            .throttle_2_percent = percent(1),
+            .throttle_3_percent = percent(2),
+            .throttle_4_percent = percent(3),
+            .throttle_5_percent = percent(4),
+            .throttle_6_percent = percent(5),
+            .throttle_7_percent = percent(6),
+            .throttle_8_percent = percent(7),
+            .mass_estimate_kg = f(gnc.mass_kg),
+            .propellant_kg = f(gnc.propellant_kg),
+            .descent_mode = static_cast<GncMode>(gnc.mode)};
+}
+
+/// A load for benchmarks and nothing else: thirty slow waves of known phase, no quantity of the vehicle.
+packet::Wideband wideband(Sclk now);
+
+}  // namespace
+
+void EdlMain::record_channels(Sclk now, Outbox& out) {
+    if (due(now, 1)) {
+        out.record(packet::EdlStatus{
+            .edl_phase = phase_,
+            .edl_enabled = timeline_.begun(),
+            .parameters_received = parameters_.has_value(),
+            .late_cruise = late_cruise(now),
+            .seconds_to_entry_s =
+                entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
+            .edl_cycle_count = cycle_count_});
+        out.record(packet::TimelineStatus{.timeline_version = timeline_version,
+                                          .timepoint_index = timeline_.current().value,
+                                          .timepoint_state = timeline_.state(),
+                                          .next_desired_sclk = seconds(timeline_.next_desired()),
+                                          .next_minimum_sclk = seconds(timeline_.next_minimum()),
+                                          .entry_anchor_sclk = seconds(entry()),
+                                          .parachute_anchor_sclk = seconds(timeline_.anchor_time(anchor::parachute)),
+                                          .backshell_anchor_sclk = seconds(timeline_.anchor_time(anchor::backshell)),
+                                          .touchdown_anchor_sclk = seconds(timeline_.anchor_time(anchor::touchdown))});
+    }
+    if (plan_ == Plan::wideband) out.record(wideband(now));
+    if (!configuration_.enabled) return;
+
+    const bool in_atmosphere = phase_ >= EdlPhase::wait_for_guidance;
+    if (due(now, in_atmosphere ? 64 : 8)) out.record(navigation(output_));
+    if (due(now, in_atmosphere ? 16 : 8)) out.record(imu(output_));
+    if (in_atmosphere && phase_ < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
+    if (phase_ >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_));
+}
+
+packet::ParametersHeld EdlMain::parameters_held() const {
+    packet::ParametersHeld held;
+    if (parameters_) copy_fields(*parameters_, held);
+    return held;
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,58 @@
+#include "flight/edl_bg/edl_bg.hpp"
+
+#include <cmath>
+
+namespace aeolis::flight {
+namespace {
+
+// Each argument is inside its own range already; these are what only several together show. Ours.
+constexpr double radius_min_m = 3.3e6;   // below the surface everywhere
+constexpr double radius_max_m = 2.0e9;   // a few days out
+constexpr double speed_max_mps = 1.0e4;
+
+double norm(double x, double y, double z) {
+    return std::sqrt(x * x + y * y + z * z);
+}
+
+bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
+    const double radius_m = norm(p.position_x_m, p.position_y_m, p.position_z_m);
+    return radius_m >= radius_min_m && radius_m <= radius_max_m &&
+           norm(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps) <= speed_max_mps && p.entry_sclk > now.seconds &&
+           p.epoch_sclk <= p.entry_sclk;
+}
+
+}  // namespace
+
+void EdlBg::on(const RadarReturns& returns, Outbox&) {
+    if (!attitude_) return;
+    batch_.on(returns.now, returns.beams.span(),
+              gnc::Quaternion{attitude_->q_MB[0], attitude_->q_MB[1], attitude_->q_MB[2], attitude_->q_MB[3]},
+              gnc::Vector3{attitude_->up_M[0], attitude_->up_M[1], attitude_->up_M[2]});
+}
+
+void EdlBg::on(const NavigatedAttitude& attitude, Outbox&) {
+    attitude_ = attitude;
+}
+
+void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
+    if (possible(command.arguments, out.now()))
+        out.send(ModuleId::edl, ParametersUpdate{command.tag, command.arguments});
+    else
+        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::bad_argument});
+}
+
+void EdlBg::on(const ClockTick& tick, Outbox& out) {
+    if (at_resolution(tick.now, 1) != tick.now || !attitude_) return;
+    const auto solution = batch_.solve(tick.now);
+    if (!solution) return;
+    ++solutions_;
+    out.send(ModuleId::edl, *solution);
+    out.record(packet::GncRadar{.radar_altitude_m = static_cast<float>(solution->altitude_m),
+                                .radar_velocity_x_mps = static_cast<float>(solution->v_MB_M_mps[0]),
+                                .radar_velocity_y_mps = static_cast<float>(solution->v_MB_M_mps[1]),
+                                .radar_velocity_z_mps = static_cast<float>(solution->v_MB_M_mps[2]),
+                                .radar_solutions = solutions_,
+                                .radar_beams = solution->beams});
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flight/gnc/navigation/radar_batch.hpp"
+#include "flight/kernel/outbox.hpp"
+
+#include <optional>
+
+namespace aeolis::flight {
+
+/// EdlBg: batches radar data into averages over 5 s for the navigation filter, and takes the parameter updates for all
+/// of EDL. Outside the rate group: what it sends arrives at the start of the next cycle. R25, R47
+///
+/// In      RadarReturns (64 Hz while the radar is on), NavigatedAttitude, SetParametersCommand, ClockTick
+/// Out     RadarSolution to Edl at 1 Hz, GncRadar; ParametersUpdate to Edl, or the outcome "refused"
+class EdlBg {
+  public:
+    void on(const RadarReturns& returns, Outbox& out);
+    void on(const NavigatedAttitude& attitude, Outbox& out);
+    void on(const SetParametersCommand& command, Outbox& out);
+    void on(const ClockTick& tick, Outbox& out);
+
+  private:
+    gnc::RadarBatch batch_;
+    std::optional<NavigatedAttitude> attitude_;
+    std::uint16_t solutions_ = 0;
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,168 @@
+#pragma once
+
+#include "common/fixed_vector.hpp"
+#include "common/ids.hpp"
+#include "common/time.hpp"
+#include "flight/devices/device_messages.hpp"
+#include "flight/gnc/edl_gnc.hpp"
+#include "generated/dictionary_flight.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <variant>
+
+// Every message that one module sends another. Plain data, no pointers: a static_assert on the variant holds them to it.
+namespace aeolis::flight {
+
+/// Every module of the load, in order of priority. Up to `thrusters` they are the rate group, in sync's order. R8, R22
+enum class ModuleId : std::uint8_t {
+    sync,
+    radar,
+    imu,
+    edl,
+    pyro,
+    descent_engines,
+    thrusters,
+    power,
+    command_dispatcher,
+    edl_bg,
+    mfsk,
+    edl_comm,
+};
+inline constexpr std::size_t module_count = 12;
+constexpr bool in_rate_group(ModuleId id) {
+    return id <= ModuleId::thrusters;
+}
+
+// ---- clock and rate group --------------------------------------------------------------------------------------
+
+struct ClockTick {  ///< from the clock interrupt: to sync, and to whoever asked for it
+    Sclk now;
+};
+struct Tick {  ///< from sync: your turn in this cycle
+    Sclk now;
+};
+struct Confirm {  ///< to sync: done for this cycle
+    ModuleId from{};
+};
+
+// ---- interrupts turned into messages (R10) ---------------------------------------------------------------------
+
+struct ImuReadings {
+    FixedVector<ImuSample, 4> samples;
+};
+struct RadarReturns {
+    Sclk now;
+    FixedVector<RadarBeam, 6> beams;
+};
+inline constexpr std::size_t uplink_octets_max = 256;  ///< ours: the longest command of the dictionary is 150 octets
+struct UplinkReceived {
+    std::array<std::uint8_t, uplink_octets_max> octets{};
+    std::uint16_t size = 0;  ///< as received; more than fits means that the rest is lost and the packet is refused
+};
+struct NvmStatus {
+    std::uint32_t used_octets = 0;
+    std::uint32_t capacity_octets = 0;
+};
+
+// ---- timeline's actions and the devices' answers ---------------------------------------------------------------
+
+enum class ReplyKind : std::uint8_t { none, pyro, device_switch, thrusters, engines, bridle };
+/// What a timepoint waits for, and what a device manager answers. R14
+struct ActionReply {
+    ReplyKind kind = ReplyKind::none;
+    std::uint8_t id = 0;
+    bool operator==(const ActionReply&) const = default;
+};
+struct FirePyro {
+    PyroId pyro{};
+};
+struct SetSwitch {
+    SwitchId id{};
+    bool on = false;
+};
+struct EnableThrusters {
+    bool enabled = false;
+};
+struct PointVehicle {
+    AttitudeCommand attitude;
+};
+struct RunEngines {
+    EngineCommand engines;
+};
+struct PayOutBridle {};
+struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
+    std::array<double, 4> q_MB{1, 0, 0, 0};
+    std::array<double, 3> up_M{};
+};
+
+// ---- commands --------------------------------------------------------------------------------------------------
+
+/// Names one uplinked command, so that its outcome finds the way back.
+struct CommandTag {
+    Opcode opcode;
+    std::uint16_t count = 0;
+};
+struct SetParametersCommand {
+    CommandTag tag;
+    command::EDL_SET_PARAMETERS arguments;
+};
+struct ParametersUpdate {  ///< EdlBg hands checked parameters to Edl
+    CommandTag tag;
+    command::EDL_SET_PARAMETERS parameters;
+};
+struct DoEdlCommand {
+    CommandTag tag;
+};
+struct SetTimepointOffsetCommand {
+    CommandTag tag;
+    command::EDL_SET_TIMEPOINT_OFFSET arguments;
+};
+struct SetAnchorOffsetCommand {
+    CommandTag tag;
+    command::EDL_SET_ANCHOR_OFFSET arguments;
+};
+struct CommandOutcome {
+    CommandTag tag;
+    std::optional<CommandRefusal> refused;  ///< none: accepted and executed
+};
+
+// ---- data ------------------------------------------------------------------------------------------------------
+
+inline constexpr std::size_t record_octets_max = 248;
+/// The data field of one telemetry packet, for EdlComm to seal, record, and perhaps send. R29
+struct Record {
+    Apid apid;
+    Sclk time;
+    std::uint16_t size = 0;
+    std::array<std::uint8_t, record_octets_max> data{};
+};
+struct ToneRequest {
+    ToneId tone;
+    Sclk requested;
+};
+struct PhaseChanged {
+    EdlPhase phase{};
+};
+struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
+    std::uint8_t tone = 0;
+    std::uint8_t outstanding = 0;
+};
+
+using Message =
+    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
+                 EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
+                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, NavigatedAttitude, SetParametersCommand,
+                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, CommandOutcome,
+                 Record, ToneRequest, PhaseChanged, ToneStatus>;
+static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
+
+struct Envelope {
+    ModuleId from{};
+    ModuleId to{};
+    Message message;
+};
+
+}  // namespace aeolis::flight

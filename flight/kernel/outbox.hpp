@@ -1,0 +1,63 @@
+#pragma once
+
+#include "common/bytes.hpp"
+#include "flight/kernel/message.hpp"
+
+#include <span>
+
+namespace aeolis::flight {
+
+/// Where a module puts what it sends while it handles one message. Sending returns nothing (R6): an outbox or a mailbox
+/// that is full is counted and reported by the executive.
+class Outbox {
+  public:
+    /// Empties it for the next message that `from` handles.
+    void begin(ModuleId from, Sclk now, DeviceOutputs& bus) {
+        from_ = from;
+        now_ = now;
+        bus_ = &bus;
+        sent_.clear();
+        dropped_ = 0;
+    }
+
+    template <typename M>
+    void send(ModuleId to, const M& message) {
+        if (!sent_.try_push_back({from_, to, message})) ++dropped_;
+    }
+
+    /// An event report: recorded, and sent to ground by the telemetry plan. R29, R30
+    template <typename Evr>
+    void event(const Evr& evr) {
+        record(evr);
+    }
+
+    /// One telemetry packet of the dictionary.
+    template <typename Packet>
+    void record(const Packet& packet) {
+        static_assert(Packet::octets - tm_overhead_octets <= record_octets_max);
+        Record record{Packet::apid, now_, static_cast<std::uint16_t>(Packet::octets - tm_overhead_octets), {}};
+        BitWriter writer{std::span{record.data}.first(record.size)};
+        packet.encode(writer);
+        send(ModuleId::edl_comm, record);
+    }
+
+    Sclk now() const { return now_; }
+
+    /// The lines to the hardware. Only the module that manages a device writes its part. R5
+    DeviceOutputs& bus() { return *bus_; }
+
+    std::span<const Envelope> sent() const { return sent_.span(); }
+    std::uint32_t dropped() const { return dropped_; }
+
+  private:
+    // The busiest handler is Edl's tick: five timepoints with an event, a tone and a record each, and telemetry.
+    static constexpr std::size_t capacity = 48;
+
+    ModuleId from_{};
+    Sclk now_;
+    DeviceOutputs* bus_ = nullptr;  // of the caller, for the length of one step
+    FixedVector<Envelope, capacity> sent_;
+    std::uint32_t dropped_ = 0;
+};
+
+}  // namespace aeolis::flight

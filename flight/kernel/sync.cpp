@@ -1,0 +1,29 @@
+#include "flight/kernel/sync.hpp"
+
+namespace aeolis::flight {
+
+void Sync::on(const ClockTick& tick, Outbox& out) {
+    if (at_resolution(tick.now, 1) == tick.now)
+        out.record(packet::SyncStatus{.cycles = static_cast<std::uint32_t>(cycles_),
+                                      .overruns = static_cast<std::uint32_t>(overruns_),
+                                      .mailbox_overflows = mailbox_overflows_,
+                                      .unexpected_messages = unexpected_messages_});
+    if (running_ != idle) {
+        ++overruns_;
+        out.event(evr::CYCLE_OVERRUN{.overruns = static_cast<std::uint32_t>(overruns_)});
+        return;
+    }
+    now_ = tick.now;
+    running_ = 0;
+    out.send(order[0], Tick{now_});
+}
+
+void Sync::on(const Confirm& confirm, Outbox& out) {
+    if (running_ == idle || confirm.from != order[running_]) return;  // late, from a cycle that was given up
+    if (++running_ == idle)
+        ++cycles_;
+    else
+        out.send(order[running_], Tick{now_});
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "flight/kernel/outbox.hpp"
+
+#include <array>
+
+namespace aeolis::flight {
+
+/// Drives the hard real-time rate group: at each clock tick it gives every module of the group its turn, in a fixed
+/// order whatever their state, and the next only when the one before has confirmed. R22
+///
+/// In       ClockTick (64 Hz), Confirm           Out   Tick to each module in order; SyncStatus at 1 Hz
+/// Faults   a tick that comes before the last module confirmed is an overrun: counted and reported (CYCLE_OVERRUN),
+///          that cycle skipped; SCLK goes on, because the tick carries it
+class Sync {
+  public:
+    void on(const ClockTick& tick, Outbox& out);
+    void on(const Confirm& confirm, Outbox& out);
+
+    std::uint64_t cycles() const { return cycles_; }
+    std::uint64_t overruns() const { return overruns_; }
+    /// What the executive counts, for the status packet.
+    void set_executive_counts(std::uint32_t mailbox_overflows, std::uint32_t unexpected_messages) {
+        mailbox_overflows_ = mailbox_overflows;
+        unexpected_messages_ = unexpected_messages;
+    }
+
+  private:
+    static constexpr std::array<ModuleId, 6> order{ModuleId::radar, ModuleId::imu,
+                                                   ModuleId::edl,   ModuleId::pyro,
+                                                   ModuleId::descent_engines, ModuleId::thrusters};
+    static constexpr std::size_t idle = order.size();
+
+    std::size_t running_ = idle;  // index in `order` of the module whose confirmation is awaited
+    Sclk now_;
+    std::uint64_t cycles_ = 0;
+    std::uint64_t overruns_ = 0;
+    std::uint32_t mailbox_overflows_ = 0;
+    std::uint32_t unexpected_messages_ = 0;
+};
+
+}  // namespace aeolis::flight

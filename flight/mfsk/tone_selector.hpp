@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flight/kernel/outbox.hpp"
+#include "flight/timeline/timepoint.hpp"
+
+#include <optional>
+#include <span>
+
+namespace aeolis::flight {
+
+inline constexpr double tone_duration_s = 10.0;  ///< R31: so that ground decodes it surely
+
+/// Chooses the tone that the X-band transmitter sends.
+///
+/// In      ToneRequest, ClockTick (64 Hz)            Out   the transmitter's tone; ToneSelected; Explanation; ToneStatus
+/// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
+/// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
+///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
+/// With no request outstanding the carrier goes out without a tone.
+class ToneSelector {
+  public:
+    explicit ToneSelector(std::span<const ToneSpec> tones) : tones_(tones) {}
+
+    void on(const ToneRequest& request, Outbox& out);
+    void on(const ClockTick& tick, Outbox& out);
+
+  private:
+    struct Sending {
+        ToneId tone;
+        Sclk started;
+    };
+
+    void drop_expired(Sclk now, Outbox& out);
+    void drop(std::size_t index, Outbox& out);
+    std::size_t most_important() const;
+    std::size_t least_important() const;
+    std::int16_t priority(ToneId tone) const { return tones_[tone.value].priority; }
+
+    std::span<const ToneSpec> tones_;
+    FixedVector<ToneRequest, 64> outstanding_;
+    std::optional<Sending> sending_;
+};
+
+}  // namespace aeolis::flight

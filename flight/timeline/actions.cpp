@@ -1,0 +1,161 @@
+#include "flight/timeline/actions.hpp"
+
+namespace aeolis::flight {
+
+void ActionContext::fire(PyroId pyro) {
+    out_.send(ModuleId::pyro, FirePyro{pyro});
+    await({ReplyKind::pyro, static_cast<std::uint8_t>(pyro)});
+}
+
+void ActionContext::set_switch(SwitchId id, bool on) {
+    out_.send(ModuleId::power, SetSwitch{id, on});
+    await({ReplyKind::device_switch, static_cast<std::uint8_t>(id)});
+}
+
+void ActionContext::enable_thrusters(bool enabled) {
+    out_.send(ModuleId::thrusters, EnableThrusters{enabled});
+    await({ReplyKind::thrusters, 0});
+}
+
+void ActionContext::request_tone(ToneId tone) {
+    out_.send(ModuleId::mfsk, ToneRequest{tone, now()});
+}
+
+namespace actions {
+
+void no_operation(ActionContext&) {}
+
+void power_on_radar(ActionContext& context) {
+    context.set_switch(SwitchId::radar, true);
+}
+void power_off_radar(ActionContext& context) {
+    context.configuration().radar_on = false;
+    context.set_switch(SwitchId::radar, false);
+}
+void select_entry_antenna(ActionContext& context) {
+    context.set_switch(SwitchId::entry_antenna, true);
+}
+void select_parachute_antenna(ActionContext& context) {
+    context.set_switch(SwitchId::parachute_antenna, true);
+}
+void start_uhf(ActionContext& context) {
+    context.set_switch(SwitchId::uhf, true);
+}
+void stop_uhf(ActionContext& context) {
+    context.set_switch(SwitchId::uhf, false);
+}
+void close_recording(ActionContext&) {}
+
+void vent_coolant(ActionContext& context) {
+    context.fire(PyroId::coolant_vent);
+}
+void cut_cruise_cables(ActionContext& context) {
+    context.fire(PyroId::cruise_cable_cutter);
+}
+void fire_cruise_stage_separation(ActionContext& context) {
+    context.configuration().cruise_stage_gone = true;
+    context.fire(PyroId::cruise_stage_separation);
+}
+void enable_gnc(ActionContext& context) {
+    context.configuration().enabled = true;
+}
+void warm_thrusters(ActionContext& context) {
+    context.set_switch(SwitchId::thruster_heaters, true);
+}
+void start_detumble(ActionContext& context) {
+    context.enable_thrusters(true);
+}
+void start_turn_to_entry(ActionContext& context) {
+    context.configuration().turning_to_entry = true;
+}
+void jettison_cruise_balance_1(ActionContext& context) {
+    context.fire(PyroId::cruise_balance_1);
+}
+void jettison_cruise_balance_2(ActionContext& context) {
+    context.fire(PyroId::cruise_balance_2);
+}
+
+void start_guidance_wait(ActionContext& context) {
+    context.configuration().guidance_armed = true;
+}
+void start_entry_guidance(ActionContext& context) {
+    context.configuration().sufr_allowed = true;
+}
+void start_sufr(ActionContext&) {}
+void jettison_balance_1(ActionContext& context) {
+    context.fire(PyroId::entry_balance_1);
+}
+void jettison_balance_2(ActionContext& context) {
+    context.fire(PyroId::entry_balance_2);
+}
+void jettison_balance_3(ActionContext& context) {
+    context.fire(PyroId::entry_balance_3);
+}
+void arm_pyros(ActionContext&) {}
+void safe_pyros(ActionContext&) {}
+
+void fire_parachute_mortar(ActionContext& context) {
+    context.configuration().parachute_out = true;
+    context.configuration().parachute_time = context.now();
+    context.fire(PyroId::parachute_mortar);
+}
+void disable_thrusters(ActionContext& context) {
+    context.enable_thrusters(false);
+}
+void enable_thrusters(ActionContext& context) {
+    context.enable_thrusters(true);
+}
+void fire_heatshield_separation(ActionContext& context) {
+    context.configuration().heatshield_gone = true;
+    context.configuration().heatshield_time = context.now();
+    context.fire(PyroId::heatshield_separation);
+}
+void start_radar_processing(ActionContext& context) {
+    context.configuration().radar_on = true;
+}
+void open_engine_valves(ActionContext& context) {
+    context.configuration().engines_primed = true;
+    context.fire(PyroId::engine_valves);
+}
+
+void fire_backshell_separation(ActionContext& context) {
+    context.configuration().backshell_gone = true;
+    context.configuration().backshell_time = context.now();
+    context.fire(PyroId::backshell_separation);
+}
+void ignite_engines(ActionContext& context) {
+    context.configuration().engines_ignited = true;
+    context.await({ReplyKind::engines, 0});
+}
+void start_powered_approach(ActionContext&) {}  // GNC started it; the row exists for its tone and event
+void start_sky_crane(ActionContext& context) {
+    context.configuration().sky_crane_started = true;
+}
+void fire_rover_separation(ActionContext& context) {
+    context.configuration().rover_separated = true;
+    context.configuration().rover_separation_time = context.now();
+    context.fire(PyroId::rover_separation);
+}
+void release_bridle(ActionContext& context) {
+    context.out().send(ModuleId::descent_engines, PayOutBridle{});
+    context.await({ReplyKind::bridle, 0});
+}
+void enable_touchdown_logic(ActionContext& context) {
+    context.configuration().touchdown_logic_ready = true;
+}
+void declare_touchdown(ActionContext& context) {
+    context.configuration().touchdown_declared = true;
+}
+void fire_bridle_cutters(ActionContext& context) {
+    context.configuration().bridle_cut = true;
+    context.fire(PyroId::bridle_cutter);
+}
+void start_flyaway(ActionContext& context) {
+    context.configuration().flyaway_started = true;
+}
+void stop_engines(ActionContext& context) {
+    context.configuration().engines_off = true;
+}
+
+}  // namespace actions
+}  // namespace aeolis::flight

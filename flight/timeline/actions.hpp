@@ -1,0 +1,95 @@
+#pragma once
+
+#include "flight/gnc/edl_gnc.hpp"
+#include "flight/kernel/outbox.hpp"
+#include "flight/timeline/timepoint.hpp"
+
+namespace aeolis::flight {
+
+/// What an action may touch: messages to the managers of devices, and the configuration that GNC asks for. R5, R17, R26
+class ActionContext {
+  public:
+    ActionContext(Outbox& out, gnc::Configuration& configuration) : out_(out), configuration_(configuration) {}
+
+    void begin(const TimepointSpec&) { awaited_ = {}; }
+    void fire(PyroId pyro);
+    void set_switch(SwitchId id, bool on);
+    void enable_thrusters(bool enabled);
+    void await(const ActionReply& reply) { awaited_ = reply; }
+    void request_tone(ToneId tone);
+
+    Outbox& out() { return out_; }
+    gnc::Configuration& configuration() { return configuration_; }
+    Sclk now() const { return out_.now(); }
+    /// The reply that the action just run asked for.
+    const ActionReply& awaited() const { return awaited_; }
+
+  private:
+    Outbox& out_;
+    gnc::Configuration& configuration_;
+    ActionReply awaited_;
+};
+
+/// Announces that a timepoint fires; the event column of the timeline names these.
+template <typename Evr>
+void announce(ActionContext& context) {
+    context.out().event(Evr{});
+}
+
+/// The actions that timeline.csv names. One a line: what the spacecraft does, and what GNC is told.
+namespace actions {
+void no_operation(ActionContext& context);
+
+// power and telecom
+void power_on_radar(ActionContext& context);
+void power_off_radar(ActionContext& context);
+void select_entry_antenna(ActionContext& context);
+void select_parachute_antenna(ActionContext& context);
+void start_uhf(ActionContext& context);
+void stop_uhf(ActionContext& context);
+void close_recording(ActionContext& context);
+
+// leaving the cruise stage
+void vent_coolant(ActionContext& context);
+void cut_cruise_cables(ActionContext& context);
+void fire_cruise_stage_separation(ActionContext& context);
+void enable_gnc(ActionContext& context);
+void warm_thrusters(ActionContext& context);
+void start_detumble(ActionContext& context);
+void start_turn_to_entry(ActionContext& context);
+void jettison_cruise_balance_1(ActionContext& context);
+void jettison_cruise_balance_2(ActionContext& context);
+
+// entry
+void start_guidance_wait(ActionContext& context);
+void start_entry_guidance(ActionContext& context);
+void start_sufr(ActionContext& context);
+void jettison_balance_1(ActionContext& context);
+void jettison_balance_2(ActionContext& context);
+void jettison_balance_3(ActionContext& context);
+void arm_pyros(ActionContext& context);
+void safe_pyros(ActionContext& context);
+
+// parachute
+void fire_parachute_mortar(ActionContext& context);
+void disable_thrusters(ActionContext& context);
+void enable_thrusters(ActionContext& context);
+void fire_heatshield_separation(ActionContext& context);
+void start_radar_processing(ActionContext& context);
+void open_engine_valves(ActionContext& context);
+
+// powered descent and sky crane
+void fire_backshell_separation(ActionContext& context);
+void ignite_engines(ActionContext& context);
+void start_powered_approach(ActionContext& context);
+void start_sky_crane(ActionContext& context);
+void fire_rover_separation(ActionContext& context);
+void release_bridle(ActionContext& context);
+void enable_touchdown_logic(ActionContext& context);
+void declare_touchdown(ActionContext& context);
+void fire_bridle_cutters(ActionContext& context);
+void start_flyaway(ActionContext& context);
+void stop_engines(ActionContext& context);
+}  // namespace actions
+
+}  // namespace aeolis::flight

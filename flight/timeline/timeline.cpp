@@ -1,0 +1,114 @@
+#include "flight/timeline/timeline.hpp"
+
+#include "flight/timeline/actions.hpp"
+
+namespace aeolis::flight {
+
+Timeline::Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors)
+    : rows_(rows), anchors_(anchors) {
+    AEOLIS_CHECK(rows.size() <= timeline_rows_max && anchors.size() <= anchors_max);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        desired_offset_s_[i] = rows[i].desired_offset_s;
+        minimum_offset_s_[i] = rows[i].minimum_offset_s;
+    }
+    for (std::size_t i = 0; i < anchors.size(); ++i) anchor_offset_s_[i] = anchors[i].offset_s;
+    compute_anchors();
+}
+
+void Timeline::begin(Sclk do_edl_accepted) {
+    previous_fired_ = do_edl_accepted;
+    begun_ = true;
+}
+
+void Timeline::compute_anchors() {
+    for (std::size_t i = 0; i < anchors_.size(); ++i) {
+        const auto& parent = anchors_[i].parent;
+        anchor_times_[i] = parent ? anchor_times_[parent->value] + anchor_offset_s_[i] : MaybeTime{Sclk{0.0}};
+    }
+}
+
+void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
+    compute_anchors();
+    if (!begun_) return;
+    while (!finished()) {
+        if (waiting_) {
+            const bool timed_out = now >= triggered_ + *rows_[current_].reply_timeout_s;
+            if (!replied_ && !timed_out) return;
+            complete(now, replied_ ? FiringVerdict::replied : FiringVerdict::timed_out, firings);
+            continue;
+        }
+        if (fired_in_cycle_ == firings_per_cycle_max) return;
+        const auto& row = rows_[current_];
+        if (!may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_],
+                      now))
+            return;
+
+        ++fired_in_cycle_;
+        triggered_ = now;
+        context.begin(row);
+        if (row.event) row.event(context);
+        if (row.action) row.action(context);
+        if (row.tone) context.request_tone(*row.tone);
+        if (row.reply_timeout_s) {
+            awaited_ = context.awaited();
+            waiting_ = true;
+            return;
+        }
+        complete(now, row.action ? FiringVerdict::completed : FiringVerdict::no_operation, firings);
+    }
+}
+
+void Timeline::complete(Sclk now, FiringVerdict verdict, Firings& firings) {
+    firings.push_back({current(), triggered_, now, verdict});
+    previous_fired_ = now;
+    waiting_ = replied_ = false;
+    ++current_;
+}
+
+void Timeline::reply(const ActionReply& reply) {
+    if (waiting_ && reply == awaited_) replied_ = true;
+}
+
+bool Timeline::set_timepoint_offsets(TimepointId id, MaybeOffset desired_s, MaybeOffset minimum_s) {
+    if (id.value >= rows_.size()) return false;
+    desired_offset_s_[id.value] = desired_s;
+    minimum_offset_s_[id.value] = minimum_s;
+    return true;
+}
+
+bool Timeline::set_anchor_offset(AnchorId id, MaybeOffset offset_s) {
+    if (id.value >= anchors_.size() || !anchors_[id.value].parent) return false;
+    anchor_offset_s_[id.value] = offset_s;
+    return true;
+}
+
+void Timeline::set_anchor_now(AnchorId id, Sclk now) {
+    AEOLIS_CHECK(id.value < anchors_.size() && anchors_[id.value].parent);
+    const auto& parent = anchor_times_[anchors_[id.value].parent->value].get();
+    AEOLIS_CHECK(parent.has_value());
+    anchor_offset_s_[id.value] = now - *parent;
+}
+
+MaybeTime Timeline::desired_base(std::size_t row) const {
+    return rows_[row].anchor ? anchor_times_[rows_[row].anchor->value] : previous_fired_;
+}
+
+MaybeTime Timeline::next_desired() const {
+    return finished() ? MaybeTime{} : desired_base(current_) + desired_offset_s_[current_];
+}
+
+MaybeTime Timeline::next_minimum() const {
+    return finished() ? MaybeTime{} : previous_fired_ + minimum_offset_s_[current_];
+}
+
+MaybeTime Timeline::first_desired() const {
+    return rows_.empty() || !rows_[0].anchor ? MaybeTime{} : anchor_times_[rows_[0].anchor->value] + desired_offset_s_[0];
+}
+
+TimepointState Timeline::state() const {
+    if (finished()) return TimepointState::complete;
+    if (waiting_) return TimepointState::waiting_reply;
+    return next_desired().defined() ? TimepointState::pending : TimepointState::undefined;
+}
+
+}  // namespace aeolis::flight

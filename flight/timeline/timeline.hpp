@@ -1,0 +1,93 @@
+#pragma once
+
+#include "common/fixed_vector.hpp"
+#include "flight/kernel/message.hpp"
+#include "flight/timeline/timepoint.hpp"
+
+#include <span>
+
+namespace aeolis::flight {
+
+inline constexpr std::size_t firings_per_cycle_max = 5;  ///< R15: so as not to overload the processor
+inline constexpr std::size_t timeline_rows_max = 160;    ///< ours: twice the shipped timeline
+inline constexpr std::size_t anchors_max = 32;           ///< ours
+
+/// Whether a timepoint may fire now: its desired offset, from the previous firing or from its anchor, has come, and so
+/// has its minimum offset from the previous firing. Comparison with an undefined time is false. R11, R13
+constexpr bool may_fire(MaybeTime desired_base, MaybeOffset desired_offset_s, MaybeTime previous_fired,
+                        MaybeOffset minimum_offset_s, Sclk now) {
+    return now >= desired_base + desired_offset_s && now >= previous_fired + minimum_offset_s;
+}
+
+using FiringVerdict = TimepointVerdict;  // completed, replied, timed_out, no_operation, failed
+
+struct Firing {
+    TimepointId timepoint;
+    Sclk triggered;
+    Sclk fired;
+    FiringVerdict verdict{};
+};
+
+/// What one pass completes: the reply that was waited for, and what fires after it.
+using Firings = FixedVector<Firing, firings_per_cycle_max + 1>;
+
+/// The engine that interprets the timeline: strictly sequential, nearest neighbour or anchor. R11–R18
+///
+/// In       the clock, replies, changed offsets, anchors that GNC sets "now"
+/// Out      actions through ActionContext; Firing for each timepoint that completed
+/// Memory   fixed; the rows are read where the autocoder put them
+/// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`.
+class Timeline {
+  public:
+    Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors);
+
+    void begin(Sclk do_edl_accepted);
+    bool begun() const { return begun_; }
+    bool finished() const { return current_ == rows_.size(); }
+
+    /// A new 64 Hz cycle: the limit of firings starts anew, both passes together count.
+    void begin_cycle() { fired_in_cycle_ = 0; }
+
+    /// One pass: anchors first, then the current timepoint, and the next while no reply is awaited. R15, R16
+    void pass(Sclk now, ActionContext& context, Firings& firings);
+
+    /// The answer that the current timepoint may be waiting for. It counts at the next pass. R14
+    void reply(const ActionReply& reply);
+
+    // Offsets may be changed between cycles and propagate fully in the next pass. False: no such row. R16
+    [[nodiscard]] bool set_timepoint_offsets(TimepointId id, MaybeOffset desired_s, MaybeOffset minimum_s);
+    [[nodiscard]] bool set_anchor_offset(AnchorId id, MaybeOffset offset_s);
+    /// GNC's "now": from this moment the anchor is defined, and what is relative to it. R17
+    void set_anchor_now(AnchorId id, Sclk now);
+
+    MaybeTime anchor_time(AnchorId id) const { return anchor_times_[id.value]; }
+    TimepointId current() const { return {static_cast<std::uint16_t>(current_)}; }
+    TimepointState state() const;
+    /// Times from which the current timepoint may fire; undefined when it is not known yet.
+    MaybeTime next_desired() const;
+    MaybeTime next_minimum() const;
+    /// Desired time of the first row, from the anchors alone. Undefined before the parameters came.
+    MaybeTime first_desired() const;
+    void compute_anchors();
+
+  private:
+    void complete(Sclk now, FiringVerdict verdict, Firings& firings);
+    MaybeTime desired_base(std::size_t row) const;
+
+    std::span<const TimepointSpec> rows_;
+    std::span<const AnchorSpec> anchors_;
+    std::array<MaybeOffset, timeline_rows_max> desired_offset_s_{};
+    std::array<MaybeOffset, timeline_rows_max> minimum_offset_s_{};
+    std::array<MaybeOffset, anchors_max> anchor_offset_s_{};
+    std::array<MaybeTime, anchors_max> anchor_times_{};
+    MaybeTime previous_fired_;
+    std::size_t current_ = 0;
+    std::size_t fired_in_cycle_ = 0;
+    bool begun_ = false;
+    bool waiting_ = false;   // for the reply of the current timepoint
+    bool replied_ = false;
+    ActionReply awaited_;
+    Sclk triggered_;
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/time.hpp"
+#include "generated/dictionary_flight.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+// What the autocoder makes of timeline.csv, anchors.csv and tones.csv, and the timeline interprets. R11, R12, R20
+namespace aeolis::flight {
+
+class ActionContext;
+using Action = void (*)(ActionContext&);
+
+/// A row of the timeline as the engineers wrote it. Commands change copies of the offsets, never this.
+struct TimepointSpec {
+    const char* name;
+    std::optional<AnchorId> anchor;  ///< none: the desired offset is from the previous timepoint
+    MaybeOffset desired_offset_s;
+    MaybeOffset minimum_offset_s;    ///< from the previous timepoint
+    Action action;                   ///< nullptr: none
+    std::optional<double> reply_timeout_s;
+    std::optional<TimepointId> backtrack;
+    bool essential;
+    std::optional<ToneId> tone;
+    Action event;                    ///< announces the row's event; nullptr: none
+};
+
+/// Parents stand before their children: one sweep computes all times.
+struct AnchorSpec {
+    const char* name;
+    std::optional<AnchorId> parent;  ///< none: the root, at zero
+    MaybeOffset offset_s;
+};
+
+struct ToneSpec {
+    std::uint8_t set;  ///< 0 prime, 1 Second Chance, 2 spare
+    std::int16_t priority;
+    double expires_s;
+    std::optional<ToneId> supersedes;
+};
+
+extern const std::array<TimepointSpec, timepoint_count> timeline_specs;
+extern const std::array<AnchorSpec, anchor_count> anchor_specs;
+extern const std::array<ToneSpec, 256> tone_specs;
+
+}  // namespace aeolis::flight

@@ -1,0 +1,27 @@
+#include "common/fixed_queue.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+
+TEST_CASE("a fixed queue is first in, first out, round and round", "[common][R7]") {
+    FixedQueue<int, 3> queue;
+    for (int i = 0; i < 100; ++i) {
+        REQUIRE(queue.try_push(i));
+        REQUIRE(queue.try_push(i + 1000));
+        CHECK(queue.front() == i);
+        queue.pop();
+        CHECK(queue.front() == i + 1000);
+        queue.pop();
+    }
+    CHECK(queue.empty());
+    CHECK_THROWS_AS(queue.front(), CheckFailed);
+}
+
+TEST_CASE("a full fixed queue refuses and keeps what it has", "[common][R7]") {
+    FixedQueue<int, 2> queue;
+    CHECK(queue.try_push(1));
+    CHECK(queue.try_push(2));
+    CHECK_FALSE(queue.try_push(3));
+    CHECK(queue.front() == 1);
+    CHECK(queue.size() == 2);
+}

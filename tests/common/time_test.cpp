@@ -1,0 +1,45 @@
+#include "common/time.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+
+TEST_CASE("a clock of n hertz is the time cut to 1/n s, exactly", "[common][R21]") {
+    const Sclk t = Sclk::from_ticks(64LL * 397501174 + 63);
+    CHECK(at_resolution(t, 64) == t);
+    CHECK(at_resolution(t, 2).seconds == 397501174.5);
+    CHECK(at_resolution(t, 1).seconds == 397501174.0);
+    CHECK(at_resolution(Sclk{-0.25}, 1).seconds == -1.0);
+}
+
+TEST_CASE("sums of 1/64 s have no round-off over a mission's length", "[common][R21]") {
+    Sclk t{4.0e9};
+    for (int i = 0; i < 64 * 1000; ++i) t = t + seconds_per_tick;
+    CHECK(t.seconds == 4.0e9 + 1000.0);
+    CHECK(t.ticks() == 64LL * (4'000'000'000LL + 1000));
+}
+
+TEST_CASE("only multiples of 1/64 s are offsets", "[common][R21]") {
+    CHECK(is_multiple_of_tick(-826.015625));
+    CHECK_FALSE(is_multiple_of_tick(0.3));
+    CHECK_FALSE(is_multiple_of_tick(1.0e300));
+}
+
+TEST_CASE("undefined spreads through arithmetic and is false in a condition", "[common][R13]") {
+    const Sclk now{10.0};
+    CHECK(now >= MaybeTime{Sclk{9.0}} + MaybeOffset{1.0});
+    CHECK_FALSE(now >= MaybeTime{Sclk{9.0}} + MaybeOffset{1.015625});
+    CHECK_FALSE(now >= MaybeTime{Sclk{9.0}} + MaybeOffset{});
+    CHECK_FALSE(now >= MaybeTime{} + MaybeOffset{-100.0});
+    CHECK(now >= MaybeTime{Sclk{12.0}} + MaybeOffset{-2.0});
+}
+
+TEST_CASE("UTC is shown by day of year", "[common]") {
+    // 2012-08-06T05:10:47.400 is day 219; 397 458 647.4 s after 2000-01-01T12:00:00, leap seconds not counted.
+    CHECK(day_of_year_text(Scet{397'458'647'400'000}) == "2012-219T05:10:47.400");
+    CHECK(day_of_year_text(Ert{0}) == "2000-001T12:00:00.000");
+}
+
+TEST_CASE("SCET follows SCLK through the correlated instant", "[common]") {
+    const ClockCorrelation clocks{Sclk{100.0}, Scet{5'000'000}};
+    CHECK(clocks.scet_of(Sclk{101.5}).microseconds == 6'500'000);
+}
