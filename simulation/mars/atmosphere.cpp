@@ -1,0 +1,123 @@
+#include "simulation/mars/atmosphere.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace aeolis::simulation {
+namespace {
+
+struct Row {
+    double altitude_m; ///< above the landing radius
+    double temperature_K;
+    double density_kgm3;
+};
+
+// clang-format off
+/// Gale in the season of the landing, from a general circulation model. [facts-gale-atmosphere]
+constexpr std::array<Row, 35> gale{{
+    {0,        194.541, 0.0195581    },
+    {7352.94,  218.893, 0.00938476   },
+    {14705.9,  200.782, 0.00518105   },
+    {22058.8,  180.643, 0.00272454   },
+    {29411.8,  173.902, 0.001265     },
+    {36764.7,  175.245, 0.000558136  },
+    {44117.6,  174.95,  0.000249716  },
+    {51470.6,  169.97,  0.000113644  },
+    {58823.5,  162.451, 5.14132e-05  },
+    {66176.5,  150.246, 2.26365e-05  },
+    {73529.4,  140.37,  9.31522e-06  },
+    {80882.4,  141.065, 3.47447e-06  },
+    {88235.3,  145.247, 1.28318e-06  },
+    {95588.2,  148.469, 4.8883e-07   },
+    {102941,   142.646, 1.99619e-07  },
+    {110294,   131.164, 8.07924e-08  },
+    {117647,   125.699, 3.01452e-08  },
+    {125000,   126.025, 1.06699e-08  },
+    {132353,   131.041, 3.77249e-09  },
+    {139706,   137.403, 1.41003e-09  },
+    {147059,   142.069, 5.69444e-10  },
+    {154412,   144.821, 2.4457e-10   },
+    {161765,   146.278, 1.10869e-10  },
+    {169118,   147.021, 5.28509e-11  },
+    {176471,   147.406, 2.64369e-11  },
+    {183824,   147.616, 1.37981e-11  },
+    {191176,   147.725, 7.6012e-12   },
+    {198529,   147.785, 4.46644e-12  },
+    {205882,   147.828, 2.66222e-12  },
+    {213235,   147.85,  1.68757e-12  },
+    {220588,   147.867, 1.09031e-12  },
+    {227941,   147.876, 7.30914e-13  },
+    {235294,   147.884, 4.96918e-13  },
+    {242647,   147.89,  3.51821e-13  },
+    {250000,   147.895, 2.45314e-13  },
+}};
+// clang-format on
+
+// Square of the speed of sound by temperature: ratio of specific heats × gas constant, as the Mach numbers of the
+// published trajectory have it, within 0.3 %. [facts-od137]
+constexpr double sound_m2ps2K = 252.0;
+constexpr double bottom_m = -2000.0;
+constexpr double spacing_m = 1000.0;
+constexpr double top_m = 250000.0;
+constexpr double wave_length_m = 30000.0; // ours
+
+double scale_at(std::span<const DensityScale> scales, double altitude_m) {
+    if (scales.empty()) return 1.0;
+    if (altitude_m <= scales.front().altitude_m) return scales.front().scale;
+    for (std::size_t i = 1; i < scales.size(); ++i) {
+        const DensityScale& low = scales[i - 1];
+        const DensityScale& high = scales[i];
+        if (altitude_m <= high.altitude_m) {
+            const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
+            return low.scale + part * (high.scale - low.scale);
+        }
+    }
+    return scales.back().scale;
+}
+
+} // namespace
+
+Atmosphere::Atmosphere(std::span<const DensityScale> scales) {
+    static_assert(gale.size() == table_rows);
+    for (std::size_t i = 0; i < rows; ++i) {
+        const double altitude_m = bottom_m + spacing_m * static_cast<double>(i);
+        std::size_t above = 1;
+        while (above + 1 < gale.size() && altitude_m > gale[above].altitude_m)
+            ++above;
+        const Row& low = gale[above - 1];
+        const Row& high = gale[above];
+        const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
+        const double log_low = std::log(low.density_kgm3);
+        log_density_[i] =
+            log_low + part * (std::log(high.density_kgm3) - log_low) + std::log(scale_at(scales, altitude_m));
+        const double temperature_K = low.temperature_K + part * (high.temperature_K - low.temperature_K);
+        speed_of_sound_mps_[i] = std::sqrt(sound_m2ps2K * temperature_K);
+    }
+}
+
+Atmosphere::Atmosphere(std::span<const DensityScale> scales, double density_fraction, Random random)
+    : Atmosphere(scales) {
+    departure_fraction_ = 0.8 * density_fraction * random.normal();
+    wave_fraction_ = 0.6 * std::numbers::sqrt2 * density_fraction;
+    wave_phase_rad_ = 2.0 * std::numbers::pi * random.uniform();
+}
+
+Air Atmosphere::at(double altitude_m) const {
+    if (altitude_m > top_m) return {0.0, speed_of_sound_mps_.back()};
+    const double place = std::clamp((altitude_m - bottom_m) / spacing_m, 0.0, static_cast<double>(rows - 2));
+    const auto below = static_cast<std::size_t>(place);
+    const double part = place - static_cast<double>(below);
+    const double log_density = log_density_[below] + part * (log_density_[below + 1] - log_density_[below]);
+    return {std::exp(log_density) * departure(altitude_m),
+            speed_of_sound_mps_[below] + part * (speed_of_sound_mps_[below + 1] - speed_of_sound_mps_[below])};
+}
+
+double Atmosphere::departure(double altitude_m) const {
+    if (wave_fraction_ == 0.0) return 1.0;
+    const double wave =
+        wave_fraction_ * std::sin(2.0 * std::numbers::pi * altitude_m / wave_length_m + wave_phase_rad_);
+    return std::max(0.2, 1.0 + departure_fraction_ + wave);
+}
+
+} // namespace aeolis::simulation

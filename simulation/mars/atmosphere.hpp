@@ -1,0 +1,41 @@
+#pragma once
+
+#include "simulation/random.hpp"
+#include "simulation/scenario.hpp"
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+namespace aeolis::simulation {
+
+struct Air {
+    double density_kgm3 = 0.0;
+    double speed_of_sound_mps = 0.0;
+};
+
+/// The air above Gale: a published table (see atmosphere.cpp), the scenario's scale by height, and a case's own
+/// departure.
+///
+/// Density is interpolated exponentially, temperature and scale linearly; outside the table its last layers go on.
+/// Range −1 … 250 km above the landing radius; above 250 km there is no air.
+/// The departure is ours: four fifths of the scenario's fraction alike at all heights, three fifths as a wave over
+/// height.
+class Atmosphere {
+  public:
+    explicit Atmosphere(std::span<const DensityScale> scales); ///< without departure
+    Atmosphere(std::span<const DensityScale> scales, double density_fraction, Random random);
+
+    Air at(double altitude_m) const;
+
+  private:
+    static constexpr std::size_t table_rows = 35;
+    static constexpr std::size_t rows = 257; ///< scale and table together, every kilometre from −2 km
+    double departure(double altitude_m) const;
+
+    std::array<double, rows> log_density_{};
+    std::array<double, rows> speed_of_sound_mps_{};
+    double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace aeolis::simulation {
+
+/// What one draw is for. Each error source has its own stream, so that switching one off leaves the others as they
+/// were.
+enum class Stream : std::uint64_t {
+    delivery = 1,
+    knowledge,
+    density,
+    drag,
+    parachute,
+    wind,
+    imu,
+    star_scanner,
+    radar,
+    devices,
+    uhf,
+    x_band,
+    swing,
+};
+
+/// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,
+/// because the standard library's distributions differ between implementations. A value: copies go on alike. Source:
+/// [steele-2014], [box-muller-1958].
+class Random {
+  public:
+    Random(std::uint64_t seed, std::uint64_t case_number, Stream stream);
+
+    std::uint64_t bits();
+    double uniform(); ///< in [0, 1)
+    double normal();  ///< mean 0, standard deviation 1
+    std::array<double, 3> normal3();
+
+  private:
+    std::uint64_t state_;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,25 @@
+#pragma once
+
+namespace aeolis::simulation {
+
+/// Static aerodynamics of the 70° sphere-cone entry vehicle.
+///
+/// Up to 16° of total angle of attack from the published table, bilinear. Beyond 16°, where the vehicle trims below
+/// Mach 10, the law is ours: drag goes on along its last slope, lift along six tenths of its last slope, which gives
+/// the lift-to-drag that the published trajectory flew there within 6 % (a test shows it). Up to 30°; lift falls off
+/// beyond.
+struct AeroCoefficients {
+    double drag = 0.0;
+    double lift = 0.0; ///< magnitude, always away from where the heatshield leans
+};
+AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad);
+
+inline constexpr double aeroshell_area_m2 = 15.9; // [facts]: 4.5 m across
+
+/// Angle at which it flies by itself, from its offset centre of mass, before the balance masses go. [facts-od137]
+double trim_angle_rad(double mach);
+
+/// The same after all balance masses are gone: the offset is nearly taken out. [facts-od137] 2 to 3°
+inline constexpr double balanced_trim_angle_rad = 2.5 * 0.017453292519943295;
+
+} // namespace aeolis::simulation
