@@ -42,7 +42,9 @@ bool starts_with_any(const std::string& text, const std::vector<std::string>& pr
     return std::any_of(prefixes.begin(), prefixes.end(), [&](const std::string& p) { return text.starts_with(p); });
 }
 
-std::string top_folder(const std::string& path) { return path.substr(0, path.find('/')); }
+std::string top_folder(const std::string& path) {
+    return path.substr(0, path.find('/'));
+}
 
 std::string where(const Include& include) {
     return include.file + ":" + std::to_string(include.line) + " includes " + include.target;
@@ -54,7 +56,8 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
         {"common", {"common/"}},
         {"dictionaries", {"common/", "dictionaries/"}},
         {"flight", {"common/", "dictionaries/", "flight/", "generated/"}},
-        {"simulation", {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "simulation/"}},
+        {"simulation",
+         {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "simulation/"}},
         {"telemetry", {"common/", "dictionaries/", "telemetry/"}},
         {"commands", {"common/", "dictionaries/", "commands/"}},
         {"server",
@@ -77,7 +80,9 @@ const std::vector<Home>& homes() {
     static const std::vector<std::string> with_effects{"server/", "tests/", "bench/"};
     static const std::vector<Home> rules{
         {"pugixml", {"dictionaries/", "tests/"}, "pugixml is at home in dictionaries/"},
-        {"Eigen/", {"flight/gnc/", "simulation/", "telemetry/mfsk", "tests/", "bench/"}, "Eigen: flight/gnc, simulation, telemetry/mfsk"},
+        {"Eigen/",
+         {"flight/gnc/", "simulation/", "telemetry/mfsk", "tests/", "bench/"},
+         "Eigen: flight/gnc, simulation, telemetry/mfsk"},
         {"google/protobuf/", with_effects, "Protobuf is at home in server/"},
         {"aeolis/v1/", with_effects, "Protobuf is at home in server/"},
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
@@ -86,7 +91,9 @@ const std::vector<Home>& homes() {
         {"spdlog/", with_effects, "only server/ logs"},
         {"CLI/", with_effects, "only server/ reads a command line"},
         {"catch2/", {"tests/support/"}, "Catch2 is reached through tests/support/catch.hpp"},
-        {"chrono", {"common/time.cpp", "server/", "tests/", "bench/"}, "only server/ knows the real clock (common/time.cpp: the calendar)"},
+        {"chrono",
+         {"common/time.cpp", "server/", "tests/", "bench/"},
+         "only server/ knows the real clock (common/time.cpp: the calendar)"},
         {"ctime", with_effects, "only server/ knows the real clock"},
         {"thread", with_effects, "only server/ has threads"},
         {"mutex", with_effects, "only server/ has threads"},
@@ -94,8 +101,12 @@ const std::vector<Home>& homes() {
         {"future", with_effects, "only server/ has threads"},
         {"condition_variable", with_effects, "only server/ has threads"},
         {"sys/socket", with_effects, "only server/ has sockets"},
-        {"fstream", {"dictionaries/", "server/", "tests/", "bench/"}, "only server/, and the dictionary's loader, read files"},
-        {"filesystem", {"dictionaries/", "server/", "tests/", "bench/"}, "only server/, and the dictionary's loader, read files"},
+        {"fstream",
+         {"dictionaries/", "server/", "tests/", "bench/"},
+         "only server/, and the dictionary's loader, read files"},
+        {"filesystem",
+         {"dictionaries/", "server/", "tests/", "bench/"},
+         "only server/, and the dictionary's loader, read files"},
         {"iostream", {"dictionaries/", "server/", "tests/", "bench/"}, "only programs print"},
     };
     return rules;

@@ -36,7 +36,9 @@ std::vector<std::string> test_files_of(const std::string& header) {
     return files;
 }
 
-bool exists(const std::string& path) { return std::filesystem::exists(std::filesystem::path{AEOLIS_SOURCE_DIR} / path); }
+bool exists(const std::string& path) {
+    return std::filesystem::exists(std::filesystem::path{AEOLIS_SOURCE_DIR} / path);
+}
 
 bool has_test_file(const std::string& header) {
     const auto files = test_files_of(header);

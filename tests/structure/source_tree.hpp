@@ -19,8 +19,10 @@ inline std::vector<std::string> files_under(const std::string& folder, const std
     if (!fs::exists(root / folder)) {
         return found;
     }
-    for (auto entry = fs::recursive_directory_iterator(root / folder); entry != fs::recursive_directory_iterator{}; ++entry) {
-        if (entry->is_directory() && (entry->path().filename() == "node_modules" || entry->path().filename() == "gen")) {
+    for (auto entry = fs::recursive_directory_iterator(root / folder); entry != fs::recursive_directory_iterator{};
+         ++entry) {
+        if (entry->is_directory() &&
+            (entry->path().filename() == "node_modules" || entry->path().filename() == "gen")) {
             entry.disable_recursion_pending();
             continue;
         }
