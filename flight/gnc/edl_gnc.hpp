@@ -2,11 +2,24 @@
 
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
+#include "flight/gnc/entry/lateral_logic.hpp"
+#include "flight/gnc/entry/target_geometry.hpp"
+#include "flight/gnc/navigation/force_filter.hpp"
+#include "flight/gnc/navigation/radar_batch.hpp"
+#include "flight/gnc/navigation/radar_filter.hpp"
+#include "flight/gnc/navigation/strapdown.hpp"
+#include "flight/gnc/powered_descent/divert.hpp"
+#include "flight/gnc/powered_descent/vertical_profile.hpp"
+#include "flight/gnc/quantities.hpp"
+#include "flight/gnc/sky_crane/rate_control.hpp"
+#include "flight/gnc/sky_crane/touchdown_logic.hpp"
+#include "flight/gnc/triggers/triggers.hpp"
 #include "flight/load.hpp"
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 
 // EdlGnc: the library that closes the loop from cruise-stage separation to touchdown. It has no thread; EdlMain runs it
 // exactly once in each 64 Hz cycle, between two passes of the timeline. It works from the navigated state and never
@@ -29,12 +42,12 @@ struct Solution {
 
 /// What the timeline has done, as GNC asks for it each cycle: the configuration that GNC must fly. R26
 struct Configuration {
-    bool enabled = false;              ///< GNC enable has fired
+    bool enabled = false; ///< GNC enable has fired
     bool cruise_stage_gone = false;
-    bool turning_to_entry = false;     ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
-    bool guidance_armed = false;       ///< may start entry guidance when drag says so
+    bool turning_to_entry = false; ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
+    bool guidance_armed = false;   ///< may start entry guidance when drag says so
     bool sufr_allowed = false;
-    bool parachute_out = false;        ///< mortar fired
+    bool parachute_out = false; ///< mortar fired
     std::optional<Sclk> parachute_time;
     bool heatshield_gone = false;
     std::optional<Sclk> heatshield_time;
@@ -43,7 +56,7 @@ struct Configuration {
     bool backshell_gone = false;
     std::optional<Sclk> backshell_time;
     bool engines_ignited = false;
-    bool sky_crane_started = false;    ///< throttle-down has fired: four engines
+    bool sky_crane_started = false; ///< throttle-down has fired: four engines
     bool rover_separated = false;
     std::optional<Sclk> rover_separation_time;
     bool touchdown_logic_ready = false;
@@ -53,51 +66,56 @@ struct Configuration {
     bool engines_off = false;
 };
 
-/// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
-/// navigation/radar_batch.hpp; the filter averages its own past over the same span, so the delay does no harm. R25
-struct RadarSolution {
-    Sclk time;                             ///< middle of the measurements averaged
-    double span_s = 0.0;                   ///< from the first measurement averaged to the last
-    double altitude_m = 0.0;               ///< above the ground below
-    std::array<double, 3> v_MB_M_mps{};
-    std::uint16_t beams = 0;
-};
-
 /// "Now": GNC starts these; the timeline fires the timepoint in the second pass of the same cycle. R17
 enum class Trigger : std::uint8_t {
-    guidance_start, heading_alignment, sufr_start, parachute, heatshield, radar_lock, engine_priming, backshell,
-    powered_approach, constant_velocity, constant_deceleration, sky_crane, rover_separation, touchdown,
+    guidance_start,
+    heading_alignment,
+    sufr_start,
+    parachute,
+    heatshield,
+    radar_lock,
+    engine_priming,
+    backshell,
+    powered_approach,
+    constant_velocity,
+    constant_deceleration,
+    sky_crane,
+    rover_separation,
+    touchdown,
 };
 inline constexpr std::size_t trigger_count = 14;
 
 enum class Mode : std::uint8_t {
-    off, approach, wait_for_guidance_start, range_control, heading_alignment, straighten_up, wait_for_parachute,
-    parachute_descent, free_fall, powered_approach, constant_velocity, constant_deceleration, sky_crane, touchdown,
+    off,
+    approach,
+    wait_for_guidance_start,
+    range_control,
+    heading_alignment,
+    straighten_up,
+    wait_for_parachute,
+    parachute_descent,
+    free_fall,
+    powered_approach,
+    constant_velocity,
+    constant_deceleration,
+    sky_crane,
+    touchdown,
     flyaway,
-};
-
-/// One condition behind a decision, for its explanation. R38
-struct Condition {
-    std::uint16_t quantity = 0;   ///< index in the dictionary's enumeration of quantities (see edl_gnc.cpp)
-    double value = 0.0;
-    double bound = 0.0;
-    enum class Comparison : std::uint8_t { lt, le, eq, ge, gt } comparison{};
-    bool holds = false;
 };
 
 /// Everything that GNC tells the rest in one cycle.
 struct Output {
     Mode mode = Mode::off;
-    FixedVector<Trigger, 4> triggers;          ///< fired in this cycle
-    FixedVector<Condition, 4> conditions;      ///< of the last trigger in `triggers`
-    std::uint8_t bank_reversal = 0;            ///< number of the reversal that began in this cycle, 0: none
+    FixedVector<Trigger, 4> triggers; ///< fired in this cycle
+    Conditions conditions;            ///< of the last trigger in `triggers`
+    std::uint8_t bank_reversal = 0;   ///< number of the reversal that began in this cycle, 0: none
     AttitudeCommand attitude;
     EngineCommand engines;
     // Telemetry: the navigated state and what guidance wants. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
-    std::array<double, 4> q_MB{1, 0, 0, 0};    ///< navigated attitude, what EdlBg needs to use the radar's beams
-    double altitude_m = 0.0;                   ///< above the target's radius, or above ground once the radar locked
+    std::array<double, 4> q_MB{1, 0, 0, 0}; ///< navigated attitude, what EdlBg needs to use the radar's beams
+    double altitude_m = 0.0;                ///< above the target's radius, or above ground once the radar locked
     double speed_mps = 0.0;
     double descent_rate_mps = 0.0;
     double horizontal_speed_mps = 0.0;
@@ -138,9 +156,71 @@ class EdlGnc {
     /// Exactly once in each 64 Hz cycle.
     void cycle(const DeviceInputs& in, const Configuration& configuration, Output& out);
 
-  private:
-    struct State;
-    // The gnc engineer defines the members here: fixed-size Eigen is allowed, the heap is not.
-};
+    Mode mode() const { return mode_; }
+    bool navigating() const { return navigating_; }
 
-}  // namespace aeolis::flight::gnc
+  private:
+    /// What the rest of the cycle works with, measured once from the navigated state.
+    struct Measured {
+        Vector3 up_M = Vector3::UnitX();
+        Vector3 free_M_mps2 = Vector3::Zero(); ///< acceleration without any force
+        Vector3 level_velocity_M = Vector3::Zero();
+        double altitude_m = 0.0;
+        double speed_mps = 0.0;
+        double descent_rate_mps = 0.0;
+        double deceleration_mps2 = 0.0; ///< of the speed
+        double bank_rad = 0.0;
+        TargetGeometry target;
+    };
+
+    void navigate(const DeviceInputs& in);
+    void measure(Sclk now);
+    void enter(Mode mode, Sclk now);
+    bool fire(Trigger trigger, const Conditions& conditions, Output& out);
+    bool fired(Trigger trigger) const { return fired_[static_cast<std::size_t>(trigger)]; }
+    void follow_configuration(const Configuration& configuration, Sclk now);
+    void decide_in_air(const Configuration& configuration, Sclk now, Output& out);
+    void decide_on_engines(const Configuration& configuration, Sclk now, Output& out);
+    void guide_entry(Sclk now, const Configuration& configuration, Output& out);
+    void guide_descent(Sclk now, const Configuration& configuration, Output& out);
+    void push(const Vector3& acceleration_M, int engines, Output& out);
+    void burn(const DeviceInputs& in, const Configuration& configuration);
+    void report(Output& out) const;
+    double since(Sclk then) const { return measured_at_ - then; }
+
+    Load load_;
+    Solution solution_;
+    Vector3 target_M_ = Vector3::UnitX();
+    bool navigating_ = false;
+    Strapdown strapdown_;
+    Vector3 smooth_force_B_mps2_ = Vector3::Zero();
+    ForceFilter force_filter_;
+    RadarFilter radar_filter_;
+    Measured measured_;
+    Sclk measured_at_;
+
+    Mode mode_ = Mode::off;
+    Sclk mode_since_;
+    std::array<bool, trigger_count> fired_{};
+    triggers::Persistence slow_for_parachute_, low_for_backshell_;
+    bool radar_first_ = false; ///< the first solution was accepted since the last cycle
+
+    LateralLogic lateral_;
+    double bank_command_rad_ = 0.0;
+    double bank_at_sufr_rad_ = 0.0;
+    double predicted_range_m_ = 0.0;
+    double lift_to_drag_command_ = 0.0;
+
+    double mass_kg_ = 0.0; ///< on engines
+    double thrust_command_N_ = 0.0;
+    powered_descent::ApproachProfile approach_;
+    powered_descent::Divert divert_;
+    Vector3 divert_from_M_ = Vector3::Zero();
+    powered_descent::DecelerationProfile deceleration_;
+    sky_crane::RateControl rate_control_;
+    sky_crane::TouchdownLogic touchdown_logic_;
+    std::uint16_t last_radar_beams_ = 0;
+};
+static_assert(std::is_trivially_destructible_v<EdlGnc>); // copying it is a snapshot
+
+} // namespace aeolis::flight::gnc

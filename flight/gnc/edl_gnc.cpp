@@ -1,0 +1,362 @@
+#include "flight/gnc/edl_gnc.hpp"
+
+#include "flight/gnc/entry/heading_alignment.hpp"
+#include "flight/gnc/entry/range_control.hpp"
+#include "flight/gnc/flyaway/flyaway.hpp"
+#include "flight/gnc/mars.hpp"
+#include "flight/gnc/powered_descent/thrust_allocation.hpp"
+#include "flight/gnc/sufr/straighten_up.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::flight::gnc {
+
+namespace {
+
+constexpr double cycle_s = seconds_per_tick;
+
+// Bank held from turn to entry until guidance starts: lift nearly sideways, to the right. [facts] Guidance: +74 … 80°
+constexpr double bank_before_guidance_rad = 77.0 * degree;
+
+// Above it air is too thin to be felt through the accelerometers' bias: at 140 km drag is 2e-4 m/s². Ours.
+constexpr double no_air_above_m = 140000.0;
+// Felt all the same when something pushes: 50 times the bias. Ours.
+constexpr double pushed_mps2 = 0.05;
+constexpr double smoothing_s = 0.5;
+
+// Reference areas for estimates of dynamic pressure. [facts] Vehicle
+constexpr double entry_drag_area_m2 = 1.45 * 15.9;
+constexpr double parachute_drag_area_m2 = 205.0;
+
+// A drift that the sky crane may still be nulling is no reason to wait for ever: bound on the descent rate only. Ours.
+constexpr double sky_crane_rate_tolerance_mps = 0.08;
+
+} // namespace
+
+EdlGnc::EdlGnc(const Load& load) : load_(load), mass_kg_(load.powered_descent_mass_kg) {
+    lateral_.start(1);
+}
+
+void EdlGnc::set_solution(const Solution& solution, Sclk now) {
+    solution_ = solution;
+    target_M_ = direction_of(solution.target_latitude_rad, solution.target_longitude_rad);
+    // Once the air is felt, what is on board knows better than what ground knew hours ago: only bounds are taken.
+    if (navigating_ && mode_ >= Mode::range_control) return;
+    NavigatedState state;
+    state.p_MoB_M = to_vector(solution.p_MoB_M_m);
+    state.v_MB_M = to_vector(solution.v_MB_M_mps);
+    state = propagate(state, now - solution.epoch);
+    state.q_MB = strapdown_.state().q_MB;
+    strapdown_.start(state);
+    navigating_ = true;
+    measure(now);
+}
+
+void EdlGnc::on(const CruiseAttitude& attitude) {
+    strapdown_.set_attitude(to_quaternion(attitude.q_MB));
+}
+
+void EdlGnc::on(const RadarSolution& solution) {
+    if (!navigating_) return;
+    last_radar_beams_ = solution.beams;
+    const auto correction = radar_filter_.on(solution, measured_at_, measured_.up_M);
+    if (!correction) return;
+    if (radar_filter_.accepted() == 1) radar_first_ = true;
+    strapdown_.correct(correction->altitude_m * measured_.up_M, correction->v_M_mps);
+}
+
+void EdlGnc::navigate(const DeviceInputs& in) {
+    if (!navigating_) return;
+    if (in.imu.empty()) strapdown_.coast(cycle_s);
+    const bool in_air = measured_.altitude_m < no_air_above_m;
+    for (const ImuSample& sample : in.imu) {
+        const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
+        smooth_force_B_mps2_ += imu_period_s / (smoothing_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
+        strapdown_.on(sample, in_air || smooth_force_B_mps2_.squaredNorm() > pushed_mps2 * pushed_mps2);
+    }
+}
+
+void EdlGnc::measure(Sclk now) {
+    measured_at_ = now;
+    const NavigatedState& state = strapdown_.state();
+    Measured& m = measured_;
+    const double radius_m = state.p_MoB_M.norm();
+    m.up_M = state.p_MoB_M / radius_m;
+    m.altitude_m = radius_m - solution_.target_radius_m;
+    m.speed_mps = state.v_MB_M.norm();
+    const double climb_mps = state.v_MB_M.dot(m.up_M);
+    m.descent_rate_mps = -climb_mps;
+    m.level_velocity_M = state.v_MB_M - climb_mps * m.up_M;
+    m.free_M_mps2 = free_acceleration(state.p_MoB_M, state.v_MB_M);
+    const Vector3 ahead = state.v_MB_M / std::max(m.speed_mps, 1.0e-3);
+    force_filter_.on(state.q_MB * strapdown_.specific_force_B_mps2(), ahead, cycle_s);
+    m.deceleration_mps2 = force_filter_.drag_mps2() - m.free_M_mps2.dot(ahead);
+    m.bank_rad = bank_of(state.q_MB, state.p_MoB_M, state.v_MB_M);
+    m.target = target_geometry(state.p_MoB_M, state.v_MB_M, target_M_, solution_.target_radius_m);
+}
+
+void EdlGnc::enter(Mode mode, Sclk now) {
+    mode_ = mode;
+    mode_since_ = now;
+}
+
+bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
+    bool& done = fired_[static_cast<std::size_t>(trigger)];
+    if (done || out.triggers.full() || !all_hold(conditions)) return false;
+    done = true;
+    out.triggers.push_back(trigger);
+    out.conditions = conditions;
+    return true;
+}
+
+void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, Output& out) {
+    out = Output{};
+    if (!configuration.cruise_stage_gone && in.cruise_attitude) on(*in.cruise_attitude);
+    navigate(in);
+    if (!navigating_) {
+        measured_at_ = in.now;
+        return;
+    }
+    measure(in.now);
+    if (configuration.radar_on) {
+        radar_filter_.remember(in.now, measured_.altitude_m, strapdown_.state().v_MB_M);
+        Conditions first;
+        if (radar_first_) first.push_back(at_least(Quantity::radar_beams, last_radar_beams_, 1.0));
+        fire(Trigger::radar_lock, first, out);
+    }
+    follow_configuration(configuration, in.now);
+    decide_in_air(configuration, in.now, out);
+    decide_on_engines(configuration, in.now, out);
+    guide_entry(in.now, configuration, out);
+    guide_descent(in.now, configuration, out);
+    burn(in, configuration);
+    report(out);
+}
+
+// Modes that follow what the timeline has done. Each step is taken once, and in order.
+void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) {
+    if (mode_ == Mode::off && configuration.enabled) enter(Mode::approach, now);
+    if (mode_ == Mode::approach && configuration.guidance_armed) enter(Mode::wait_for_guidance_start, now);
+    if (mode_ == Mode::straighten_up && since(mode_since_) >= sufr::duration_s) enter(Mode::wait_for_parachute, now);
+    if (mode_ >= Mode::range_control && mode_ < Mode::parachute_descent && configuration.parachute_out)
+        enter(Mode::parachute_descent, now);
+    if (mode_ >= Mode::range_control && mode_ < Mode::free_fall && configuration.backshell_gone) {
+        enter(Mode::free_fall, configuration.backshell_time.value_or(now));
+        mass_kg_ = load_.powered_descent_mass_kg;
+    }
+    if (mode_ == Mode::constant_deceleration && configuration.sky_crane_started) {
+        enter(Mode::sky_crane, now);
+        rate_control_.start();
+    }
+    if (mode_ == Mode::sky_crane && configuration.touchdown_declared) enter(Mode::touchdown, now);
+    if ((mode_ == Mode::touchdown || mode_ == Mode::sky_crane) && configuration.flyaway_started) {
+        enter(Mode::flyaway, now);
+        mass_kg_ -= load_.rover_mass_kg; // the bridle is cut before fly-away starts
+    }
+}
+
+// Entry and parachute: decisions by what is navigated.
+void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output& out) {
+    const Measured& m = measured_;
+    if (mode_ == Mode::wait_for_guidance_start &&
+        fire(Trigger::guidance_start, triggers::guidance_start(force_filter_.drag_mps2()), out))
+        enter(Mode::range_control, now);
+    if (mode_ == Mode::range_control && fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
+        enter(Mode::heading_alignment, now);
+    if ((mode_ == Mode::range_control || mode_ == Mode::heading_alignment) && configuration.sufr_allowed &&
+        fire(Trigger::sufr_start, triggers::sufr_start(m.speed_mps, m.deceleration_mps2, solution_.parachute_speed_mps),
+             out)) {
+        bank_at_sufr_rad_ = m.bank_rad;
+        enter(Mode::straighten_up, now);
+    }
+    if (mode_ >= Mode::range_control && mode_ <= Mode::wait_for_parachute) {
+        const auto held = slow_for_parachute_.on(m.speed_mps <= solution_.parachute_speed_mps);
+        fire(Trigger::parachute, triggers::parachute(m.speed_mps, solution_.parachute_speed_mps, held), out);
+    }
+    if (mode_ != Mode::parachute_descent) return;
+    const double since_parachute_s = configuration.parachute_time ? now - *configuration.parachute_time : 0.0;
+    if (!configuration.heatshield_gone)
+        fire(Trigger::heatshield, triggers::heatshield(m.speed_mps, solution_.heatshield_speed_mps, since_parachute_s),
+             out);
+    if (!configuration.heatshield_gone) return;
+    fire(Trigger::engine_priming,
+         triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m), out);
+    const double needed_m = triggers::backshell_altitude_needed_m(solution_.backshell_altitude_m, m.descent_rate_mps);
+    const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);
+    if (configuration.engines_primed)
+        fire(Trigger::backshell,
+             triggers::backshell(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m, held), out);
+}
+
+// Powered descent and sky crane.
+void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Output& out) {
+    using namespace powered_descent;
+    const Measured& m = measured_;
+    Conditions conditions;
+    if (mode_ == Mode::free_fall) {
+        conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), free_fall_s));
+        if (!fire(Trigger::powered_approach, conditions, out)) return;
+        enter(Mode::powered_approach, now);
+        approach_.start(m.altitude_m, m.descent_rate_mps);
+        const double duration_s = (m.descent_rate_mps - constant_velocity_mps) / approach_.deceleration_mps2();
+        const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
+        divert_.start(load_.divert_m * azimuth_direction(p_MoB_M, load_.divert_azimuth_deg * degree),
+                      m.level_velocity_M, duration_s);
+        divert_from_M_ = p_MoB_M;
+    } else if (mode_ == Mode::powered_approach) {
+        if (approach_.done(m.altitude_m, m.descent_rate_mps))
+            conditions.push_back(below(Quantity::descent_rate_mps, m.descent_rate_mps, 2.0 * constant_velocity_mps));
+        if (fire(Trigger::constant_velocity, conditions, out)) enter(Mode::constant_velocity, now);
+    } else if (mode_ == Mode::constant_velocity) {
+        conditions.push_back(
+            at_most(Quantity::altitude_m, m.altitude_m, constant_deceleration_altitude_m(m.descent_rate_mps)));
+        if (!fire(Trigger::constant_deceleration, conditions, out)) return;
+        enter(Mode::constant_deceleration, now);
+        deceleration_.start(m.altitude_m, m.descent_rate_mps);
+    } else if (mode_ == Mode::constant_deceleration) {
+        conditions.push_back(
+            at_most(Quantity::descent_rate_mps, m.descent_rate_mps, sky_crane_mps + sky_crane_rate_tolerance_mps));
+        fire(Trigger::sky_crane, conditions, out);
+    } else if (mode_ == Mode::sky_crane) {
+        conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), triggers::sky_crane_settling_s));
+        fire(Trigger::rover_separation, conditions, out);
+        if (configuration.rover_separated && configuration.touchdown_logic_ready)
+            fire(Trigger::touchdown, touchdown_logic_.on(thrust_command_N_, mass_kg_, load_.rover_mass_kg), out);
+    }
+}
+
+void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& out) {
+    const Measured& m = measured_;
+    AttitudeCommand& attitude = out.attitude;
+    if (mode_ < Mode::wait_for_guidance_start) {
+        if (mode_ == Mode::approach && configuration.turning_to_entry) {
+            bank_command_rad_ = bank_before_guidance_rad;
+            attitude.mode = AttitudeCommand::Mode::entry_bank;
+        }
+    } else if (mode_ == Mode::wait_for_guidance_start) {
+        bank_command_rad_ = bank_before_guidance_rad;
+        attitude.mode = AttitudeCommand::Mode::entry_bank;
+    } else if (mode_ == Mode::range_control) {
+        attitude.mode = AttitudeCommand::Mode::entry_bank;
+        RangeControlInput input;
+        input.velocity_mps = m.speed_mps;
+        input.drag_mps2 = force_filter_.drag_mps2();
+        input.altitude_rate_mps = -m.descent_rate_mps;
+        input.range_to_go_m = m.target.range_to_go_m;
+        input.lift_to_drag = force_filter_.lift_to_drag(load_.entry_lift_to_drag);
+        const RangeControlOutput wanted = range_control(load_.entry_reference, input);
+        predicted_range_m_ = wanted.predicted_range_m;
+        lift_to_drag_command_ = wanted.vertical_lift_to_drag;
+        // Near lift up the two sides are hardly apart: there a reversal need not have been flown out.
+        const bool settled = m.bank_rad * lateral_.sign() > 0.0 || wanted.bank_magnitude_rad < 15.0 * degree;
+        if (lateral_.on(m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
+            out.bank_reversal = lateral_.reversals();
+        bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
+    } else if (mode_ == Mode::heading_alignment) {
+        attitude.mode = AttitudeCommand::Mode::entry_bank;
+        bank_command_rad_ = heading_alignment_bank_rad(m.target);
+    } else if (mode_ == Mode::straighten_up) {
+        attitude.mode = AttitudeCommand::Mode::entry_bank;
+        bank_command_rad_ = sufr::bank_rad(now - mode_since_, bank_at_sufr_rad_);
+    } else if (mode_ == Mode::wait_for_parachute) {
+        attitude.mode = AttitudeCommand::Mode::entry_bank;
+        bank_command_rad_ = 0.0;
+    } else if (mode_ == Mode::parachute_descent) {
+        attitude.mode = AttitudeCommand::Mode::suspended;
+    }
+    attitude.bank_rad = bank_command_rad_;
+}
+
+// What the engines must do for the vehicle to accelerate by `acceleration_M`.
+void EdlGnc::push(const Vector3& acceleration_M, int engines, Output& out) {
+    const powered_descent::Thrust thrust = powered_descent::allocate(
+        acceleration_M - measured_.free_M_mps2, measured_.up_M, mass_kg_, engines, load_.engine_max_thrust_N);
+    thrust_command_N_ = thrust.magnitude_N;
+    out.attitude.thrust_direction_M = to_array(thrust.direction_M);
+    out.engines.throttle = thrust.throttle;
+}
+
+void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output& out) {
+    using namespace powered_descent;
+    const Measured& m = measured_;
+    if (mode_ < Mode::free_fall) return;
+    out.attitude.mode = AttitudeCommand::Mode::thrust;
+    out.attitude.thrust_direction_M = to_array(m.up_M);
+    out.engines.ignited = configuration.engines_ignited && !configuration.engines_off;
+    thrust_command_N_ = 0.0;
+    if (!out.engines.ignited) return;
+
+    const Vector3& v_M = strapdown_.state().v_MB_M;
+    const int engines = configuration.sky_crane_started ? 4 : 8;
+    // Once the divert is flown, what is left of drift is nulled.
+    const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
+    if (mode_ == Mode::free_fall) {
+        out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N); // warm-up
+        thrust_command_N_ = 8.0 * load_.engine_min_thrust_N;
+    } else if (mode_ == Mode::powered_approach) {
+        const Vector3 moved = strapdown_.state().p_MoB_M - divert_from_M_;
+        const Vector3 level =
+            divert_.command_M(now - mode_since_, moved - moved.dot(m.up_M) * m.up_M, m.level_velocity_M);
+        const double up = approach_.acceleration_mps2(m.altitude_m, m.descent_rate_mps);
+        push(level - level.dot(m.up_M) * m.up_M + up * m.up_M, engines, out);
+    } else if (mode_ == Mode::constant_velocity) {
+        push(null_drift + hold_rate_mps2(m.descent_rate_mps, constant_velocity_mps) * m.up_M, engines, out);
+    } else if (mode_ == Mode::constant_deceleration) {
+        deceleration_.advance(cycle_s);
+        push(null_drift + deceleration_.acceleration_mps2(m.descent_rate_mps) * m.up_M, engines, out);
+    } else if (mode_ == Mode::sky_crane || mode_ == Mode::touchdown) {
+        const double wanted_mps = mode_ == Mode::sky_crane ? sky_crane_mps : 0.0;
+        push(rate_control_.command_M(v_M, m.up_M, wanted_mps, cycle_s), engines, out);
+    } else if (mode_ == Mode::flyaway) {
+        const flyaway::Command wanted = flyaway::command(now - mode_since_, strapdown_.state().p_MoB_M);
+        const double thrust_N = wanted.full ? engines * engine_used_max_N : mass_kg_ * mars_weight_mps2;
+        out.engines.throttle = throttles_for(thrust_N, engines, load_.engine_max_thrust_N, thrust_command_N_);
+        out.attitude.thrust_direction_M = to_array(wanted.direction_M);
+    }
+}
+
+void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
+    if (mode_ < Mode::free_fall || configuration.engines_off) return;
+    // What the engines say they gave; what was asked of them until they say something.
+    const double thrust_N = in.engines ? in.engines->thrust_N : thrust_command_N_;
+    mass_kg_ -= thrust_N / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
+}
+
+void EdlGnc::report(Output& out) const {
+    const NavigatedState& state = strapdown_.state();
+    const Measured& m = measured_;
+    out.mode = mode_;
+    out.p_MoB_M_m = to_array(state.p_MoB_M);
+    out.v_MB_M_mps = to_array(state.v_MB_M);
+    out.q_MB = to_array(state.q_MB);
+    out.altitude_m = m.altitude_m;
+    out.speed_mps = m.speed_mps;
+    out.descent_rate_mps = m.descent_rate_mps;
+    out.horizontal_speed_mps = m.level_velocity_M.norm();
+    out.flight_path_deg = std::atan2(-m.descent_rate_mps, out.horizontal_speed_mps) / degree;
+    out.bank_deg = m.bank_rad / degree;
+    out.angle_of_attack_deg = angle_of_attack(state.q_MB, state.v_MB_M) / degree;
+    out.drag_mps2 = force_filter_.drag_mps2();
+    out.range_to_go_m = m.target.range_to_go_m;
+    out.crossrange_m = m.target.crossrange_m;
+    out.predicted_range_m = predicted_range_m_;
+    out.bank_command_deg = bank_command_rad_ / degree;
+    out.lift_to_drag_command = lift_to_drag_command_;
+    if (mode_ < Mode::free_fall) {
+        const double area_m2 = mode_ == Mode::parachute_descent ? parachute_drag_area_m2 : entry_drag_area_m2;
+        out.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
+    }
+    out.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);
+    out.reversals = lateral_.reversals();
+    out.acceleration_B_mps2 = to_array(strapdown_.specific_force_B_mps2());
+    out.rate_B_rps = to_array(strapdown_.rate_B_rps());
+    out.thrust_command_N = thrust_command_N_;
+    const bool on_engines = mode_ >= Mode::free_fall;
+    out.mass_kg = on_engines ? mass_kg_ : load_.entry_mass_kg;
+    const double carried_kg = load_.descent_stage_dry_kg + (mode_ == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
+    out.propellant_kg = (on_engines ? mass_kg_ : load_.powered_descent_mass_kg) - carried_kg;
+    out.radar_locked = radar_filter_.locked();
+}
+
+} // namespace aeolis::flight::gnc

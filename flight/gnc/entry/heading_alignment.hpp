@@ -1,0 +1,18 @@
+#pragma once
+
+#include "flight/gnc/entry/target_geometry.hpp"
+
+// Below about 1100 m/s range is left as it is, and bank points the velocity at the target.
+//
+//   bank = 100 · atan2(crossrange, downrange), within ±30°
+//
+// In       geometry of the target, crossrange positive to the right       Out   bank [rad], positive to the right
+// Source   [facts] Guidance: gain 100, limit 30°, start at 1100 m/s
+namespace aeolis::flight::gnc {
+
+inline constexpr double heading_alignment_speed_mps = 1100.0;
+inline constexpr double heading_alignment_limit_rad = 30.0 * degree;
+
+double heading_alignment_bank_rad(const TargetGeometry& geometry);
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,24 @@
+#include "flight/gnc/entry/lateral_logic.hpp"
+
+namespace aeolis::flight::gnc {
+
+namespace {
+
+constexpr double deadband_0_m = 1200.0;    // ours, tuned
+constexpr double deadband_2_s2pm = 1.6e-4; // ours, tuned
+
+} // namespace
+
+double crossrange_deadband_m(double velocity_mps, bool saturated) {
+    const double deadband_m = deadband_0_m + deadband_2_s2pm * velocity_mps * velocity_mps;
+    return saturated ? 0.5 * deadband_m : deadband_m;
+}
+
+bool LateralLogic::on(double crossrange_m, double velocity_mps, bool saturated, bool settled) {
+    if (!settled || sign_ * crossrange_m >= -crossrange_deadband_m(velocity_mps, saturated)) return false;
+    sign_ = -sign_;
+    ++reversals_;
+    return true;
+}
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+// Which side the lift points to: bank reverses when the target has left a deadband on the side away from the lift.
+//
+//   reverse when  sign · crossrange < −deadband(V);  deadband = b0 + b2 V², halved when lift is saturated
+//
+// In       crossrange of the target, positive to the right; V            Out   sign of bank, number of reversals
+// Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation; its two
+//          numbers are ours, tuned so that three reversals come near those of [od137]
+namespace aeolis::flight::gnc {
+
+/// Half width of the deadband [m] at a velocity.
+double crossrange_deadband_m(double velocity_mps, bool saturated);
+
+class LateralLogic {
+  public:
+    /// True in the cycle in which a reversal begins. `settled`: the vehicle has reached the side commanded before.
+    bool on(double crossrange_m, double velocity_mps, bool saturated, bool settled);
+
+    void start(int sign) { sign_ = sign; }
+    int sign() const { return sign_; } ///< +1: lift to the right
+    std::uint8_t reversals() const { return reversals_; }
+
+  private:
+    int sign_ = 1;
+    std::uint8_t reversals_ = 0;
+};
+
+} // namespace aeolis::flight::gnc

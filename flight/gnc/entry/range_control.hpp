@@ -1,0 +1,41 @@
+#pragma once
+
+#include "flight/load.hpp"
+
+#include <cstdint>
+
+// Entry guidance of Apollo's final phase: how much of the lift to point up so as to reach the target's range.
+//
+//   R_p   = R_ref + ∂R/∂D (D − D_ref) + ∂R/∂ḣ (ḣ − ḣ_ref)                        all of V, from the reference
+//   (L/D)v = (L/D)_ref + K (R − R_p) / (∂R/∂(L/D))
+//   |bank| = acos( (L/D)v / (L/D) )
+//
+// In       V, D, ḣ relative to rotating Mars; R range to go; L/D as sensed       Out   vertical L/D and |bank|
+// Rate     64 Hz         Memory   none: a pure function of the reference
+// Source   [apollo-entry-guidance]; K = 5 [facts] Guidance (M)
+// Valid    within the reference's velocities; held at its ends
+namespace aeolis::flight::gnc {
+
+inline constexpr double overcontrol_gain = 5.0; ///< K, [facts] Guidance (M)
+
+/// The reference at a velocity, linear between its rows, held at its ends. An empty reference gives a row of zeros.
+EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps);
+
+struct RangeControlInput {
+    double velocity_mps = 0.0;
+    double drag_mps2 = 0.0;
+    double altitude_rate_mps = 0.0;
+    double range_to_go_m = 0.0;
+    double lift_to_drag = 0.24;
+};
+
+struct RangeControlOutput {
+    double predicted_range_m = 0.0;
+    double vertical_lift_to_drag = 0.0; ///< wanted, before what lift can give
+    double bank_magnitude_rad = 0.0;    ///< 0 … π
+    bool saturated = false;             ///< lift nearly full up or down: nothing left to steer range with
+};
+
+RangeControlOutput range_control(const EntryReference& reference, const RangeControlInput& input);
+
+} // namespace aeolis::flight::gnc

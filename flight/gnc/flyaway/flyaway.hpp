@@ -1,0 +1,28 @@
+#pragma once
+
+#include "flight/gnc/vector.hpp"
+
+// Takes the stage away from the rover once the bridle is cut, to fall far off.
+//
+//   0 … 0.2 s   thrust as the stage's weight, upright: clear of the rover
+//   … 2.0 s     full thrust, upright
+//   … end       full thrust, pitched from upright to 45° in 1.5 s, towards an azimuth; the timeline stops the engines
+//
+// In       time since fly-away began [s], place      Out   specific force wanted, in M [m/s²]; "full" is beyond any
+// limit Source   [facts] Timeline: burn of 6.66 s, stage falls ≥ 450 m away; phases, pitch and azimuth (north) are ours
+namespace aeolis::flight::gnc::flyaway {
+
+inline constexpr double clear_s = 0.2;
+inline constexpr double upright_s = 2.0;
+inline constexpr double pitch_time_s = 1.5;
+inline constexpr double pitch_rad = 45.0 * degree;
+inline constexpr double azimuth_rad = 0.0;
+
+struct Command {
+    Vector3 direction_M = Vector3::UnitX(); ///< unit, of thrust
+    bool full = false;                      ///< else the stage's weight
+};
+
+Command command(double since_start_s, const Vector3& p_MoB_M);
+
+} // namespace aeolis::flight::gnc::flyaway

@@ -1,0 +1,57 @@
+#include "flight/gnc/mars.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace aeolis::flight::gnc {
+
+Vector3 gravity(const Vector3& p_MoB_M) {
+    const double r2 = p_MoB_M.squaredNorm();
+    const double r = std::sqrt(r2);
+    const double point_mass = -mars_gm_m3ps2 / (r2 * r);
+    const double flattening = 1.5 * mars_j2 * mars_equator_radius_m * mars_equator_radius_m / r2;
+    const double z2 = 5.0 * p_MoB_M.z() * p_MoB_M.z() / r2;
+    const double in_equator = point_mass * (1.0 + flattening * (1.0 - z2));
+    const double along_spin = point_mass * (1.0 + flattening * (3.0 - z2));
+    return {in_equator * p_MoB_M.x(), in_equator * p_MoB_M.y(), along_spin * p_MoB_M.z()};
+}
+
+Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
+    // With ω along z both cross products are two components each.
+    constexpr double w = mars_spin_rps;
+    Vector3 a = gravity(p_MoB_M);
+    a.x() += 2.0 * w * v_MB_M.y() + w * w * p_MoB_M.x();
+    a.y() += -2.0 * w * v_MB_M.x() + w * w * p_MoB_M.y();
+    return a;
+}
+
+double speed_of_sound_mps(double altitude_m) {
+    struct Point {
+        double altitude_m, temperature_K;
+    };
+    // Corners of the temperature profile, re-typed from [gale-atmosphere].
+    static constexpr std::array<Point, 7> profile{{{0.0, 194.5},
+                                                   {7353.0, 218.9},
+                                                   {29412.0, 173.9},
+                                                   {44118.0, 175.0},
+                                                   {73529.0, 140.4},
+                                                   {95588.0, 148.5},
+                                                   {117647.0, 125.7}}};
+    double temperature_K = profile.back().temperature_K;
+    if (altitude_m <= profile.front().altitude_m) {
+        temperature_K = profile.front().temperature_K;
+    } else {
+        for (std::size_t i = 1; i < profile.size(); ++i) {
+            if (altitude_m >= profile[i].altitude_m) continue;
+            const double part =
+                (altitude_m - profile[i - 1].altitude_m) / (profile[i].altitude_m - profile[i - 1].altitude_m);
+            temperature_K =
+                profile[i - 1].temperature_K + part * (profile[i].temperature_K - profile[i - 1].temperature_K);
+            break;
+        }
+    }
+    return std::sqrt(1.3 * 188.9 * temperature_K);
+}
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "flight/gnc/vector.hpp"
+
+// Drag and lift as the accelerometers feel them, smoothed.
+//
+//   D = −f·v̂        L = |f − (f·v̂) v̂|        τ ẋ + x = D, L
+//
+// Frame    any; f and v̂ in the same          In   specific force [m/s²], 64 Hz      Out   [m/s²]
+// Source   [apollo-entry-guidance] flies on sensed drag; the time constants are ours: small against the 6 s in which
+//          drag grows e-fold on MSL's way in [od137], large against the IMU's noise
+// Valid    where air moves with Mars: wind of 20 m/s against 400 m/s turns v̂ by 3°
+namespace aeolis::flight::gnc {
+
+class ForceFilter {
+  public:
+    void on(const Vector3& force_mps2, const Vector3& direction_of_flight, double dt_s) {
+        const double along = force_mps2.dot(direction_of_flight);
+        const double across = (force_mps2 - along * direction_of_flight).norm();
+        drag_mps2_ += dt_s / (drag_time_s + dt_s) * (-along - drag_mps2_);
+        lift_mps2_ += dt_s / (lift_time_s + dt_s) * (across - lift_mps2_);
+        slow_drag_mps2_ += dt_s / (lift_time_s + dt_s) * (-along - slow_drag_mps2_);
+    }
+
+    double drag_mps2() const { return drag_mps2_; }
+
+    /// Lift over drag; `otherwise` while drag is too weak to tell. Held within 0.15 … 0.40, ours: wider than all flown.
+    double lift_to_drag(double otherwise) const {
+        if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
+        const double ratio = lift_mps2_ / slow_drag_mps2_;
+        return ratio < 0.15 ? 0.15 : ratio > 0.40 ? 0.40 : ratio;
+    }
+
+    static constexpr double drag_time_s = 0.5;
+    static constexpr double lift_time_s = 4.0;
+    static constexpr double enough_drag_mps2 = 5.0;
+
+  private:
+    double drag_mps2_ = 0.0;
+    double lift_mps2_ = 0.0;
+    double slow_drag_mps2_ = 0.0; ///< as slow as lift, so that their ratio does not lag
+};
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "common/time.hpp"
+#include "flight/devices/device_messages.hpp"
+#include "flight/gnc/vector.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+// Landing radar beams of the last 5 s made into one altitude and one velocity. EdlBg runs it. R25
+//
+//   altitude: mean of  −range · (d_M · up)       velocity: least squares of  d_M · v = −range rate
+//
+// Frame    beams in B, turned into M by the navigated attitude at the measurement; up is the local vertical
+// In       beams as they come (six at 20 Hz)        Out   one solution when asked, about once a second
+// Memory   sums of twenty quarters of a second
+// Valid    flat ground below; beams within 75° of the vertical, others are left out
+// Source   [facts] Vehicle: six beams at 20 Hz, averages over 5 s [seed]; the form is ours
+namespace aeolis::flight::gnc {
+
+/// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
+/// navigation/radar_batch.hpp; the filter averages its own past over the same span, so the delay does no harm. R25
+struct RadarSolution {
+    Sclk time;               ///< middle of the measurements averaged
+    double span_s = 0.0;     ///< from the first measurement averaged to the last
+    double altitude_m = 0.0; ///< above the ground below
+    std::array<double, 3> v_MB_M_mps{};
+    std::uint16_t beams = 0;
+};
+
+class RadarBatch {
+  public:
+    /// The beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
+    void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
+
+    /// The average of what came in the last 5 s; none with fewer than 12 measurements or all in one plane.
+    std::optional<RadarSolution> solve(Sclk now) const;
+
+    void clear() { bins_ = {}; }
+
+  private:
+    struct Bin {
+        std::int64_t quarter = -1; ///< SCLK in quarters of a second
+        Sclk first, last;
+        double time_sum_s = 0.0; ///< of the measurements, relative to the bin's start
+        double altitude_sum_m = 0.0;
+        Matrix3 normal = Matrix3::Zero();
+        Vector3 right = Vector3::Zero();
+        std::uint16_t beams = 0;
+    };
+    std::array<Bin, 20> bins_{};
+};
+
+} // namespace aeolis::flight::gnc

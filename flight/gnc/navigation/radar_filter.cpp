@@ -1,0 +1,71 @@
+#include "flight/gnc/navigation/radar_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::flight::gnc {
+
+namespace {
+
+constexpr double gain_later = 0.3;
+// Gates after the first solution: 2 % of range and three sigma of what an accelerometer can drift in 5 s; ours.
+constexpr double altitude_gate_m = 60.0;
+constexpr double altitude_gate_fraction = 0.05;
+constexpr double velocity_gate_mps = 5.0;
+constexpr std::uint32_t refused_max = 5;
+
+} // namespace
+
+void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
+    if (now.ticks() % 8 != 0) return;
+    past_[next_] = {now, altitude_m, v_MB_M};
+    next_ = (next_ + 1) % static_cast<std::uint32_t>(past_.size());
+    count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
+}
+
+std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sclk now, const Vector3& up_M) {
+    const double half_s = 0.5 * solution.span_s;
+    double altitude_sum_m = 0.0, time_sum_s = 0.0;
+    Vector3 v_sum = Vector3::Zero();
+    double samples = 0.0;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        const double from_middle_s = past_[i].time - solution.time;
+        if (std::abs(from_middle_s) > half_s + 0.0625) continue;
+        altitude_sum_m += past_[i].altitude_m;
+        v_sum += past_[i].v_MB_M;
+        time_sum_s += from_middle_s;
+        samples += 1.0;
+    }
+    // At least half of the span must be covered, else averages of different times would be compared.
+    if (samples < std::max(1.0, 4.0 * solution.span_s)) return std::nullopt;
+
+    const Vector3 v_mean = v_sum / samples;
+    // What is left between the middle of our samples and that of the radar's, by the mean rate.
+    const double altitude_m = altitude_sum_m / samples - time_sum_s / samples * v_mean.dot(up_M);
+    const double residual_h_m = solution.altitude_m - altitude_m;
+    const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
+
+    const bool outside = std::abs(residual_h_m) > altitude_gate_m + altitude_gate_fraction * solution.altitude_m ||
+                         residual_v.norm() > velocity_gate_mps;
+    if (accepted_ > 0 && outside && refused_in_a_row_ < refused_max) {
+        ++refused_;
+        ++refused_in_a_row_;
+        return std::nullopt;
+    }
+    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max ? 1.0 : gain_later;
+    refused_in_a_row_ = 0;
+    ++accepted_;
+
+    RadarCorrection correction;
+    correction.v_M_mps = gain * residual_v;
+    // An error of velocity has also grown into one of altitude since the middle of the span.
+    const double since_middle_s = now - solution.time;
+    correction.altitude_m = gain * residual_h_m + correction.v_M_mps.dot(up_M) * since_middle_s;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+        past_[i].altitude_m += correction.altitude_m + correction.v_M_mps.dot(up_M) * (past_[i].time - now);
+        past_[i].v_MB_M += correction.v_M_mps;
+    }
+    return correction;
+}
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,54 @@
+#pragma once
+
+#include "common/time.hpp"
+#include "flight/gnc/navigation/radar_batch.hpp"
+#include "flight/gnc/vector.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+// Takes radar solutions into the navigated state: what is above the ground, and how fast.
+//
+//   residual = radar's average − average of our own past over the same span
+//   Δh = k_h · residual_h,  Δv = k_v · residual_v ;  the past is shifted by what was corrected
+//
+// Frame    M; altitude along the local vertical     In   RadarSolution, 1 Hz     Out   RadarCorrection
+// Memory   12 s of our own past at 8 Hz
+// Faults   a solution whose residual is beyond the gate is refused and counted; five refused in a row are believed
+// Source   R25; the gains are ours: first solution taken whole, later ones by a third, so that noise of a solution
+//          is halved and an error dies out in 3 s
+namespace aeolis::flight::gnc {
+
+struct RadarCorrection {
+    double altitude_m = 0.0;           ///< to add along the local vertical
+    Vector3 v_M_mps = Vector3::Zero(); ///< to add to the velocity
+};
+
+class RadarFilter {
+  public:
+    /// Our own past, each cycle; every eighth is kept.
+    void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
+
+    /// None when the solution is refused or our past does not cover it.
+    std::optional<RadarCorrection> on(const RadarSolution& solution, Sclk now, const Vector3& up_M);
+
+    bool locked() const { return accepted_ > 0; }
+    std::uint32_t accepted() const { return accepted_; }
+    std::uint32_t refused() const { return refused_; }
+
+  private:
+    struct Past {
+        Sclk time;
+        double altitude_m = 0.0;
+        Vector3 v_MB_M = Vector3::Zero();
+    };
+    std::array<Past, 96> past_{};
+    std::uint32_t next_ = 0;
+    std::uint32_t count_ = 0;
+    std::uint32_t accepted_ = 0;
+    std::uint32_t refused_ = 0;
+    std::uint32_t refused_in_a_row_ = 0;
+};
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,82 @@
+#include "flight/gnc/navigation/strapdown.hpp"
+
+#include "flight/gnc/mars.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::flight::gnc {
+
+namespace {
+
+// Bias is the mean of at most this many increments: a minute of them; ours.
+constexpr std::uint32_t bias_samples_max = 12000;
+
+/// The rotation by a small vector, to third order; its caller keeps the angle below 0.1 rad.
+Quaternion small_rotation(const Vector3& angle) {
+    const double half_squared = 0.25 * angle.squaredNorm();
+    const double s = 0.5 * (1.0 - half_squared / 6.0);
+    return {1.0 - 0.5 * half_squared, s * angle.x(), s * angle.y(), s * angle.z()};
+}
+
+} // namespace
+
+void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B) {
+    constexpr double dt = imu_period_s;
+    // Over the step the frame turns by Δθ; half of it is there on average when Δv is felt.
+    const Vector3 delta_v_M = state_.q_MB * (delta_v_B + 0.5 * delta_angle_B.cross(delta_v_B));
+    const Vector3 v_before = state_.v_MB_M;
+    state_.v_MB_M += delta_v_M + dt * free_acceleration(state_.p_MoB_M + 0.5 * dt * v_before, v_before);
+    state_.p_MoB_M += 0.5 * dt * (v_before + state_.v_MB_M);
+    const Quaternion mars_turns = small_rotation({0.0, 0.0, -mars_spin_rps * dt});
+    state_.q_MB = mars_turns * state_.q_MB * small_rotation(delta_angle_B);
+    // One step of Newton towards unit norm: exact to 1e-16 for norms this near to one, and no square root.
+    state_.q_MB.coeffs() *= 1.5 - 0.5 * state_.q_MB.squaredNorm();
+}
+
+void Strapdown::on(const ImuSample& sample, bool force_felt) {
+    const Vector3 delta_angle_B = to_vector(sample.delta_angle_rad);
+    const Vector3 raw_force_B = to_vector(sample.delta_v_mps) / imu_period_s;
+    if (!force_felt) {
+        bias_samples_ = std::min(bias_samples_ + 1, bias_samples_max);
+        bias_B_mps2_ += (raw_force_B - bias_B_mps2_) / static_cast<double>(bias_samples_);
+    }
+    const Vector3 force_B = force_felt ? Vector3(raw_force_B - bias_B_mps2_) : Vector3(Vector3::Zero());
+    if (counting_) {
+        const std::uint32_t missing = sample.count - last_count_ - 1;
+        for (std::uint32_t i = 0; i < std::min(missing, gap_max); ++i) {
+            step(rate_B_rps_ * imu_period_s, specific_force_B_mps2_ * imu_period_s);
+            ++filled_;
+        }
+    }
+    counting_ = true;
+    last_count_ = sample.count;
+    rate_B_rps_ = delta_angle_B / imu_period_s;
+    specific_force_B_mps2_ = force_B;
+    step(delta_angle_B, force_B * imu_period_s);
+}
+
+void Strapdown::coast(double dt_s) {
+    state_ = propagate(state_, dt_s);
+    counting_ = false; // increments of this time, should they still come, were coasted over
+}
+
+NavigatedState propagate(const NavigatedState& state, double seconds) {
+    NavigatedState now = state;
+    const double steps = std::max(1.0, std::ceil(std::abs(seconds)));
+    const double dt = seconds / steps;
+    for (double i = 0; i < steps; i += 1.0) {
+        const Vector3 p = now.p_MoB_M, v = now.v_MB_M;
+        const Vector3 a1 = free_acceleration(p, v);
+        const Vector3 v2 = v + 0.5 * dt * a1, a2 = free_acceleration(p + 0.5 * dt * v, v2);
+        const Vector3 v3 = v + 0.5 * dt * a2, a3 = free_acceleration(p + 0.5 * dt * v2, v3);
+        const Vector3 v4 = v + dt * a3, a4 = free_acceleration(p + dt * v3, v4);
+        now.p_MoB_M = p + dt / 6.0 * (v + 2.0 * v2 + 2.0 * v3 + v4);
+        now.v_MB_M = v + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+    }
+    const double half = -0.5 * mars_spin_rps * seconds;
+    now.q_MB = (Quaternion(std::cos(half), 0.0, 0.0, std::sin(half)) * state.q_MB).normalized();
+    return now;
+}
+
+} // namespace aeolis::flight::gnc

@@ -1,0 +1,55 @@
+#include "flight/gnc/powered_descent/divert.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::flight::gnc::powered_descent {
+
+namespace {
+
+constexpr double velocity_gain_per_s = 1.0;
+constexpr double position_gain_per_s2 = 0.25; // with the one above: critically damped, 2 s
+
+} // namespace
+
+void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s) {
+    duration_s_ = std::max(duration_s, 1.0);
+    const double T = duration_s_;
+    v0_ = v0_M;
+    // The cubic, quartic and quintic that meet the three conditions at T, once v0 T is taken off.
+    const Vector3 left = displacement_M - v0_M * T;
+    const Vector3 speed = -v0_M * T;
+    c3_ = (10.0 * left - 4.0 * speed) / (T * T * T);
+    c4_ = (-15.0 * left + 7.0 * speed) / (T * T * T * T);
+    c5_ = (6.0 * left - 3.0 * speed) / (T * T * T * T * T);
+}
+
+Vector3 Divert::position_M(double t_s) const {
+    const double t = std::clamp(t_s, 0.0, duration_s_);
+    return t * (v0_ + t * t * (c3_ + t * (c4_ + t * c5_)));
+}
+
+Vector3 Divert::velocity_M(double t_s) const {
+    const double t = std::clamp(t_s, 0.0, duration_s_);
+    return v0_ + t * t * (3.0 * c3_ + t * (4.0 * c4_ + t * 5.0 * c5_));
+}
+
+Vector3 Divert::acceleration_M(double t_s) const {
+    if (t_s <= 0.0 || t_s >= duration_s_) return Vector3::Zero();
+    const double t = t_s;
+    return t * (6.0 * c3_ + t * (12.0 * c4_ + t * 20.0 * c5_));
+}
+
+Vector3 Divert::command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const {
+    return acceleration_M(t_s) + velocity_gain_per_s * (velocity_M(t_s) - v_M) +
+           position_gain_per_s2 * (position_M(t_s) - x_M);
+}
+
+Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {
+    const Vector3 up = p_MoB_M.normalized();
+    const Vector3 east = Vector3::UnitZ().cross(up).normalized();
+    const Vector3 north = up.cross(east);
+    return std::cos(azimuth_rad) * north + std::sin(azimuth_rad) * east;
+}
+
+} // namespace aeolis::flight::gnc::powered_descent

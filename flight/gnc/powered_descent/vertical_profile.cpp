@@ -1,0 +1,73 @@
+#include "flight/gnc/powered_descent/vertical_profile.hpp"
+
+#include "flight/gnc/mars.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::flight::gnc::powered_descent {
+
+namespace {
+
+constexpr double deceleration_min_mps2 = 1.0;
+constexpr double deceleration_max_mps2 = 6.0;
+
+double limited(double deceleration_mps2) {
+    return std::clamp(deceleration_mps2, deceleration_min_mps2, deceleration_max_mps2);
+}
+
+} // namespace
+
+double altitude_used_until_constant_velocity_m(double descent_rate_mps) {
+    const double after_fall_mps = descent_rate_mps + mars_weight_mps2 * free_fall_s;
+    const double fallen_m = 0.5 * (descent_rate_mps + after_fall_mps) * free_fall_s;
+    const double approach_m = (after_fall_mps * after_fall_mps - constant_velocity_mps * constant_velocity_mps) /
+                              (2.0 * approach_deceleration_mps2);
+    return fallen_m + approach_m;
+}
+
+void ApproachProfile::start(double altitude_m, double descent_rate_mps) {
+    const double room_m = std::max(altitude_m - approach_end_altitude_m, 1.0);
+    deceleration_mps2_ =
+        limited((descent_rate_mps * descent_rate_mps - constant_velocity_mps * constant_velocity_mps) / (2.0 * room_m));
+}
+
+double ApproachProfile::descent_rate_mps(double altitude_m) const {
+    const double above_m = std::max(altitude_m - approach_end_altitude_m, 0.0);
+    return std::sqrt(constant_velocity_mps * constant_velocity_mps + 2.0 * deceleration_mps2_ * above_m);
+}
+
+double ApproachProfile::acceleration_mps2(double altitude_m, double descent_rate_mps) const {
+    return deceleration_mps2_ + rate_gain_per_s * (descent_rate_mps - this->descent_rate_mps(altitude_m));
+}
+
+bool ApproachProfile::done(double altitude_m, double descent_rate_mps) const {
+    return descent_rate_mps <= constant_velocity_mps || altitude_m <= approach_end_altitude_m;
+}
+
+double hold_rate_mps2(double descent_rate_mps, double wanted_mps) {
+    return rate_gain_per_s * (descent_rate_mps - wanted_mps);
+}
+
+double constant_deceleration_altitude_m(double descent_rate_mps) {
+    return sky_crane_altitude_m +
+           (descent_rate_mps * descent_rate_mps - sky_crane_mps * sky_crane_mps) / (2.0 * constant_deceleration_mps2);
+}
+
+void DecelerationProfile::start(double altitude_m, double descent_rate_mps) {
+    const double room_m = std::max(altitude_m - sky_crane_altitude_m, 1.0);
+    rate_mps_ = descent_rate_mps;
+    deceleration_mps2_ =
+        limited((descent_rate_mps * descent_rate_mps - sky_crane_mps * sky_crane_mps) / (2.0 * room_m));
+}
+
+void DecelerationProfile::advance(double dt_s) {
+    rate_mps_ = std::max(rate_mps_ - deceleration_mps2_ * dt_s, sky_crane_mps);
+}
+
+double DecelerationProfile::acceleration_mps2(double descent_rate_mps) const {
+    const double planned_mps2 = rate_mps_ > sky_crane_mps ? deceleration_mps2_ : 0.0;
+    return planned_mps2 + 2.0 * rate_gain_per_s * (descent_rate_mps - rate_mps_);
+}
+
+} // namespace aeolis::flight::gnc::powered_descent

@@ -1,0 +1,59 @@
+#pragma once
+
+// The vertical part of powered descent: which descent rate belongs to which altitude, and what acceleration keeps it.
+//
+//   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left
+//   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error
+//   constant decel.  v_ref(t) = v_start − a t, down to 0.75 m/s, a fixed at its start so as to end at h_sky_crane
+//   command          a_up = a_ref + k (v − v_ref)
+//
+// Frame    h [m] of the descent stage above ground, v [m/s] and a [m/s²]: v positive down, a positive up
+// Source   [facts] Timeline (32 and 0.75 m/s; net 3.19 and 4.26 m/s²; heights); gain k ours
+// Valid    90 … 0.75 m/s; net decelerations are kept within 1 … 6 m/s², what thrust of [facts] Vehicle can give
+namespace aeolis::flight::gnc::powered_descent {
+
+inline constexpr double stage_height_at_touchdown_m = 8.6; ///< bridle 7.5 m and rover: [facts] for the bridle, ours
+inline constexpr double constant_velocity_mps = 32.0;
+inline constexpr double sky_crane_mps = 0.75;
+inline constexpr double approach_end_altitude_m = 235.0 + stage_height_at_touchdown_m;
+inline constexpr double sky_crane_altitude_m = 18.0 + stage_height_at_touchdown_m;
+inline constexpr double approach_deceleration_mps2 = 3.19; ///< net; design value
+inline constexpr double constant_deceleration_mps2 = 4.26; ///< net; design value
+inline constexpr double free_fall_s = 3.2;                 ///< from backshell separation to powered approach
+inline constexpr double rate_gain_per_s = 1.0;             ///< ours
+
+/// Altitude that free fall and the approach use up by design, from a descent rate at backshell separation.
+double altitude_used_until_constant_velocity_m(double descent_rate_mps);
+
+class ApproachProfile {
+  public:
+    void start(double altitude_m, double descent_rate_mps);
+    double descent_rate_mps(double altitude_m) const;
+    double acceleration_mps2(double altitude_m, double descent_rate_mps) const; ///< up, to command
+    bool done(double altitude_m, double descent_rate_mps) const;
+    double deceleration_mps2() const { return deceleration_mps2_; }
+
+  private:
+    double deceleration_mps2_ = approach_deceleration_mps2;
+};
+
+/// Upward acceleration that holds a descent rate.
+double hold_rate_mps2(double descent_rate_mps, double wanted_mps);
+
+/// Altitude at which constant deceleration must begin at a descent rate.
+double constant_deceleration_altitude_m(double descent_rate_mps);
+
+class DecelerationProfile {
+  public:
+    void start(double altitude_m, double descent_rate_mps);
+    void advance(double dt_s);
+    double descent_rate_mps() const { return rate_mps_; }
+    double acceleration_mps2(double descent_rate_mps) const; ///< up, to command
+    double deceleration_mps2() const { return deceleration_mps2_; }
+
+  private:
+    double rate_mps_ = constant_velocity_mps;
+    double deceleration_mps2_ = constant_deceleration_mps2;
+};
+
+} // namespace aeolis::flight::gnc::powered_descent

@@ -1,0 +1,16 @@
+#pragma once
+
+// Straighten up and fly right: the balance masses go, the angle of attack with them, and bank turns to lift up.
+//
+//   bank(t) = bank at start, brought to nil at 10°/s;  done after 14.00 s
+//
+// In       time since its start [s], bank when it started [rad]         Out   bank to command [rad]
+// Source   [facts] Timeline: lasts 14.00 s; the rate is ours, half of what the thrusters can [facts] Vehicle
+namespace aeolis::flight::gnc::sufr {
+
+inline constexpr double duration_s = 14.0;
+inline constexpr double roll_rate_rps = 0.174533;
+
+double bank_rad(double since_start_s, double bank_at_start_rad);
+
+} // namespace aeolis::flight::gnc::sufr

@@ -1,0 +1,79 @@
+#include "flight/gnc/triggers/triggers.hpp"
+
+#include "flight/gnc/entry/heading_alignment.hpp"
+#include "flight/gnc/powered_descent/vertical_profile.hpp"
+
+#include <algorithm>
+
+namespace aeolis::flight::gnc::triggers {
+
+namespace {
+
+Conditions list(const Condition& a) {
+    Conditions conditions;
+    conditions.push_back(a);
+    return conditions;
+}
+Conditions list(const Condition& a, const Condition& b) {
+    Conditions conditions = list(a);
+    conditions.push_back(b);
+    return conditions;
+}
+Conditions list(const Condition& a, const Condition& b, const Condition& c) {
+    Conditions conditions = list(a, b);
+    conditions.push_back(c);
+    return conditions;
+}
+
+// Descent rate to which the altitude of ground's solution belongs. [facts] Timeline: 79.1 m/s at 1.662 km
+constexpr double backshell_descent_rate_mps = 79.1;
+
+} // namespace
+
+Conditions guidance_start(double filtered_drag_mps2) {
+    return list(at_least(Quantity::drag_mps2, filtered_drag_mps2, guidance_start_drag_mps2));
+}
+
+Conditions heading_alignment(double speed_mps) {
+    return list(at_most(Quantity::speed_mps, speed_mps, heading_alignment_speed_mps));
+}
+
+Conditions sufr_start(double speed_mps, double deceleration_mps2, double parachute_speed_mps) {
+    // Far above the parachute's speed a straight line says nothing; 100 m/s above is well before any lead time. Ours.
+    constexpr double near_mps = 100.0;
+    const double to_parachute_s = (speed_mps - parachute_speed_mps) / std::max(deceleration_mps2, 1.0e-3);
+    return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, sufr_lead_s),
+                at_most(Quantity::speed_mps, speed_mps, parachute_speed_mps + near_mps));
+}
+
+Conditions parachute(double speed_mps, double parachute_speed_mps, std::uint32_t cycles_held) {
+    return list(at_most(Quantity::speed_mps, speed_mps, parachute_speed_mps),
+                at_least(Quantity::cycles_held, cycles_held, parachute_cycles));
+}
+
+Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s) {
+    return list(at_most(Quantity::speed_mps, speed_mps, heatshield_speed_mps),
+                at_least(Quantity::time_since_parachute_s, since_parachute_s, heatshield_delay_s));
+}
+
+double backshell_altitude_needed_m(double backshell_altitude_m, double descent_rate_mps) {
+    return backshell_altitude_m + powered_descent::altitude_used_until_constant_velocity_m(descent_rate_mps) -
+           powered_descent::altitude_used_until_constant_velocity_m(backshell_descent_rate_mps);
+}
+
+Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m) {
+    const double needed_m = backshell_altitude_needed_m(backshell_altitude_m, descent_rate_mps);
+    const double to_backshell_s = (altitude_m - needed_m) / std::max(descent_rate_mps, 1.0);
+    return list(at_most(Quantity::time_to_backshell_s, to_backshell_s, priming_lead_s),
+                at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0));
+}
+
+Conditions backshell(double altitude_m, double descent_rate_mps, double backshell_altitude_m,
+                     std::uint32_t cycles_held) {
+    return list(
+        at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(backshell_altitude_m, descent_rate_mps)),
+        at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
+        at_least(Quantity::cycles_held, cycles_held, backshell_cycles));
+}
+
+} // namespace aeolis::flight::gnc::triggers

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <array>
+
+// The linear algebra of GNC, and the way between it and messages, which hold plain numbers.
+namespace aeolis::flight::gnc {
+
+using Vector3 = Eigen::Vector3d;
+using Matrix3 = Eigen::Matrix3d;
+using Quaternion = Eigen::Quaterniond;
+
+inline Vector3 to_vector(const std::array<double, 3>& v) {
+    return {v[0], v[1], v[2]};
+}
+inline std::array<double, 3> to_array(const Vector3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+inline Quaternion to_quaternion(const std::array<double, 4>& q) {
+    return Quaternion(q[0], q[1], q[2], q[3]).normalized();
+}
+inline std::array<double, 4> to_array(const Quaternion& q) {
+    return {q.w(), q.x(), q.y(), q.z()};
+}
+
+inline constexpr double pi = 3.14159265358979323846;
+inline constexpr double degree = pi / 180.0;
+
+} // namespace aeolis::flight::gnc
