@@ -3,7 +3,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr double bridle_length_m = 7.5;  // [facts]
+constexpr double bridle_tolerance_m = 0.01;  // ours: of the pay-out sensor
 
 void answer(Outbox& out, ReplyKind kind, std::uint8_t id) {
     out.send(ModuleId::edl, ActionReply{kind, id});
@@ -33,11 +33,15 @@ void ImuManager::on(const Tick&, Outbox& out) {
 
 void PyroManager::on(const FirePyro& command, Outbox& out) {
     if (!due_.try_push_back(command.pyro))
-        out.event(evr::PYRO_QUEUE_FULL{.pyro = static_cast<std::uint8_t>(command.pyro)});
+        out.event(evr::PYRO_NOT_FIRED{.device = static_cast<std::uint8_t>(command.pyro)});
 }
 
 void PyroManager::on(const PyroReply& reply, Outbox& out) {
-    if (reply.fired) answer(out, ReplyKind::pyro, static_cast<std::uint8_t>(reply.pyro));
+    const auto device = static_cast<std::uint8_t>(reply.pyro);
+    if (reply.fired)
+        answer(out, ReplyKind::pyro, device);
+    else
+        out.event(evr::PYRO_NOT_FIRED{.device = device});
 }
 
 void PyroManager::on(const Tick&, Outbox& out) {
@@ -61,7 +65,7 @@ void DescentEngines::on(const EngineReply& reply, Outbox& out) {
 }
 
 void DescentEngines::on(const BridleReply& reply, Outbox& out) {
-    if (!payed_out_ && reply.payed_out_m >= bridle_length_m) {
+    if (!payed_out_ && reply.payed_out_m >= ParameterDefaults{}.bridle_length_m - bridle_tolerance_m) {
         payed_out_ = true;
         answer(out, ReplyKind::bridle, 0);
     }
@@ -93,7 +97,7 @@ void Thrusters::on(const Tick&, Outbox& out) {
 
 void PowerManager::on(const SetSwitch& command, Outbox& out) {
     if (!out.bus().switches.try_push_back({command.id, command.on}))
-        out.event(evr::SWITCH_QUEUE_FULL{.switch_number = static_cast<std::uint8_t>(command.id)});
+        out.event(evr::SWITCH_NOT_SET{.device = static_cast<std::uint8_t>(command.id)});
 }
 
 void PowerManager::on(const SwitchReply& reply, Outbox& out) {

@@ -1,6 +1,5 @@
 #include "flight/edl/edl_main.hpp"
 
-#include "flight/edl/gnc_triggers.hpp"
 #include "flight/timeline/actions.hpp"
 
 #include <cmath>
@@ -10,10 +9,9 @@ namespace aeolis::flight {
 namespace {
 
 constexpr double radians_per_degree = std::numbers::pi / 180.0;
-constexpr double late_cruise_before_entry_s = 18000.0;  // ours: pre-EDL ends four hours before entry [facts], plus one
-constexpr double do_edl_margin_s = 1.0;                 // ours: accepted this long before the first timepoint is due
+constexpr ParameterDefaults parameters{};
 
-void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
+void answer(Outbox& out, const CommandTag& tag, std::optional<RefusalReason> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
 
@@ -60,13 +58,18 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
                                           .fired_sclk = firing.fired.seconds,
                                           .verdict = firing.verdict});
         if (firing.verdict == FiringVerdict::timed_out)
-            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
+            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value,
+                                               .waited_s = static_cast<float>(firing.fired - firing.triggered)});
     }
 }
 
 void EdlMain::run_gnc(Sclk now, Outbox& out) {
     gnc_inputs_.now = now;
     gnc_.cycle(gnc_inputs_, configuration_, output_);
+    if (output_.mode != mode_) {
+        mode_ = output_.mode;
+        out.event(evr::GNC_MODE_CHANGED{.gnc_mode = static_cast<GncMode>(mode_)});
+    }
     gnc_inputs_.imu.clear();
     gnc_inputs_.engines.reset();
     gnc_inputs_.bridle.reset();
@@ -77,7 +80,8 @@ void EdlMain::run_gnc(Sclk now, Outbox& out) {
         const auto& p = output_.p_MoB_M_m;
         const double radius_m = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
         out.send(ModuleId::edl_bg,
-                 NavigatedAttitude{output_.q_MB, {p[0] / radius_m, p[1] / radius_m, p[2] / radius_m}});
+                 NavigatedAttitude{output_.q_MB, {p[0] / radius_m, p[1] / radius_m, p[2] / radius_m},
+                                   output_.radar_locked});
     }
 }
 
@@ -88,6 +92,7 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
         explain(trigger, output_, out);
     }
     if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
+    peak_deceleration_.watch(output_, out);
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
@@ -95,7 +100,7 @@ void EdlMain::update_phase(Sclk now, Outbox& out) {
     if (phase == phase_) return;
     phase_ = phase;
     out.send(ModuleId::edl_comm, PhaseChanged{phase});
-    out.event(evr::EDL_PHASE_CHANGED{.phase = phase});
+    out.event(evr::EDL_PHASE_CHANGED{.edl_phase = phase});
 }
 
 // ---- what the device managers send -----------------------------------------------------------------------------
@@ -110,6 +115,7 @@ void EdlMain::on(const EngineReply& reply, Outbox&) {
 
 void EdlMain::on(const BridleReply& reply, Outbox&) {
     gnc_inputs_.bridle = reply;
+    bridle_m_ = reply.payed_out_m;
 }
 
 void EdlMain::on(const CruiseAttitude& attitude, Outbox&) {
@@ -127,39 +133,42 @@ void EdlMain::on(const ActionReply& reply, Outbox&) {
 // ---- commands --------------------------------------------------------------------------------------------------
 
 bool EdlMain::late_cruise(Sclk now) const {
-    return now >= entry() + MaybeOffset{-late_cruise_before_entry_s};
+    return now >= entry() + MaybeOffset{-parameters.late_cruise_before_entry_s};
 }
 
 bool EdlMain::too_late(Sclk now) const {
-    return now >= timeline_.first_desired() + MaybeOffset{-do_edl_margin_s};
+    return now >= timeline_.first_desired() + MaybeOffset{-parameters.do_edl_margin_s};
 }
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than what it knows.
-    if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
+    if (configuration_.enabled) return answer(out, update.tag, RefusalReason::wrong_phase);
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());
     const Sclk entry = Sclk::from_ticks(std::llround(parameters_->entry_sclk * 64.0));
     AEOLIS_CHECK(timeline_.set_anchor_offset(anchor::entry, entry.seconds));
     timeline_.compute_anchors();
     out.record(parameters_held());
+    out.event(evr::EDL_PARAMETERS_ACCEPTED{.solution_id = parameters_->solution_id});
+    out.send(ModuleId::mfsk, ToneRequest{tone::parameters_accepted, out.now()});
     answer(out, update.tag, std::nullopt);
 }
 
 void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
-    std::optional<CommandRefusal> refused;
+    std::optional<RefusalReason> refused;
     if (!parameters_)
-        refused = CommandRefusal::no_parameters;
+        refused = RefusalReason::no_parameters;
     else if (timeline_.begun())
-        refused = CommandRefusal::already_running;
+        refused = RefusalReason::already_running;
     else if (!late_cruise(out.now()))
-        refused = CommandRefusal::too_early;
+        refused = RefusalReason::too_early;
     else if (too_late(out.now()))
-        refused = CommandRefusal::too_late;
-    explain_do_edl(refused, entry(), timeline_.first_desired(), late_cruise_before_entry_s, out);
+        refused = RefusalReason::too_late;
+    explain_do_edl(refused, entry(), timeline_.first_desired(), out);
     if (!refused) {
         timeline_.begin(out.now());
-        out.event(evr::EDL_BEGUN{});
+        out.event(evr::EDL_ENABLED{});
+        out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
     answer(out, command.tag, refused);
 }
@@ -174,7 +183,7 @@ void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
         out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
                                                 .desired_offset_s = arguments.desired_offset_s,
                                                 .minimum_offset_s = arguments.minimum_offset_s});
-    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{RefusalReason::bad_argument});
 }
 
 void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
@@ -183,7 +192,7 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
                           timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
     if (possible)
         out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
-    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{RefusalReason::bad_argument});
 }
 
 }  // namespace aeolis::flight

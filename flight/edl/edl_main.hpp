@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flight/edl/gnc_triggers.hpp"
 #include "flight/edl/phase.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
@@ -43,7 +44,6 @@ class EdlMain {
     void take_triggers(Sclk now, Outbox& out);
     void update_phase(Sclk now, Outbox& out);
     void record_channels(Sclk now, Outbox& out);
-    void record_descent(Outbox& out) const;
     packet::ParametersHeld parameters_held() const;
     MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
     bool late_cruise(Sclk now) const;
@@ -55,7 +55,10 @@ class EdlMain {
     gnc::Configuration configuration_;
     gnc::Output output_;
     DeviceInputs gnc_inputs_;  // what the device managers sent for this cycle
+    double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
+    PeakDeceleration peak_deceleration_;
+    gnc::Mode mode_ = gnc::Mode::off;
     EdlPhase phase_ = EdlPhase::pre_edl;
     std::uint32_t cycle_count_ = 0;
 };

@@ -65,12 +65,13 @@ packet::GncImu imu(const gnc::Output& gnc) {
             .rate_z_dps = f(w[2] * degrees_per_radian)};
 }
 
-packet::GncDescent descent(const gnc::Output& gnc) {
+packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
     const auto& throttle = gnc.engines.throttle;
     double sum = 0.0;
     for (const double one : throttle) sum += one;
     const auto percent = [&](std::size_t engine) { return f(throttle[engine] * parts_in_percent); };
-    return {.thrust_command_N = f(gnc.thrust_command_N),
+    return {.descent_mode = static_cast<GncMode>(gnc.mode),
+            .thrust_command_N = f(gnc.thrust_command_N),
             .throttle_mean_percent = f(sum / static_cast<double>(throttle.size()) * parts_in_percent),
             .throttle_1_percent = percent(0),
             .throttle_2_percent = percent(1),
@@ -82,24 +83,57 @@ packet::GncDescent descent(const gnc::Output& gnc) {
             .throttle_8_percent = percent(7),
             .mass_estimate_kg = f(gnc.mass_kg),
             .propellant_kg = f(gnc.propellant_kg),
-            .descent_mode = static_cast<GncMode>(gnc.mode)};
+            .bridle_m = f(bridle_m)};
 }
 
 /// A load for benchmarks and nothing else: thirty slow waves of known phase, no quantity of the vehicle.
-packet::Wideband wideband(Sclk now);
+packet::Wideband wideband(Sclk now) {
+    const auto wave = [&](int channel) {
+        return f(std::sin(0.1 * channel * std::remainder(now.seconds, 20.0 * std::numbers::pi / channel)));
+    };
+    return {.wideband_01 = wave(1),
+            .wideband_02 = wave(2),
+            .wideband_03 = wave(3),
+            .wideband_04 = wave(4),
+            .wideband_05 = wave(5),
+            .wideband_06 = wave(6),
+            .wideband_07 = wave(7),
+            .wideband_08 = wave(8),
+            .wideband_09 = wave(9),
+            .wideband_10 = wave(10),
+            .wideband_11 = wave(11),
+            .wideband_12 = wave(12),
+            .wideband_13 = wave(13),
+            .wideband_14 = wave(14),
+            .wideband_15 = wave(15),
+            .wideband_16 = wave(16),
+            .wideband_17 = wave(17),
+            .wideband_18 = wave(18),
+            .wideband_19 = wave(19),
+            .wideband_20 = wave(20),
+            .wideband_21 = wave(21),
+            .wideband_22 = wave(22),
+            .wideband_23 = wave(23),
+            .wideband_24 = wave(24),
+            .wideband_25 = wave(25),
+            .wideband_26 = wave(26),
+            .wideband_27 = wave(27),
+            .wideband_28 = wave(28),
+            .wideband_29 = wave(29),
+            .wideband_30 = wave(30)};
+}
 
 }  // namespace
 
 void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (due(now, 1)) {
-        out.record(packet::EdlStatus{
-            .edl_phase = phase_,
-            .edl_enabled = timeline_.begun(),
-            .parameters_received = parameters_.has_value(),
-            .late_cruise = late_cruise(now),
-            .seconds_to_entry_s =
-                entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
-            .edl_cycle_count = cycle_count_});
+        out.record(packet::EdlStatus{.edl_enabled = timeline_.begun(),
+                                     .parameters_received = parameters_.has_value(),
+                                     .late_cruise = late_cruise(now),
+                                     .edl_phase = phase_,
+                                     .edl_cycle_count = cycle_count_,
+                                     .seconds_to_entry_s =
+                                         entry().defined() ? std::optional{*entry().get() - now} : std::nullopt});
         out.record(packet::TimelineStatus{.timeline_version = timeline_version,
                                           .timepoint_index = timeline_.current().value,
                                           .timepoint_state = timeline_.state(),
@@ -117,13 +151,29 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (due(now, in_atmosphere ? 64 : 8)) out.record(navigation(output_));
     if (due(now, in_atmosphere ? 16 : 8)) out.record(imu(output_));
     if (in_atmosphere && phase_ < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
-    if (phase_ >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_));
+    if (phase_ >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_, bridle_m_));
 }
 
 packet::ParametersHeld EdlMain::parameters_held() const {
-    packet::ParametersHeld held;
-    if (parameters_) copy_fields(*parameters_, held);
-    return held;
+    if (!parameters_) return {};
+    const auto& p = *parameters_;
+    return {.solution_id = p.solution_id,
+            .epoch_sclk = p.epoch_sclk,
+            .position_x_m = p.position_x_m,
+            .position_y_m = p.position_y_m,
+            .position_z_m = p.position_z_m,
+            .velocity_x_mps = p.velocity_x_mps,
+            .velocity_y_mps = p.velocity_y_mps,
+            .velocity_z_mps = p.velocity_z_mps,
+            .entry_sclk = p.entry_sclk,
+            .target_latitude_deg = p.target_latitude_deg,
+            .target_longitude_deg = p.target_longitude_deg,
+            .target_radius_m = p.target_radius_m,
+            .parachute_speed_mps = p.parachute_speed_mps,
+            .parachute_altitude_min_m = p.parachute_altitude_min_m,
+            .heatshield_speed_mps = p.heatshield_speed_mps,
+            .backshell_altitude_m = p.backshell_altitude_m,
+            .backshell_speed_mps = p.backshell_speed_mps};
 }
 
 }  // namespace aeolis::flight

@@ -17,8 +17,20 @@ void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 /// The conditions that led to the decision, with their values and bounds.
 void explain(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
 
+/// Says when the largest sensed deceleration of the entry has passed.
+class PeakDeceleration {
+  public:
+    void watch(const gnc::Output& gnc, Outbox& out);
+
+  private:
+    double largest_mps2_ = 0.0;
+    double altitude_m_ = 0.0;
+    double speed_mps_ = 0.0;
+    bool passed_ = false;
+};
+
 /// Why "do edl" was accepted or refused. R23
-void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired,
-                    double late_cruise_before_entry_s, Outbox& out);
+void explain_do_edl(std::optional<RefusalReason> refused, MaybeTime entry, MaybeTime first_desired,
+                    Outbox& out);
 
 }  // namespace aeolis::flight

@@ -23,7 +23,7 @@ constexpr Row mission_plan[] = {
 }  // namespace
 
 bool goes_first(Apid apid) {
-    return apid == evr::NO_OP_EXECUTED::apid || apid == packet::TimepointFired::apid ||
+    return apid == evr::COMMAND_ACCEPTED::apid || apid == packet::TimepointFired::apid ||
            apid == packet::Explanation::apid || apid == packet::ToneSelected::apid ||
            apid == packet::ParametersHeld::apid;
 }

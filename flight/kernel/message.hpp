@@ -96,6 +96,7 @@ struct PayOutBridle {};
 struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> up_M{};
+    bool radar_locked = false;
 };
 
 // ---- commands --------------------------------------------------------------------------------------------------
@@ -126,7 +127,7 @@ struct SetAnchorOffsetCommand {
 };
 struct CommandOutcome {
     CommandTag tag;
-    std::optional<CommandRefusal> refused;  ///< none: accepted and executed
+    std::optional<RefusalReason> refused;  ///< none: accepted and executed
 };
 
 // ---- data ------------------------------------------------------------------------------------------------------

@@ -42,6 +42,7 @@ class Outbox {
     }
 
     Sclk now() const { return now_; }
+    ModuleId from() const { return from_; }
 
     /// The lines to the hardware. Only the module that manages a device writes its part. R5
     DeviceOutputs& bus() { return *bus_; }

@@ -3,18 +3,21 @@
 namespace aeolis::flight {
 namespace {
 
-void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, double priority, double age_s) {
+void explain(Outbox& out, ToneId tone, DecisionVerdict verdict, double priority, double age_s, double age_limit_s) {
     out.record(packet::Explanation{.decision = Decision::tone,
                                    .verdict = verdict,
                                    .subject = tone.value,
                                    .condition_count = 2,
-                                   .condition_1_quantity = Quantity::tone_priority,
-                                   .condition_1_value = priority,
-                                   .condition_1_bound = priority,
-                                   .condition_1_comparison = Comparison::ge,
-                                   .condition_1_holds = true,
-                                   .condition_2_quantity = Quantity::request_age,
-                                   .condition_2_value = age_s});
+                                   .holds_1 = true,
+                                   .holds_2 = age_s <= age_limit_s,
+                                   .condition_1 = Quantity::tone_priority,
+                                   .value_1 = priority,
+                                   .bound_1 = priority,
+                                   .comparison_1 = Comparison::ge,
+                                   .condition_2 = Quantity::tone_age_s,
+                                   .value_2 = age_s,
+                                   .bound_2 = age_limit_s,
+                                   .comparison_2 = Comparison::le});
 }
 
 }  // namespace
@@ -40,7 +43,7 @@ void ToneSelector::on(const ToneRequest& request, Outbox& out) {
 
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
     drop_expired(tick.now, out);
-    if (sending_ && tick.now - sending_->started >= tone_duration_s) {
+    if (sending_ && tick.now - sending_->started >= ParameterDefaults{}.tone_duration_s) {
         sending_.reset();
         out.bus().tone.reset();
     }
@@ -57,7 +60,8 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
                                         .outstanding = static_cast<std::uint8_t>(outstanding_.size())});
         // A choice between several is worth an explanation; a lone request explains itself.
         if (!outstanding_.empty())
-            explain(out, request.tone, ExplanationVerdict::chosen, priority(request.tone), tick.now - request.requested);
+            explain(out, request.tone, DecisionVerdict::chosen, priority(request.tone), tick.now - request.requested,
+                    tones_[request.tone.value].expires_s);
     }
     if (at_resolution(tick.now, 1) == tick.now)
         out.send(ModuleId::edl_comm, ToneStatus{sending_ ? sending_->tone.value : std::uint8_t{0},
@@ -72,7 +76,8 @@ void ToneSelector::drop_expired(Sclk now, Outbox& out) {
 void ToneSelector::drop(std::size_t index, Outbox& out) {
     const ToneRequest request = outstanding_[index];
     outstanding_.erase_at(index);
-    explain(out, request.tone, ExplanationVerdict::dropped, priority(request.tone), out.now() - request.requested);
+    explain(out, request.tone, DecisionVerdict::dropped, priority(request.tone), out.now() - request.requested,
+            tones_[request.tone.value].expires_s);
 }
 
 std::size_t ToneSelector::most_important() const {

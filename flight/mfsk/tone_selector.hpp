@@ -8,8 +8,6 @@
 
 namespace aeolis::flight {
 
-inline constexpr double tone_duration_s = 10.0;  ///< R31: so that ground decodes it surely
-
 /// Chooses the tone that the X-band transmitter sends.
 ///
 /// In      ToneRequest, ClockTick (64 Hz)            Out   the transmitter's tone; ToneSelected; Explanation; ToneStatus

@@ -1,0 +1,188 @@
+#include "flight/edl/gnc_triggers.hpp"
+
+#include <cmath>
+
+namespace aeolis::flight {
+namespace {
+
+constexpr double standard_gravity_mps2 = 9.80665;
+constexpr double peak_is_real_above_mps2 = 3.0 * standard_gravity_mps2;  // ours: far below any guided entry's peak
+constexpr double peak_has_passed_at = 0.95;                             // ours: of the largest, above noise and bumps
+
+float f(double value) {
+    return static_cast<float>(value);
+}
+
+template <typename Evr>
+Evr at_state(const gnc::Output& gnc) {
+    Evr evr;
+    evr.altitude_m = f(gnc.altitude_m);
+    evr.speed_mps = f(gnc.speed_mps);
+    return evr;
+}
+
+void request_tone(Outbox& out, ToneId tone) {
+    out.send(ModuleId::mfsk, ToneRequest{tone, out.now()});
+}
+
+Decision decision_of(gnc::Trigger trigger) {
+    switch (trigger) {
+    case gnc::Trigger::guidance_start: return Decision::guidance_start;
+    case gnc::Trigger::heading_alignment: return Decision::heading_alignment;
+    case gnc::Trigger::sufr_start: return Decision::sufr_start;
+    case gnc::Trigger::parachute: return Decision::parachute;
+    case gnc::Trigger::heatshield: return Decision::heatshield;
+    case gnc::Trigger::radar_lock: return Decision::radar_lock;
+    case gnc::Trigger::engine_priming: return Decision::engine_priming;
+    case gnc::Trigger::backshell: return Decision::backshell;
+    case gnc::Trigger::powered_approach: return Decision::powered_approach;
+    case gnc::Trigger::constant_velocity: return Decision::constant_velocity;
+    case gnc::Trigger::constant_deceleration: return Decision::constant_deceleration;
+    case gnc::Trigger::sky_crane: return Decision::sky_crane;
+    case gnc::Trigger::rover_separation: return Decision::rover_separation;
+    case gnc::Trigger::touchdown: return Decision::touchdown;
+    }
+    return Decision::gnc_mode;
+}
+
+/// An Explanation packet has four places for conditions.
+packet::Explanation explanation(Decision decision, DecisionVerdict verdict, std::uint16_t subject,
+                                std::span<const gnc::Condition> conditions) {
+    packet::Explanation e{.decision = decision,
+                          .verdict = verdict,
+                          .subject = subject,
+                          .condition_count = static_cast<std::uint8_t>(conditions.size())};
+    const auto put = [&](std::size_t i, bool& holds, Quantity& quantity, double& value, double& bound,
+                         Comparison& comparison) {
+        if (i >= conditions.size()) return;
+        const gnc::Condition& c = conditions[i];
+        holds = c.holds;
+        quantity = static_cast<Quantity>(c.quantity);
+        value = c.value;
+        bound = c.bound;
+        comparison = static_cast<Comparison>(c.comparison);
+    };
+    put(0, e.holds_1, e.condition_1, e.value_1, e.bound_1, e.comparison_1);
+    put(1, e.holds_2, e.condition_2, e.value_2, e.bound_2, e.comparison_2);
+    put(2, e.holds_3, e.condition_3, e.value_3, e.bound_3, e.comparison_3);
+    put(3, e.holds_4, e.condition_4, e.value_4, e.bound_4, e.comparison_4);
+    return e;
+}
+
+}  // namespace
+
+std::optional<AnchorId> anchor_of(gnc::Trigger trigger) {
+    switch (trigger) {
+    case gnc::Trigger::guidance_start: return anchor::guidance_start;
+    case gnc::Trigger::sufr_start: return anchor::sufr_start;
+    case gnc::Trigger::parachute: return anchor::parachute;
+    case gnc::Trigger::heatshield: return anchor::heatshield;
+    case gnc::Trigger::engine_priming: return anchor::priming;
+    case gnc::Trigger::backshell: return anchor::backshell;
+    case gnc::Trigger::powered_approach: return anchor::powered_approach;
+    case gnc::Trigger::sky_crane: return anchor::sky_crane;
+    case gnc::Trigger::rover_separation: return anchor::rover_separation;
+    case gnc::Trigger::touchdown: return anchor::touchdown;
+    case gnc::Trigger::heading_alignment:
+    case gnc::Trigger::radar_lock:
+    case gnc::Trigger::constant_velocity:
+    case gnc::Trigger::constant_deceleration: return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
+    switch (trigger) {
+    case gnc::Trigger::guidance_start: {
+        auto evr = at_state<evr::GUIDANCE_START>(gnc);
+        evr.drag_mps2 = f(gnc.drag_mps2);
+        return out.event(evr);
+    }
+    case gnc::Trigger::heading_alignment:
+        request_tone(out, tone::heading_alignment);
+        return out.event(at_state<evr::HEADING_ALIGNMENT>(gnc));
+    case gnc::Trigger::sufr_start: return out.event(at_state<evr::SUFR_START>(gnc));
+    case gnc::Trigger::parachute: {
+        auto evr = at_state<evr::PARACHUTE_DEPLOY>(gnc);
+        evr.mach = f(gnc.mach);
+        evr.dynamic_pressure_Pa = f(gnc.dynamic_pressure_Pa);
+        return out.event(evr);
+    }
+    case gnc::Trigger::heatshield: return out.event(at_state<evr::HEATSHIELD_SEPARATION>(gnc));
+    case gnc::Trigger::radar_lock:
+        request_tone(out, tone::radar_lock);
+        return out.event(evr::RADAR_LOCK{.radar_altitude_m = f(gnc.altitude_m), .beams = gnc.radar_beams});
+    case gnc::Trigger::engine_priming: return out.event(at_state<evr::ENGINE_PRIMING>(gnc));
+    case gnc::Trigger::backshell: return out.event(at_state<evr::BACKSHELL_SEPARATION>(gnc));
+    case gnc::Trigger::powered_approach: return out.event(at_state<evr::POWERED_APPROACH_START>(gnc));
+    case gnc::Trigger::constant_velocity:
+        request_tone(out, tone::constant_velocity);
+        return out.event(at_state<evr::CONSTANT_VELOCITY_START>(gnc));
+    case gnc::Trigger::constant_deceleration:
+        request_tone(out, tone::constant_deceleration);
+        return out.event(at_state<evr::CONSTANT_DECELERATION_START>(gnc));
+    case gnc::Trigger::sky_crane: {
+        auto evr = at_state<evr::SKY_CRANE_START>(gnc);
+        evr.propellant_kg = f(gnc.propellant_kg);
+        return out.event(evr);
+    }
+    case gnc::Trigger::rover_separation: return out.event(at_state<evr::ROVER_SEPARATION>(gnc));
+    case gnc::Trigger::touchdown:
+        return out.event(evr::TOUCHDOWN{.descent_rate_mps = f(gnc.descent_rate_mps),
+                                        .horizontal_speed_mps = f(gnc.horizontal_speed_mps),
+                                        .propellant_kg = f(gnc.propellant_kg)});
+    }
+}
+
+void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
+    auto evr = at_state<evr::BANK_REVERSAL>(gnc);
+    evr.number = gnc.bank_reversal;
+    evr.bank_deg = f(gnc.bank_command_deg);
+    out.event(evr);
+    request_tone(out, tone::bank_reversal);
+}
+
+void explain(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
+    out.record(explanation(decision_of(trigger), DecisionVerdict::fired, 0, gnc.conditions.span()));
+}
+
+void explain_do_edl(std::optional<RefusalReason> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {
+    constexpr ParameterDefaults parameters{};
+    const double now_s = out.now().seconds;
+    FixedVector<gnc::Condition, 4> conditions;
+    const auto add = [&](Quantity quantity, double value, gnc::Condition::Comparison comparison, double bound, bool holds) {
+        conditions.push_back({static_cast<std::uint16_t>(quantity), value, bound, comparison, holds});
+    };
+    const bool received = refused != RefusalReason::no_parameters;
+    add(Quantity::parameters_received, received, gnc::Condition::Comparison::eq, 1, received);
+    if (entry.defined()) {
+        const double to_entry_s = entry.get()->seconds - now_s;
+        add(Quantity::seconds_to_entry_s, to_entry_s, gnc::Condition::Comparison::le,
+            parameters.late_cruise_before_entry_s, to_entry_s <= parameters.late_cruise_before_entry_s);
+    }
+    if (first_desired.defined()) {
+        const double last_s = first_desired.get()->seconds - parameters.do_edl_margin_s;
+        add(Quantity::sclk, now_s, gnc::Condition::Comparison::lt, last_s, now_s < last_s);
+    }
+    out.record(explanation(Decision::do_edl, refused ? DecisionVerdict::refused : DecisionVerdict::fired, 0,
+                           conditions.span()));
+}
+
+void PeakDeceleration::watch(const gnc::Output& gnc, Outbox& out) {
+    if (passed_ || gnc.mode < gnc::Mode::range_control || gnc.mode > gnc::Mode::wait_for_parachute) return;
+    const auto& a = gnc.acceleration_B_mps2;
+    const double sensed_mps2 = std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    if (sensed_mps2 > largest_mps2_) {
+        largest_mps2_ = sensed_mps2;
+        altitude_m_ = gnc.altitude_m;
+        speed_mps_ = gnc.speed_mps;
+    } else if (largest_mps2_ > peak_is_real_above_mps2 && sensed_mps2 < peak_has_passed_at * largest_mps2_) {
+        passed_ = true;
+        out.event(evr::PEAK_DECELERATION{.deceleration_g = f(largest_mps2_ / standard_gravity_mps2),
+                                         .altitude_m = f(altitude_m_),
+                                         .speed_mps = f(speed_mps_)});
+        request_tone(out, tone::peak_deceleration);
+    }
+}
+
+}  // namespace aeolis::flight
