@@ -25,8 +25,7 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out) {
         std::construct_at(state_.get(), load, in.now);
         state_->resets = resets;
         state_->outbox.begin(ModuleId::sync, in.now, out);
-        state_->outbox.event(evr::CHECK_FAILED{.source_line = static_cast<std::uint16_t>(bug.line())});
-        state_->outbox.event(evr::COMPUTER_STARTED{.reset_count = static_cast<std::uint8_t>(resets)});
+        state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = resets});
         for (const Envelope& envelope : state_->outbox.sent()) state_->next_cycle.push_back(envelope);
     }
 }

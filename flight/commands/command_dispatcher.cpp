@@ -7,7 +7,7 @@
 namespace aeolis::flight {
 namespace {
 
-void refuse(Outbox& out, CommandTag tag, RefusalReason reason) {
+void refuse(Outbox& out, CommandTag tag, CommandRefusal reason) {
     out.event(evr::COMMAND_REFUSED{.opcode = tag.opcode.value, .count = tag.count, .reason = reason});
     out.send(ModuleId::mfsk, ToneRequest{tone::command_refused, out.now()});
 }
@@ -15,9 +15,9 @@ void refuse(Outbox& out, CommandTag tag, RefusalReason reason) {
 /// Arguments to the owner, or the reason why not.
 template <typename Command, typename Route>
 void route(Outbox& out, CommandTag tag, std::span<const std::uint8_t> arguments, const Route& to_owner) {
-    if (arguments.size() != Command::argument_octets) return refuse(out, tag, RefusalReason::bad_length);
+    if (arguments.size() != Command::argument_octets) return refuse(out, tag, CommandRefusal::bad_length);
     const auto command = Command::decode(arguments);
-    if (!command) return refuse(out, tag, RefusalReason::bad_argument);
+    if (!command) return refuse(out, tag, CommandRefusal::bad_argument);
     to_owner(*command);
 }
 
@@ -28,7 +28,7 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
                             ? read_tc_packet(std::span{uplink.octets}.first(uplink.size))
                             : std::optional<TcPacket>{};
     if (!packet) {
-        out.event(evr::UPLINK_PACKET_BAD{.octets = uplink.size});
+        out.event(evr::UPLINK_UNREADABLE{.size_octets = uplink.size, .refused = ++refused_});
         return;
     }
     const CommandTag tag{packet->opcode, packet->primary.count};
@@ -52,7 +52,7 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
         return route<command::EDL_SET_ANCHOR_OFFSET>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::edl, SetAnchorOffsetCommand{tag, command});
         });
-    default: return refuse(out, tag, RefusalReason::unknown_opcode);
+    default: return refuse(out, tag, CommandRefusal::unknown_opcode);
     }
 }
 

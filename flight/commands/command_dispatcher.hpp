@@ -13,6 +13,9 @@ class CommandDispatcher {
   public:
     void on(const UplinkReceived& uplink, Outbox& out);
     void on(const CommandOutcome& outcome, Outbox& out);
+
+  private:
+    std::uint16_t refused_ = 0;
 };
 
 }  // namespace aeolis::flight

@@ -33,7 +33,7 @@ void ImuManager::on(const Tick&, Outbox& out) {
 
 void PyroManager::on(const FirePyro& command, Outbox& out) {
     if (!due_.try_push_back(command.pyro))
-        out.event(evr::PYRO_NOT_FIRED{.device = static_cast<std::uint8_t>(command.pyro)});
+        out.event(evr::PYRO_QUEUE_FULL{.pyro = static_cast<std::uint8_t>(command.pyro)});
 }
 
 void PyroManager::on(const PyroReply& reply, Outbox& out) {
@@ -41,7 +41,7 @@ void PyroManager::on(const PyroReply& reply, Outbox& out) {
     if (reply.fired)
         answer(out, ReplyKind::pyro, device);
     else
-        out.event(evr::PYRO_NOT_FIRED{.device = device});
+        out.event(evr::PYRO_NOT_FIRED{.pyro = device});
 }
 
 void PyroManager::on(const Tick&, Outbox& out) {
@@ -97,7 +97,7 @@ void Thrusters::on(const Tick&, Outbox& out) {
 
 void PowerManager::on(const SetSwitch& command, Outbox& out) {
     if (!out.bus().switches.try_push_back({command.id, command.on}))
-        out.event(evr::SWITCH_NOT_SET{.device = static_cast<std::uint8_t>(command.id)});
+        out.event(evr::SWITCH_QUEUE_FULL{.switch_number = static_cast<std::uint8_t>(command.id)});
 }
 
 void PowerManager::on(const SwitchReply& reply, Outbox& out) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double radians_per_degree = std::numbers::pi / 180.0;
 constexpr ParameterDefaults parameters{};
 
-void answer(Outbox& out, const CommandTag& tag, std::optional<RefusalReason> refused) {
+void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
 
@@ -58,8 +58,7 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
                                           .fired_sclk = firing.fired.seconds,
                                           .verdict = firing.verdict});
         if (firing.verdict == FiringVerdict::timed_out)
-            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value,
-                                               .waited_s = static_cast<float>(firing.fired - firing.triggered)});
+            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
     }
 }
 
@@ -100,7 +99,7 @@ void EdlMain::update_phase(Sclk now, Outbox& out) {
     if (phase == phase_) return;
     phase_ = phase;
     out.send(ModuleId::edl_comm, PhaseChanged{phase});
-    out.event(evr::EDL_PHASE_CHANGED{.edl_phase = phase});
+    out.event(evr::EDL_PHASE_CHANGED{.phase = phase});
 }
 
 // ---- what the device managers send -----------------------------------------------------------------------------
@@ -142,7 +141,7 @@ bool EdlMain::too_late(Sclk now) const {
 
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than what it knows.
-    if (configuration_.enabled) return answer(out, update.tag, RefusalReason::wrong_phase);
+    if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());
     const Sclk entry = Sclk::from_ticks(std::llround(parameters_->entry_sclk * 64.0));
@@ -155,19 +154,19 @@ void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
 }
 
 void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
-    std::optional<RefusalReason> refused;
+    std::optional<CommandRefusal> refused;
     if (!parameters_)
-        refused = RefusalReason::no_parameters;
+        refused = CommandRefusal::no_parameters;
     else if (timeline_.begun())
-        refused = RefusalReason::already_running;
+        refused = CommandRefusal::already_running;
     else if (!late_cruise(out.now()))
-        refused = RefusalReason::too_early;
+        refused = CommandRefusal::too_early;
     else if (too_late(out.now()))
-        refused = RefusalReason::too_late;
+        refused = CommandRefusal::too_late;
     explain_do_edl(refused, entry(), timeline_.first_desired(), out);
     if (!refused) {
         timeline_.begin(out.now());
-        out.event(evr::EDL_ENABLED{});
+        out.event(evr::EDL_BEGUN{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
     answer(out, command.tag, refused);
@@ -183,7 +182,7 @@ void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
         out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
                                                 .desired_offset_s = arguments.desired_offset_s,
                                                 .minimum_offset_s = arguments.minimum_offset_s});
-    answer(out, command.tag, possible ? std::nullopt : std::optional{RefusalReason::bad_argument});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
 }
 
 void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
@@ -192,7 +191,7 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
                           timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
     if (possible)
         out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
-    answer(out, command.tag, possible ? std::nullopt : std::optional{RefusalReason::bad_argument});
+    answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
 }
 
 }  // namespace aeolis::flight

@@ -70,8 +70,7 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
     double sum = 0.0;
     for (const double one : throttle) sum += one;
     const auto percent = [&](std::size_t engine) { return f(throttle[engine] * parts_in_percent); };
-    return {.descent_mode = static_cast<GncMode>(gnc.mode),
-            .thrust_command_N = f(gnc.thrust_command_N),
+    return {.thrust_command_N = f(gnc.thrust_command_N),
             .throttle_mean_percent = f(sum / static_cast<double>(throttle.size()) * parts_in_percent),
             .throttle_1_percent = percent(0),
             .throttle_2_percent = percent(1),
@@ -83,6 +82,7 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .throttle_8_percent = percent(7),
             .mass_estimate_kg = f(gnc.mass_kg),
             .propellant_kg = f(gnc.propellant_kg),
+            .descent_mode = static_cast<GncMode>(gnc.mode),
             .bridle_m = f(bridle_m)};
 }
 
@@ -127,13 +127,13 @@ packet::Wideband wideband(Sclk now) {
 
 void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (due(now, 1)) {
-        out.record(packet::EdlStatus{.edl_enabled = timeline_.begun(),
+        out.record(packet::EdlStatus{.edl_phase = phase_,
+                                     .edl_enabled = timeline_.begun(),
                                      .parameters_received = parameters_.has_value(),
                                      .late_cruise = late_cruise(now),
-                                     .edl_phase = phase_,
-                                     .edl_cycle_count = cycle_count_,
                                      .seconds_to_entry_s =
-                                         entry().defined() ? std::optional{*entry().get() - now} : std::nullopt});
+                                         entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
+                                     .edl_cycle_count = cycle_count_});
         out.record(packet::TimelineStatus{.timeline_version = timeline_version,
                                           .timepoint_index = timeline_.current().value,
                                           .timepoint_state = timeline_.state(),

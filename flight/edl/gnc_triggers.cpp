@@ -46,7 +46,7 @@ Decision decision_of(gnc::Trigger trigger) {
 }
 
 /// An Explanation packet has four places for conditions.
-packet::Explanation explanation(Decision decision, DecisionVerdict verdict, std::uint16_t subject,
+packet::Explanation explanation(Decision decision, ExplanationVerdict verdict, std::uint16_t subject,
                                 std::span<const gnc::Condition> conditions) {
     packet::Explanation e{.decision = decision,
                           .verdict = verdict,
@@ -143,28 +143,28 @@ void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
 }
 
 void explain(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
-    out.record(explanation(decision_of(trigger), DecisionVerdict::fired, 0, gnc.conditions.span()));
+    out.record(explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span()));
 }
 
-void explain_do_edl(std::optional<RefusalReason> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {
+void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {
     constexpr ParameterDefaults parameters{};
     const double now_s = out.now().seconds;
     FixedVector<gnc::Condition, 4> conditions;
     const auto add = [&](Quantity quantity, double value, gnc::Condition::Comparison comparison, double bound, bool holds) {
         conditions.push_back({static_cast<std::uint16_t>(quantity), value, bound, comparison, holds});
     };
-    const bool received = refused != RefusalReason::no_parameters;
+    const bool received = refused != CommandRefusal::no_parameters;
     add(Quantity::parameters_received, received, gnc::Condition::Comparison::eq, 1, received);
     if (entry.defined()) {
         const double to_entry_s = entry.get()->seconds - now_s;
-        add(Quantity::seconds_to_entry_s, to_entry_s, gnc::Condition::Comparison::le,
+        add(Quantity::time_to_entry_s, to_entry_s, gnc::Condition::Comparison::le,
             parameters.late_cruise_before_entry_s, to_entry_s <= parameters.late_cruise_before_entry_s);
     }
     if (first_desired.defined()) {
         const double last_s = first_desired.get()->seconds - parameters.do_edl_margin_s;
-        add(Quantity::sclk, now_s, gnc::Condition::Comparison::lt, last_s, now_s < last_s);
+        add(Quantity::clock_sclk, now_s, gnc::Condition::Comparison::lt, last_s, now_s < last_s);
     }
-    out.record(explanation(Decision::do_edl, refused ? DecisionVerdict::refused : DecisionVerdict::fired, 0,
+    out.record(explanation(Decision::do_edl, refused ? ExplanationVerdict::refused : ExplanationVerdict::fired, 0,
                            conditions.span()));
 }
 

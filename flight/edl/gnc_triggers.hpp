@@ -30,7 +30,7 @@ class PeakDeceleration {
 };
 
 /// Why "do edl" was accepted or refused. R23
-void explain_do_edl(std::optional<RefusalReason> refused, MaybeTime entry, MaybeTime first_desired,
+void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired,
                     Outbox& out);
 
 }  // namespace aeolis::flight

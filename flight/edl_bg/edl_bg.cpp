@@ -38,7 +38,7 @@ void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
     if (possible(command.arguments, out.now()))
         out.send(ModuleId::edl, ParametersUpdate{command.tag, command.arguments});
     else
-        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, RefusalReason::bad_argument});
+        out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::bad_argument});
 }
 
 void EdlBg::on(const ClockTick& tick, Outbox& out) {
@@ -47,12 +47,13 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
     if (!solution) return;
     ++solutions_;
     out.send(ModuleId::edl, *solution);
-    out.record(packet::GncRadar{.radar_locked = attitude_->radar_locked,
-                                .radar_altitude_m = static_cast<float>(solution->altitude_m),
+    out.record(packet::GncRadar{.radar_altitude_m = static_cast<float>(solution->altitude_m),
                                 .radar_velocity_x_mps = static_cast<float>(solution->v_MB_M_mps[0]),
                                 .radar_velocity_y_mps = static_cast<float>(solution->v_MB_M_mps[1]),
                                 .radar_velocity_z_mps = static_cast<float>(solution->v_MB_M_mps[2]),
-                                .radar_solutions = solutions_});
+                                .radar_solutions = solutions_,
+                                .radar_beams = solution->beams,
+                                .radar_locked = attitude_->radar_locked});
 }
 
 }  // namespace aeolis::flight

@@ -26,7 +26,7 @@ bool EdlComm::append_to_recording(Apid apid, const Packet& packet, Outbox& out) 
     if (nvm_.used_octets + nvm.size() + packet.size + kept_free_octets > nvm_.capacity_octets ||
         nvm.size() + packet.size > nvm.capacity()) {
         ++unrecorded_packets_;
-        if (!nvm_full_reported_) out.event(evr::NVM_FULL{.lost = unrecorded_packets_});
+        if (!nvm_full_reported_) out.event(evr::NVM_FULL{.used_octets = nvm_.used_octets});
         nvm_full_reported_ = true;
         return false;
     }

@@ -64,8 +64,8 @@ void Executive::handle(Module& module, const Message& message) {
             } else {
                 // A module has a handler for any message at any time: this is the handler of those it does not know. R4
                 ++state_.unexpected_messages;
-                state_.outbox.event(evr::UNEXPECTED_MESSAGE{.task = static_cast<std::uint8_t>(state_.outbox.from()),
-                                                           .message = static_cast<std::uint8_t>(message.index())});
+                state_.outbox.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(state_.outbox.from()),
+                                                           .message_type = static_cast<std::uint8_t>(message.index())});
             }
         },
         message);

@@ -127,7 +127,7 @@ struct SetAnchorOffsetCommand {
 };
 struct CommandOutcome {
     CommandTag tag;
-    std::optional<RefusalReason> refused;  ///< none: accepted and executed
+    std::optional<CommandRefusal> refused;  ///< none: accepted and executed
 };
 
 // ---- data ------------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ void Sync::on(const ClockTick& tick, Outbox& out) {
                                       .unexpected_messages = unexpected_messages_});
     if (running_ != idle) {
         ++overruns_;
-        out.event(evr::CYCLE_OVERRUN{.task = static_cast<std::uint8_t>(order[running_])});
+        out.event(evr::CYCLE_OVERRUN{.overruns = static_cast<std::uint32_t>(overruns_)});
         return;
     }
     now_ = tick.now;

@@ -3,21 +3,21 @@
 namespace aeolis::flight {
 namespace {
 
-void explain(Outbox& out, ToneId tone, DecisionVerdict verdict, double priority, double age_s, double age_limit_s) {
+void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, double priority, double age_s, double age_limit_s) {
     out.record(packet::Explanation{.decision = Decision::tone,
                                    .verdict = verdict,
                                    .subject = tone.value,
                                    .condition_count = 2,
-                                   .holds_1 = true,
-                                   .holds_2 = age_s <= age_limit_s,
                                    .condition_1 = Quantity::tone_priority,
                                    .value_1 = priority,
                                    .bound_1 = priority,
                                    .comparison_1 = Comparison::ge,
-                                   .condition_2 = Quantity::tone_age_s,
+                                   .holds_1 = true,
+                                   .condition_2 = Quantity::request_age_s,
                                    .value_2 = age_s,
                                    .bound_2 = age_limit_s,
-                                   .comparison_2 = Comparison::le});
+                                   .comparison_2 = Comparison::le,
+                                   .holds_2 = age_s <= age_limit_s});
 }
 
 }  // namespace
@@ -60,7 +60,7 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
                                         .outstanding = static_cast<std::uint8_t>(outstanding_.size())});
         // A choice between several is worth an explanation; a lone request explains itself.
         if (!outstanding_.empty())
-            explain(out, request.tone, DecisionVerdict::chosen, priority(request.tone), tick.now - request.requested,
+            explain(out, request.tone, ExplanationVerdict::chosen, priority(request.tone), tick.now - request.requested,
                     tones_[request.tone.value].expires_s);
     }
     if (at_resolution(tick.now, 1) == tick.now)
@@ -76,7 +76,7 @@ void ToneSelector::drop_expired(Sclk now, Outbox& out) {
 void ToneSelector::drop(std::size_t index, Outbox& out) {
     const ToneRequest request = outstanding_[index];
     outstanding_.erase_at(index);
-    explain(out, request.tone, DecisionVerdict::dropped, priority(request.tone), out.now() - request.requested,
+    explain(out, request.tone, ExplanationVerdict::dropped, priority(request.tone), out.now() - request.requested,
             tones_[request.tone.value].expires_s);
 }
 
