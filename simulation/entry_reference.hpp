@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flight/load.hpp"
+#include "simulation/scenario.hpp"
+
+// The reference that entry guidance follows: one undisturbed flight of the scenario's nominal entry in the simulation's
+// own dynamics, under a bank profile chosen so that it ends at the target, and how range depends on departures from it.
+//
+// Reference bank (ours, shaped as [od137] flew): 77° down to 5300 m/s, then in a straight line to a bank that is held
+// from 4400 to 1100 m/s, then lift up. The held bank is found by the secant method on range. Only the upright part of
+// lift is flown: what points sideways is taken to cancel between reversals.
+//
+// Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
+// vertical lift-to-drag, range to go R = ∫ G dV to the end of the reference:
+//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        both nil at the end
+//     ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
+// Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
+namespace aeolis::simulation {
+
+/// Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. About 15 ms.
+/// A target out of reach gives the reference of the bank that comes nearest.
+flight::EntryReference make_entry_reference(const Scenario& scenario);
+
+/// The reference's bank [rad] at a velocity, `held_rad` being what was found. For tests and reports.
+double reference_bank_rad(double velocity_mps, double held_rad);
+
+} // namespace aeolis::simulation
