@@ -2,7 +2,7 @@
 
 #include "common/ids.hpp"
 #include "common/time.hpp"
-#include "telemetry/text.hpp"
+#include "telemetry/explanation.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <cstdint>

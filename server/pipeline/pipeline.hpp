@@ -64,7 +64,7 @@ class Pipeline {
 
     void on_publish(Publish publish);
     void on_decoded(Observer observer);
-    /// Whether PublishedBatch::items are built: only while someone follows. On from the start.
+    /// Whether PublishedBatch::items are built: only needed while someone follows. On at the start.
     void want_items(bool wanted);
 
     /// A new run, durable when it returns. One at a time: the last one must have been finished or abandoned.
@@ -82,15 +82,19 @@ class Pipeline {
 
     /// Commits when due; `now` starts the interval of the next. Call it at least every commit_interval in real time.
     Result<void> commit_if_due(std::chrono::steady_clock::time_point now);
+    /// Commits only when commit_items wait: for a run that nobody watches, as fast as it goes.
+    Result<void> commit_if_full();
     /// Commits what waits, at once, and publishes it.
     Result<void> commit();
     /// Seals open segments, commits and marks the run finished. May be called again after an error.
     Result<void> finish(const archive::RunEnd& end);
+    /// Gives up the run and what waits of it: in the archive it stays `running`, and is `interrupted` at the next open.
+    void abandon();
 
     std::optional<RunId> run() const;
     Sequence last_durable() const;
     std::size_t pending_items() const;
-    const archive::RecordingTotals& totals() const;
+    archive::RecordingTotals totals() const;
     /// In real time only, by ChannelId; none: never received.
     const std::vector<std::optional<LatestValue>>& latest() const;
 

@@ -1,0 +1,208 @@
+#include "server/archive/archive.hpp"
+
+#include "server/archive/row_writer.hpp"
+#include "server/archive/schema.hpp"
+#include "server/archive/sqlite.hpp"
+#include "server/archive/writer_lock.hpp"
+
+namespace aeolis::archive {
+
+namespace {
+
+// The WAL is folded into the file every 4000 pages (16 MB): fewer, longer writes than SQLite's default of 1000; and
+// it is cut back to that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
+const char* const writer_pragmas = "PRAGMA journal_mode = WAL;"
+                                   "PRAGMA synchronous = FULL;"
+                                   "PRAGMA wal_autocheckpoint = 4000;"
+                                   "PRAGMA journal_size_limit = 16384000;"
+                                   "PRAGMA cache_size = -16000;";
+
+std::int64_t number(std::uint64_t value) {
+    return static_cast<std::int64_t>(value);
+}
+
+} // namespace
+
+struct Archive::State {
+    State(std::filesystem::path file_in, WriterLock lock_in, sqlite::Database database_in)
+        : file(std::move(file_in)), lock(std::move(lock_in)), database(std::move(database_in)) {}
+
+    Result<void> mark_interrupted();
+    Result<void> add_dictionary(const dictionary::Dictionary& dictionary);
+    Result<RunId> add_run(const RunStart& start, const dictionary::Dictionary& dictionary);
+    Result<void> end_run(RunId run, const RunEnd& end, Sequence last_seq);
+
+    std::filesystem::path file;
+    WriterLock lock; // released last
+    sqlite::Database database;
+    RowWriter rows;
+    sqlite::Statement last_key;
+    std::vector<RunId> interrupted;
+};
+
+Archive::Archive(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Archive::Archive(Archive&&) noexcept = default;
+Archive& Archive::operator=(Archive&&) noexcept = default;
+Archive::~Archive() = default;
+
+const std::vector<RunId>& Archive::interrupted() const {
+    return state_->interrupted;
+}
+const std::filesystem::path& Archive::file() const {
+    return state_->file;
+}
+
+Result<Archive> Archive::open(const std::filesystem::path& file) {
+    if (std::error_code ignored; std::filesystem::is_directory(file, ignored))
+        return Error{file.string() + " is a directory, not an Aeolis archive"};
+    auto lock = WriterLock::take(file);
+    if (!lock) return lock.error();
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+    if (!database) return database.error();
+    auto state = std::make_unique<State>(file, std::move(lock).value(), std::move(database).value());
+    if (auto done = prepare_for_writing(state->database); !done) return done.error();
+    if (auto done = state->database.execute(writer_pragmas); !done) return done.error();
+    auto rows = RowWriter::open(state->database);
+    if (!rows) return rows.error();
+    state->rows = std::move(rows).value();
+    auto last_key = state->database.prepare(last_key_sql);
+    if (!last_key) return last_key.error();
+    state->last_key = std::move(last_key).value();
+    if (auto done = state->mark_interrupted(); !done) return done.error();
+    return Archive(std::move(state));
+}
+
+Result<void> Archive::State::mark_interrupted() {
+    auto cut_off = database.prepare("SELECT run FROM runs WHERE state = 'running' ORDER BY run");
+    if (!cut_off) return cut_off.error();
+    for (;;) {
+        auto row = cut_off->step();
+        if (!row) return row.error();
+        if (!*row) break;
+        interrupted.push_back({static_cast<std::uint32_t>(cut_off->integer(0))});
+    }
+    if (interrupted.empty()) return {};
+    auto transaction = sqlite::Transaction::begin_write(database);
+    if (!transaction) return transaction.error();
+    auto mark = database.prepare("UPDATE runs SET state = 'interrupted', last_seq = ?2 WHERE run = ?1");
+    if (!mark) return mark.error();
+    for (const RunId run : interrupted) {
+        last_key.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+        auto row = last_key.step();
+        if (!row) return row.error();
+        const Sequence last = last_key.is_null(0) ? 0 : sequence_of(last_key.integer(0));
+        last_key.reset();
+        mark->bind(1, std::int64_t{run.value}).bind(2, number(last));
+        if (auto done = mark->run(); !done) return done;
+    }
+    return transaction->commit();
+}
+
+Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictionary& dictionary) {
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    if (auto done = state_->add_dictionary(dictionary); !done) return done.error();
+    auto run = state_->add_run(start, dictionary);
+    if (!run) return run.error();
+    if (auto done = transaction->commit(); !done) return done.error();
+    return run;
+}
+
+Result<void> Archive::State::add_dictionary(const dictionary::Dictionary& dictionary) {
+    const std::int64_t id = dictionary.id;
+    auto known =
+        database.integer_of(("SELECT count(*) FROM dictionaries WHERE dictionary = " + std::to_string(id)).c_str());
+    if (!known) return known.error();
+    if (*known != 0) return {};
+    auto whole = database.prepare("INSERT INTO dictionaries VALUES (?,?,?)");
+    auto channel_row = database.prepare("INSERT INTO dictionary_channels VALUES (?,?,?,?,?,?)");
+    auto packet_row = database.prepare("INSERT INTO dictionary_packets VALUES (?,?,?,?)");
+    for (const auto* statement : {&whole, &channel_row, &packet_row})
+        if (!*statement) return statement->error();
+    whole->bind(1, id).bind(2, std::string_view(dictionary.mission)).bind(3, std::int64_t{dictionary.timeline_version});
+    if (auto done = whole->run(); !done) return done;
+    for (const auto& channel : dictionary.channels) {
+        channel_row->bind(1, id)
+            .bind(2, std::int64_t{channel.id.value})
+            .bind(3, std::string_view(channel.name))
+            .bind(4, std::string_view(channel.alias))
+            .bind(5, std::string_view(channel.type.unit))
+            .bind(6, std::string_view(channel.text));
+        if (auto done = channel_row->run(); !done) return done;
+    }
+    for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
+        const auto& packet = dictionary.packets[i];
+        packet_row->bind(1, id)
+            .bind(2, number(i))
+            .bind(3, std::string_view(packet.name))
+            .bind(4, std::int64_t{packet.apid.value});
+        if (auto done = packet_row->run(); !done) return done;
+    }
+    return {};
+}
+
+Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::Dictionary& dictionary) {
+    auto next = database.integer_of("SELECT coalesce(max(run), 0) + 1 FROM runs");
+    if (!next) return next.error();
+    const RunId run{static_cast<std::uint32_t>(*next)};
+    auto row = database.prepare(
+        "INSERT INTO runs (run, scenario, title, venue, seed, case_number, pace, state, outcome, started, start_sclk,"
+        " entry_sclk, correlation_sclk, correlation_scet_us, light_time_s, tone_model, dictionary, scenario_text)"
+        " VALUES (?,?,?,?,?,?,?,'running','running',?,?,?,?,?,?,?,?,?)");
+    if (!row) return row.error();
+    row->bind(1, *next)
+        .bind(2, std::string_view(start.scenario))
+        .bind(3, std::string_view(start.title))
+        .bind(4, std::string_view(start.venue))
+        .bind(5, number(start.seed))
+        .bind(6, number(start.case_number))
+        .bind(7, start.pace)
+        .bind(8, std::string_view(start.started))
+        .bind(9, start.start.seconds)
+        .bind(10, start.entry.seconds)
+        .bind(11, start.correlation.sclk.seconds)
+        .bind(12, start.correlation.scet.microseconds)
+        .bind(13, start.light_time_s)
+        .bind(14, std::string_view(start.tone_model))
+        .bind(15, std::int64_t{dictionary.id})
+        .bind(16, std::string_view(start.scenario_text));
+    if (auto done = row->run(); !done) return done.error();
+    auto solution = database.prepare("INSERT INTO run_solution VALUES (?,?,?,?)");
+    if (!solution) return solution.error();
+    std::int64_t position = 0;
+    for (const auto& [name, value] : start.solution) {
+        solution->bind(1, *next).bind(2, position++).bind(3, std::string_view(name)).bind(4, value);
+        if (auto done = solution->run(); !done) return done.error();
+    }
+    return run;
+}
+
+Result<void> Archive::append(RunId run, const Batch& batch) {
+    AEOLIS_CHECK(batch.last_seq <= sequence_max);
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    if (auto done = state_->rows.write(run, batch); !done) return done;
+    if (batch.end)
+        if (auto done = state_->end_run(run, *batch.end, batch.last_seq); !done) return done;
+    return transaction->commit();
+}
+
+Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last_seq) {
+    last_key.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    auto found = last_key.step();
+    if (!found) return found.error();
+    const Sequence stored = last_key.is_null(0) ? 0 : sequence_of(last_key.integer(0));
+    last_key.reset();
+    auto row = database.prepare("UPDATE runs SET state = 'finished', outcome = ?2, outcome_reason = ?3, digest = ?4,"
+                                " ended = ?5, last_seq = ?6 WHERE run = ?1");
+    if (!row) return row.error();
+    row->bind(1, std::int64_t{run.value})
+        .bind(2, std::string_view(end.outcome))
+        .bind(3, std::string_view(end.reason))
+        .bind(4, std::string_view(end.digest))
+        .bind(5, std::string_view(end.ended))
+        .bind(6, number(std::max(stored, last_seq)));
+    return row->run();
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,159 @@
+#include "server/archive/items.hpp"
+
+#include <cmath>
+
+namespace aeolis::archive {
+
+namespace {
+v1::Source source_of(Source source) {
+    return static_cast<v1::Source>(source);
+}
+static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
+static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
+static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
+} // namespace
+
+v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& unit = *item.mutable_unit();
+    unit.set_unit(record.seq);
+    unit.set_apid(record.apid.value);
+    if (!record.packet)
+        unit.set_name("not decoded: " + record.refusal);
+    else if (dictionary != nullptr)
+        unit.set_name(dictionary->packets[*record.packet].name);
+    unit.set_sclk(record.sclk.seconds);
+    unit.set_ert(day_of_year_text(record.ert));
+    unit.set_octets(static_cast<std::uint32_t>(record.octets.count));
+    unit.set_link(name_of(record.link));
+    unit.set_source(source_of(record.source));
+    unit.set_duplicate(record.duplicate());
+    return item;
+}
+
+v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels, std::span<const double> values) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& samples = *item.mutable_samples();
+    samples.set_sclk(record.sclk.seconds);
+    samples.set_source(source_of(record.source));
+    samples.mutable_ids()->Reserve(static_cast<int>(channels.size()));
+    samples.mutable_values()->Reserve(static_cast<int>(channels.size()));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i])) continue;
+        samples.add_ids(channels[i].value);
+        samples.add_values(values[i]);
+    }
+    return item;
+}
+
+v1::Item to_item(const EventRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& event = *item.mutable_event();
+    event.set_id(record.id.value);
+    event.set_name(record.name);
+    event.set_level(record.level);
+    event.set_text(record.text);
+    event.set_sclk(record.sclk.seconds);
+    event.set_ert(day_of_year_text(record.ert));
+    event.set_source(source_of(record.source));
+    event.set_duplicate(record.duplicate);
+    return item;
+}
+
+v1::Item to_item(const ToneRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& tone = *item.mutable_tone();
+    tone.set_ert_start(day_of_year_text(record.start));
+    tone.set_ert_end(day_of_year_text(record.end));
+    if (record.tone) tone.set_tone(record.tone->value);
+    tone.set_name(record.name);
+    tone.set_meaning(record.meaning);
+    tone.set_likelihood(record.likelihood);
+    if (record.runner_up) tone.set_runner_up(record.runner_up->value);
+    tone.set_runner_up_likelihood(record.runner_up_likelihood);
+    tone.set_c_n0_dbhz(record.c_n0_dbhz);
+    tone.set_doppler_hz(record.doppler_hz);
+    tone.set_locked(record.locked);
+    tone.set_model(record.model);
+    tone.set_sclk(record.sclk.seconds);
+    return item;
+}
+
+v1::Item to_item(const StageRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& stage = *item.mutable_command_stage();
+    stage.set_command(record.command);
+    stage.set_name(record.name);
+    stage.set_stage(record.stage);
+    stage.set_status(record.status);
+    stage.set_evidence(record.evidence);
+    stage.set_at(day_of_year_text(record.at));
+    stage.set_arguments(record.arguments);
+    stage.set_count(record.count);
+    return item;
+}
+
+v1::Item to_item(const FiringRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& firing = *item.mutable_timepoint();
+    firing.set_timepoint(record.timepoint.value);
+    firing.set_name(record.name);
+    firing.set_triggered_sclk(record.triggered.seconds);
+    firing.set_fired_sclk(record.fired.seconds);
+    firing.set_verdict(record.verdict);
+    firing.set_source(source_of(record.source));
+    firing.set_duplicate(record.duplicate);
+    return item;
+}
+
+v1::Item to_item(const ExplanationRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& said = *item.mutable_explanation();
+    said.set_sclk(record.sclk.seconds);
+    said.set_text(record.explanation.text);
+    said.set_decision(record.explanation.decision);
+    said.set_verdict(record.explanation.verdict);
+    for (const auto& condition : record.explanation.conditions) {
+        auto& written = *said.add_conditions();
+        written.set_quantity(condition.quantity);
+        written.set_value(condition.value);
+        written.set_comparison(condition.comparison);
+        written.set_bound(condition.bound);
+        written.set_holds(condition.holds);
+    }
+    said.set_source(source_of(record.source));
+    said.set_duplicate(record.duplicate);
+    return item;
+}
+
+v1::Item to_item(const LinkRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& link = *item.mutable_link();
+    link.set_link(name_of(record.link));
+    link.set_up(record.up);
+    link.set_reason(record.reason);
+    link.set_ert(day_of_year_text(record.ert));
+    return item;
+}
+
+v1::Item to_item(const AlarmRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& alarm = *item.mutable_alarm();
+    alarm.set_channel(record.channel.value);
+    alarm.set_severity(record.severity);
+    alarm.set_value(record.value);
+    alarm.set_sclk(record.sclk.seconds);
+    alarm.set_limit(record.limit);
+    return item;
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "aeolis/v1/items.pb.h"
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+
+#include <span>
+
+// Records as the schema's items: the same function when an item is published and when it is read back, so that a
+// client cannot tell the two apart.
+namespace aeolis::archive {
+
+/// The name of an undecoded unit is why not. Without a dictionary (the run was recorded with another) it has none.
+v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary);
+/// `values` one a channel; NaN is left out.
+v1::Item to_item(const SampleRecord& record, std::span<const ChannelId> channels, std::span<const double> values);
+v1::Item to_item(const EventRecord& record);
+v1::Item to_item(const ToneRecord& record);
+v1::Item to_item(const StageRecord& record);
+v1::Item to_item(const FiringRecord& record);
+v1::Item to_item(const ExplanationRecord& record);
+v1::Item to_item(const LinkRecord& record);
+v1::Item to_item(const AlarmRecord& record);
+
+} // namespace aeolis::archive

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace aeolis::archive {
+
+/// Which fields of each packet are channels, and so columns of its segments; and in which packets a channel comes.
+class PacketColumns {
+  public:
+    explicit PacketColumns(const dictionary::Dictionary& dictionary);
+
+    struct Place {
+        std::uint16_t packet = 0;
+        std::size_t column = 0;
+    };
+
+    /// The channels of a packet, in the order of its fields. Empty: its units have no samples.
+    const std::vector<ChannelId>& channels(std::size_t packet) const { return packets_[packet].channels; }
+    const std::vector<Place>& places(ChannelId channel) const { return places_[channel.value]; }
+    std::size_t packets() const { return packets_.size(); }
+
+    /// Appends one value a column; NaN where undefined.
+    void append_values(const telemetry::Decoded& decoded, std::vector<double>& values) const;
+    double value(const telemetry::Decoded& decoded, std::size_t column) const;
+
+  private:
+    struct Columns {
+        std::vector<ChannelId> channels;
+        std::vector<std::size_t> fields;
+    };
+    std::vector<Columns> packets_;
+    std::vector<std::vector<Place>> places_; ///< by ChannelId
+};
+
+} // namespace aeolis::archive

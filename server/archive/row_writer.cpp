@@ -1,0 +1,272 @@
+#include "server/archive/row_writer.hpp"
+
+#include "server/archive/schema.hpp"
+
+#include <bit>
+#include <cmath>
+#include <sqlite3.h>
+
+namespace aeolis::archive {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers of segments are stored as they stand in memory");
+
+std::span<const std::uint8_t> octets_of(std::span<const double> values) {
+    return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()};
+}
+
+/// NaN has no place in SQL: it becomes NULL.
+void bind_number(sqlite::Statement& statement, int parameter, double value) {
+    if (std::isnan(value))
+        statement.bind_null(parameter);
+    else
+        statement.bind(parameter, value);
+}
+
+template <typename Records, typename Write>
+Result<void> each(const Records& records, Write write) {
+    for (const auto& record : records)
+        if (auto done = write(record); !done) return done;
+    return {};
+}
+
+std::int64_t number(std::uint64_t value) {
+    return static_cast<std::int64_t>(value);
+}
+
+} // namespace
+
+Result<RowWriter> RowWriter::open(sqlite::Database& database) {
+    RowWriter writer;
+    writer.database_ = &database;
+    const std::pair<sqlite::Statement RowWriter::*, const char*> statements[] = {
+        {&RowWriter::unit_, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::event_, "INSERT INTO events VALUES (?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::tone_, "INSERT INTO tones VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::command_, "INSERT INTO commands VALUES (?,?,?,?,?,?)"},
+        {&RowWriter::stage_, "INSERT INTO command_stages VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::firing_, "INSERT INTO timepoint_firings VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::explanation_, "INSERT INTO explanations VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::condition_, "INSERT INTO explanation_conditions VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::link_, "INSERT INTO link_changes VALUES (?,?,?,?,?)"},
+        {&RowWriter::alarm_, "INSERT INTO alarms VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::segment_, "INSERT INTO segments VALUES (NULL,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
+    };
+    for (const auto& [member, sql] : statements) {
+        auto statement = database.prepare(sql);
+        if (!statement) return statement.error();
+        writer.*member = std::move(statement).value();
+    }
+    return writer;
+}
+
+Result<void> RowWriter::write(RunId run, const Batch& batch) {
+    if (auto done = each(batch.units, [&](const auto& r) { return unit(run, r, batch); }); !done) return done;
+    if (auto done = each(batch.events, [&](const auto& r) { return event(run, r); }); !done) return done;
+    if (auto done = each(batch.tones, [&](const auto& r) { return tone(run, r); }); !done) return done;
+    if (auto done = each(batch.stages, [&](const auto& r) { return stage(run, r); }); !done) return done;
+    if (auto done = each(batch.firings, [&](const auto& r) { return firing(run, r); }); !done) return done;
+    if (auto done = each(batch.explanations, [&](const auto& r) { return explanation(run, r); }); !done) return done;
+    if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
+    if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
+    if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r); }); !done) return done;
+    if (batch.totals) return totals(run, *batch.totals);
+    return {};
+}
+
+Result<void> RowWriter::unit(RunId run, const UnitRecord& record, const Batch& batch) {
+    unit_.bind(1, item_key(run, record.seq)).bind(2, std::int64_t{run.value}).bind(3, std::int64_t{record.apid.value});
+    if (record.packet)
+        unit_.bind(4, std::int64_t{*record.packet}).bind_null(11);
+    else
+        unit_.bind_null(4).bind(11, std::string_view(record.refusal));
+    unit_.bind(5, record.sclk.seconds)
+        .bind(6, record.ert.microseconds)
+        .bind(7, static_cast<std::int64_t>(record.link))
+        .bind(8, static_cast<std::int64_t>(record.source))
+        .bind(9, static_cast<std::int64_t>(record.standing))
+        .bind(10, std::int64_t{record.sampled})
+        .bind_octets(12, std::span(batch.octets).subspan(record.octets.first, record.octets.count));
+    return unit_.run();
+}
+
+Result<void> RowWriter::event(RunId run, const EventRecord& record) {
+    event_.bind(1, item_key(run, record.seq))
+        .bind(2, number(record.unit))
+        .bind(3, std::int64_t{record.id.value})
+        .bind(4, std::string_view(record.name))
+        .bind(5, std::string_view(record.level))
+        .bind(6, std::string_view(record.text))
+        .bind(7, record.sclk.seconds)
+        .bind(8, record.ert.microseconds)
+        .bind(9, static_cast<std::int64_t>(record.source))
+        .bind(10, std::int64_t{record.duplicate});
+    return event_.run();
+}
+
+Result<void> RowWriter::tone(RunId run, const ToneRecord& record) {
+    const auto bind_tone = [this](int parameter, const std::optional<ToneId>& tone) {
+        if (tone)
+            tone_.bind(parameter, std::int64_t{tone->value});
+        else
+            tone_.bind_null(parameter);
+    };
+    tone_.bind(1, item_key(run, record.seq)).bind(2, record.start.microseconds).bind(3, record.end.microseconds);
+    bind_tone(4, record.tone);
+    tone_.bind(5, std::string_view(record.name)).bind(6, std::string_view(record.meaning)).bind(7, record.likelihood);
+    bind_tone(8, record.runner_up);
+    tone_.bind(9, record.runner_up_likelihood)
+        .bind(10, record.c_n0_dbhz)
+        .bind(11, record.doppler_hz)
+        .bind(12, std::int64_t{record.locked})
+        .bind(13, std::string_view(record.model))
+        .bind(14, record.sclk.seconds);
+    return tone_.run();
+}
+
+Result<void> RowWriter::stage(RunId run, const StageRecord& record) {
+    if (!record.octets.empty()) {
+        command_.bind(1, std::int64_t{run.value})
+            .bind(2, number(record.command))
+            .bind(3, std::string_view(record.name))
+            .bind(4, std::string_view(record.arguments))
+            .bind(5, std::int64_t{record.count})
+            .bind_octets(6, record.octets);
+        if (auto done = command_.run(); !done) return done;
+    }
+    stage_.bind(1, item_key(run, record.seq))
+        .bind(2, number(record.command))
+        .bind(3, std::string_view(record.name))
+        .bind(4, std::string_view(record.stage))
+        .bind(5, std::string_view(record.status))
+        .bind(6, std::string_view(record.evidence))
+        .bind(7, record.at.microseconds)
+        .bind(8, std::string_view(record.arguments))
+        .bind(9, std::int64_t{record.count});
+    return stage_.run();
+}
+
+Result<void> RowWriter::firing(RunId run, const FiringRecord& record) {
+    firing_.bind(1, item_key(run, record.seq))
+        .bind(2, number(record.unit))
+        .bind(3, std::int64_t{record.timepoint.value})
+        .bind(4, std::string_view(record.name))
+        .bind(5, record.triggered.seconds)
+        .bind(6, record.fired.seconds)
+        .bind(7, std::string_view(record.verdict))
+        .bind(8, static_cast<std::int64_t>(record.source))
+        .bind(9, std::int64_t{record.duplicate});
+    return firing_.run();
+}
+
+Result<void> RowWriter::explanation(RunId run, const ExplanationRecord& record) {
+    const auto& said = record.explanation;
+    const auto key = item_key(run, record.seq);
+    explanation_.bind(1, key)
+        .bind(2, number(record.unit))
+        .bind(3, record.sclk.seconds)
+        .bind(4, std::string_view(said.decision))
+        .bind(5, std::string_view(said.verdict))
+        .bind(6, std::string_view(said.subject))
+        .bind(7, std::string_view(said.text))
+        .bind(8, static_cast<std::int64_t>(record.source))
+        .bind(9, std::int64_t{record.duplicate});
+    if (auto done = explanation_.run(); !done) return done;
+    std::int64_t position = 0;
+    for (const auto& condition : said.conditions) {
+        condition_.bind(1, key).bind(2, position++).bind(3, std::string_view(condition.quantity));
+        bind_number(condition_, 4, condition.value);
+        condition_.bind(5, std::string_view(condition.comparison));
+        bind_number(condition_, 6, condition.bound);
+        condition_.bind(7, std::int64_t{condition.holds});
+        if (auto done = condition_.run(); !done) return done;
+    }
+    return {};
+}
+
+Result<void> RowWriter::link(RunId run, const LinkRecord& record) {
+    link_.bind(1, item_key(run, record.seq))
+        .bind(2, static_cast<std::int64_t>(record.link))
+        .bind(3, std::int64_t{record.up})
+        .bind(4, std::string_view(record.reason))
+        .bind(5, record.ert.microseconds);
+    return link_.run();
+}
+
+Result<void> RowWriter::alarm(RunId run, const AlarmRecord& record) {
+    alarm_.bind(1, item_key(run, record.seq))
+        .bind(2, number(record.unit))
+        .bind(3, std::int64_t{record.channel.value})
+        .bind(4, std::string_view(record.severity));
+    bind_number(alarm_, 5, record.value);
+    alarm_.bind(6, record.sclk.seconds).bind(7, std::string_view(record.limit));
+    return alarm_.run();
+}
+
+Result<void> RowWriter::segment(RunId run, const SegmentRecord& record) {
+    AEOLIS_CHECK(!record.sclk_s.empty() && record.values.size() == record.channels.size() * record.sclk_s.size());
+    double first_s = record.sclk_s.front();
+    double last_s = first_s;
+    for (const double sclk_s : record.sclk_s) {
+        first_s = std::min(first_s, sclk_s);
+        last_s = std::max(last_s, sclk_s);
+    }
+    segment_.bind(1, std::int64_t{run.value})
+        .bind(2, std::int64_t{record.packet})
+        .bind(3, static_cast<std::int64_t>(record.source))
+        .bind(4, number(record.first_unit))
+        .bind(5, number(record.last_unit))
+        .bind(6, number(record.sclk_s.size()))
+        .bind(7, first_s)
+        .bind(8, last_s)
+        .bind_octets(9, octets_of(record.sclk_s));
+    if (auto done = segment_.run(); !done) return done;
+    const std::int64_t segment = sqlite3_last_insert_rowid(database_->handle());
+    for (std::size_t c = 0; c < record.channels.size(); ++c)
+        if (auto done = column(column_key(segment, record.channels[c]), record, c); !done) return done;
+    return {};
+}
+
+Result<void> RowWriter::column(std::int64_t key, const SegmentRecord& record, std::size_t column) {
+    const std::size_t samples = record.sclk_s.size();
+    const auto values = std::span(record.values).subspan(column * samples, samples);
+    std::optional<std::size_t> first, last, least, largest;
+    std::int64_t defined = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        if (std::isnan(values[i])) continue;
+        ++defined;
+        if (!first) first = i;
+        last = i;
+        if (!least || values[i] < values[*least]) least = i;
+        if (!largest || values[i] > values[*largest]) largest = i;
+    }
+    column_.bind(1, key).bind(2, defined);
+    if (defined == 0) {
+        for (int parameter = 3; parameter <= 8; ++parameter)
+            column_.bind_null(parameter);
+    } else {
+        column_.bind(3, values[*least]).bind(4, record.sclk_s[*least]);
+        column_.bind(5, values[*largest]).bind(6, record.sclk_s[*largest]);
+        column_.bind(7, values[*first]).bind(8, values[*last]);
+    }
+    column_.bind_octets(9, octets_of(values));
+    return column_.run();
+}
+
+Result<void> RowWriter::totals(RunId run, const RecordingTotals& totals) {
+    totals_.bind(1, std::int64_t{run.value})
+        .bind(2, number(totals.recorded))
+        .bind(3, number(totals.recorded_octets))
+        .bind(4, number(totals.realtime))
+        .bind(5, number(totals.realtime_not_recorded))
+        .bind(6, number(totals.realtime_differs))
+        .bind(7, number(totals.never_seen_live))
+        .bind(8, number(totals.not_decoded))
+        .bind(9, totals.progress);
+    return totals_.run();
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "server/archive/records.hpp"
+#include "server/archive/sqlite.hpp"
+
+namespace aeolis::archive {
+
+/// Adds rows inside the transaction that its owner has begun. One prepared statement a table.
+class RowWriter {
+  public:
+    static Result<RowWriter> open(sqlite::Database& database);
+
+    Result<void> write(RunId run, const Batch& batch);
+
+  private:
+    Result<void> unit(RunId run, const UnitRecord& record, const Batch& batch);
+    Result<void> event(RunId run, const EventRecord& record);
+    Result<void> tone(RunId run, const ToneRecord& record);
+    Result<void> stage(RunId run, const StageRecord& record);
+    Result<void> firing(RunId run, const FiringRecord& record);
+    Result<void> explanation(RunId run, const ExplanationRecord& record);
+    Result<void> link(RunId run, const LinkRecord& record);
+    Result<void> alarm(RunId run, const AlarmRecord& record);
+    Result<void> segment(RunId run, const SegmentRecord& record);
+    Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);
+    Result<void> totals(RunId run, const RecordingTotals& totals);
+
+    sqlite::Database* database_ = nullptr;
+    sqlite::Statement unit_, event_, tone_, command_, stage_, firing_, explanation_, condition_, link_, alarm_,
+        segment_, column_, totals_;
+};
+
+} // namespace aeolis::archive

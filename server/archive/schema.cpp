@@ -1,0 +1,199 @@
+#include "server/archive/schema.hpp"
+
+#include "server/archive/archive.hpp"
+
+namespace aeolis::archive {
+
+const char* const last_key_sql = R"sql(
+SELECT max(key) FROM (
+    SELECT (SELECT key + sampled FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1) AS key
+    UNION ALL SELECT max(key) FROM events WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM tones WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM command_stages WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM timepoint_firings WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM explanations WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM link_changes WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM alarms WHERE key BETWEEN ?1 AND ?2)
+)sql";
+
+namespace {
+
+// docs/archive.md explains each table. Times: *_sclk in seconds of the spacecraft clock; *_us in microseconds since
+// 2000-01-01T12:00:00 UTC. key = run << 40 | seq.
+const char* const tables_sql = R"sql(
+CREATE TABLE dictionaries (
+    dictionary INTEGER PRIMARY KEY, mission TEXT NOT NULL, timeline_version INTEGER NOT NULL) STRICT;
+CREATE TABLE dictionary_channels (
+    dictionary INTEGER NOT NULL, channel INTEGER NOT NULL, name TEXT NOT NULL, alias TEXT NOT NULL, unit TEXT NOT NULL,
+    text TEXT NOT NULL, PRIMARY KEY (dictionary, channel)) STRICT, WITHOUT ROWID;
+CREATE TABLE dictionary_packets (
+    dictionary INTEGER NOT NULL, packet INTEGER NOT NULL, name TEXT NOT NULL, apid INTEGER NOT NULL,
+    PRIMARY KEY (dictionary, packet)) STRICT, WITHOUT ROWID;
+
+CREATE TABLE runs (
+    run INTEGER PRIMARY KEY, scenario TEXT NOT NULL, title TEXT NOT NULL, venue TEXT NOT NULL, seed INTEGER NOT NULL,
+    case_number INTEGER NOT NULL, pace REAL NOT NULL,
+    state TEXT NOT NULL CHECK (state IN ('running', 'finished', 'interrupted')), outcome TEXT NOT NULL,
+    outcome_reason TEXT NOT NULL DEFAULT '', digest TEXT NOT NULL DEFAULT '', started TEXT NOT NULL,
+    ended TEXT NOT NULL DEFAULT '', last_seq INTEGER, start_sclk REAL NOT NULL, entry_sclk REAL NOT NULL,
+    correlation_sclk REAL NOT NULL, correlation_scet_us INTEGER NOT NULL, light_time_s REAL NOT NULL,
+    tone_model TEXT NOT NULL, dictionary INTEGER NOT NULL, scenario_text TEXT NOT NULL) STRICT;
+CREATE TABLE run_solution (
+    run INTEGER NOT NULL, position INTEGER NOT NULL, name TEXT NOT NULL, value REAL NOT NULL,
+    PRIMARY KEY (run, position)) STRICT, WITHOUT ROWID;
+CREATE TABLE recordings (
+    run INTEGER PRIMARY KEY, recorded INTEGER NOT NULL, recorded_octets INTEGER NOT NULL, realtime INTEGER NOT NULL,
+    realtime_not_recorded INTEGER NOT NULL, realtime_differs INTEGER NOT NULL, never_seen_live INTEGER NOT NULL,
+    not_decoded INTEGER NOT NULL, progress REAL NOT NULL) STRICT;
+
+CREATE TABLE units (
+    key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER, sclk REAL NOT NULL,
+    ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL, standing INTEGER NOT NULL,
+    sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;
+CREATE INDEX units_by_time ON units (run, apid, sclk);
+
+CREATE TABLE segments (
+    segment INTEGER PRIMARY KEY, run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL,
+    first_unit INTEGER NOT NULL, last_unit INTEGER NOT NULL, samples INTEGER NOT NULL, first_sclk REAL NOT NULL,
+    last_sclk REAL NOT NULL, sclk BLOB NOT NULL) STRICT;
+CREATE INDEX segments_by_packet ON segments (run, packet, source, last_unit);
+CREATE TABLE segment_columns (
+    key INTEGER PRIMARY KEY, defined INTEGER NOT NULL, least REAL, least_sclk REAL, largest REAL, largest_sclk REAL,
+    first REAL, last REAL, value BLOB NOT NULL) STRICT;
+
+CREATE TABLE events (
+    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, event INTEGER NOT NULL, name TEXT NOT NULL, level TEXT NOT NULL,
+    text TEXT NOT NULL, sclk REAL NOT NULL, ert_us INTEGER NOT NULL, source INTEGER NOT NULL,
+    duplicate INTEGER NOT NULL) STRICT;
+CREATE TABLE tones (
+    key INTEGER PRIMARY KEY, start_us INTEGER NOT NULL, end_us INTEGER NOT NULL, tone INTEGER, name TEXT NOT NULL,
+    meaning TEXT NOT NULL, likelihood REAL NOT NULL, runner_up INTEGER, runner_up_likelihood REAL NOT NULL,
+    c_n0_dbhz REAL NOT NULL, doppler_hz REAL NOT NULL, locked INTEGER NOT NULL, model TEXT NOT NULL,
+    sclk REAL NOT NULL) STRICT;
+CREATE TABLE commands (
+    run INTEGER NOT NULL, command INTEGER NOT NULL, name TEXT NOT NULL, arguments TEXT NOT NULL,
+    count INTEGER NOT NULL, octets BLOB NOT NULL, PRIMARY KEY (run, command)) STRICT, WITHOUT ROWID;
+CREATE TABLE command_stages (
+    key INTEGER PRIMARY KEY, command INTEGER NOT NULL, name TEXT NOT NULL, stage TEXT NOT NULL, status TEXT NOT NULL,
+    evidence TEXT NOT NULL, at_us INTEGER NOT NULL, arguments TEXT NOT NULL, count INTEGER NOT NULL) STRICT;
+CREATE TABLE timepoint_firings (
+    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, timepoint INTEGER NOT NULL, name TEXT NOT NULL,
+    triggered_sclk REAL NOT NULL, fired_sclk REAL NOT NULL, verdict TEXT NOT NULL, source INTEGER NOT NULL,
+    duplicate INTEGER NOT NULL) STRICT;
+CREATE TABLE explanations (
+    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, sclk REAL NOT NULL, decision TEXT NOT NULL, verdict TEXT NOT NULL,
+    subject TEXT NOT NULL, text TEXT NOT NULL, source INTEGER NOT NULL, duplicate INTEGER NOT NULL) STRICT;
+CREATE TABLE explanation_conditions (
+    key INTEGER NOT NULL, position INTEGER NOT NULL, quantity TEXT NOT NULL, value REAL, comparison TEXT NOT NULL,
+    bound REAL, holds INTEGER NOT NULL, PRIMARY KEY (key, position)) STRICT, WITHOUT ROWID;
+CREATE TABLE link_changes (
+    key INTEGER PRIMARY KEY, link INTEGER NOT NULL, up INTEGER NOT NULL, reason TEXT NOT NULL,
+    ert_us INTEGER NOT NULL) STRICT;
+CREATE TABLE alarms (
+    key INTEGER PRIMARY KEY, unit INTEGER NOT NULL, channel INTEGER NOT NULL, severity TEXT NOT NULL, value REAL,
+    sclk REAL NOT NULL, limit_text TEXT NOT NULL) STRICT;
+
+CREATE TABLE words (kind TEXT NOT NULL, number INTEGER NOT NULL, word TEXT NOT NULL, PRIMARY KEY (kind, number))
+    STRICT, WITHOUT ROWID;
+INSERT INTO words VALUES
+    ('link', 1, 'uhf_live'), ('link', 2, 'relay'), ('link', 3, 'x_band'),
+    ('source', 1, 'realtime'), ('source', 2, 'recorded'), ('source', 3, 'ground'),
+    ('standing', 0, 'first'), ('standing', 1, 'again'), ('standing', 2, 'duplicate'), ('standing', 3, 'differs'),
+    ('standing', 4, 'unregistered');
+)sql";
+
+// For people who open the file with other tools: run, seq, words and UTC in place of keys, numbers and microseconds.
+const char* const views_sql = R"sql(
+CREATE VIEW packets AS
+    SELECT u.run, u.key & 0xFFFFFFFFFF AS seq, p.name, u.apid, u.sclk,
+           strftime('%Y-%jT%H:%M:%f', u.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, l.word AS link,
+           s.word AS source, d.word AS standing, u.refusal, length(u.octets) AS octets, hex(u.octets) AS hex
+    FROM units u JOIN runs r ON r.run = u.run
+    LEFT JOIN dictionary_packets p ON p.dictionary = r.dictionary AND p.packet = u.packet
+    JOIN words l ON l.kind = 'link' AND l.number = u.link
+    JOIN words s ON s.kind = 'source' AND s.number = u.source
+    JOIN words d ON d.kind = 'standing' AND d.number = u.standing;
+CREATE VIEW event_log AS
+    SELECT e.key >> 40 AS run, e.key & 0xFFFFFFFFFF AS seq, e.sclk, e.sclk - r.entry_sclk AS e_s,
+           strftime('%Y-%jT%H:%M:%f', e.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, e.level, e.name, e.text,
+           s.word AS source, e.duplicate
+    FROM events e JOIN runs r ON r.run = e.key >> 40 JOIN words s ON s.kind = 'source' AND s.number = e.source;
+CREATE VIEW tone_log AS
+    SELECT t.key >> 40 AS run, t.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', t.start_us / 1e6 + 946728000, 'unixepoch') AS ert_start, t.tone, t.name,
+           t.meaning, t.likelihood, t.runner_up, t.c_n0_dbhz, t.locked, t.model
+    FROM tones t;
+CREATE VIEW command_log AS
+    SELECT c.key >> 40 AS run, c.key & 0xFFFFFFFFFF AS seq, c.command, c.name, c.stage, c.status, c.evidence,
+           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at
+    FROM command_stages c;
+CREATE VIEW timeline_log AS
+    SELECT f.key >> 40 AS run, f.key & 0xFFFFFFFFFF AS seq, f.timepoint, f.name, f.fired_sclk,
+           f.fired_sclk - r.entry_sclk AS e_s, f.triggered_sclk, f.verdict, s.word AS source, f.duplicate
+    FROM timepoint_firings f JOIN runs r ON r.run = f.key >> 40
+    JOIN words s ON s.kind = 'source' AND s.number = f.source;
+CREATE VIEW explanation_log AS
+    SELECT x.key >> 40 AS run, x.key & 0xFFFFFFFFFF AS seq, x.sclk, x.decision, x.verdict, x.subject, x.text,
+           x.duplicate
+    FROM explanations x;
+CREATE VIEW alarm_log AS
+    SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq, a.sclk, c.name AS channel, a.severity, a.value, c.unit,
+           a.limit_text
+    FROM alarms a JOIN runs r ON r.run = a.key >> 40
+    JOIN dictionary_channels c ON c.dictionary = r.dictionary AND c.channel = a.channel;
+CREATE VIEW channel_segments AS
+    SELECT g.run, c.name AS channel, c.unit, s.word AS source, g.first_sclk, g.last_sclk, v.defined, v.least,
+           v.least_sclk, v.largest, v.largest_sclk, v.first, v.last, g.sclk AS sclk_blob, v.value AS value_blob
+    FROM segment_columns v JOIN segments g ON g.segment = v.key / 65536 JOIN runs r ON r.run = g.run
+    JOIN dictionary_channels c ON c.dictionary = r.dictionary AND c.channel = v.key % 65536
+    JOIN words s ON s.kind = 'source' AND s.number = g.source;
+)sql";
+
+Error not_ours(const sqlite::Database& database) {
+    return {database.file() + " is not an Aeolis archive"};
+}
+
+/// 0: an empty database; 1: ours.
+Result<bool> is_ours(sqlite::Database& database) {
+    auto id = database.integer_of("PRAGMA application_id");
+    if (!id) {
+        // SQLite says so of files with other contents; other failures it names well itself.
+        if (id.error().message.find("not a database") != std::string::npos) return not_ours(database);
+        return id.error();
+    }
+    auto version = database.integer_of("PRAGMA user_version");
+    auto tables = database.integer_of("SELECT count(*) FROM sqlite_schema");
+    if (!version) return version.error();
+    if (!tables) return tables.error();
+    if (*id == 0 && *version == 0 && *tables == 0) return false;
+    if (*id != application_id) return not_ours(database);
+    if (*version > schema_version)
+        return Error{database.file() + " was written by a newer Aeolis: its schema is " + std::to_string(*version) +
+                     ", this program knows " + std::to_string(schema_version)};
+    return true;
+}
+
+} // namespace
+
+Result<void> prepare_for_writing(sqlite::Database& database) {
+    auto ours = is_ours(database);
+    if (!ours) return ours.error();
+    if (*ours) return {};
+    // One transaction, before WAL is switched on: a crash leaves an empty file or an archive, nothing between.
+    auto transaction = sqlite::Transaction::begin_write(database);
+    if (!transaction) return transaction.error();
+    const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +
+                              "; PRAGMA user_version = " + std::to_string(schema_version);
+    for (const char* sql : {marks.c_str(), tables_sql, views_sql})
+        if (auto done = database.execute(sql); !done) return done;
+    return transaction->commit();
+}
+
+Result<void> check_for_reading(sqlite::Database& database) {
+    auto ours = is_ours(database);
+    if (!ours) return ours.error();
+    if (!*ours) return not_ours(database);
+    return {};
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "server/archive/records.hpp"
+#include "server/archive/sqlite.hpp"
+
+namespace aeolis::archive {
+
+/// Makes tables, indices and views of schema_version in an empty database, or checks that it is one of ours.
+/// Fails with "FILE is not an Aeolis archive", or "… was written by a newer Aeolis …".
+Result<void> prepare_for_writing(sqlite::Database& database);
+Result<void> check_for_reading(sqlite::Database& database);
+
+/// Key of an item's row: run and sequence number in one integer, so that rows of a run stand together, in order, and
+/// appending never looks for a place.
+constexpr std::int64_t item_key(RunId run, Sequence seq) {
+    return static_cast<std::int64_t>((static_cast<std::uint64_t>(run.value) << 40) | seq);
+}
+inline constexpr Sequence sequence_max = (Sequence{1} << 40) - 1;
+constexpr Sequence sequence_of(std::int64_t key) {
+    return static_cast<Sequence>(key) & sequence_max;
+}
+
+/// Key of a segment's column.
+constexpr std::int64_t column_key(std::int64_t segment, ChannelId channel) {
+    return segment * 65'536 + channel.value;
+}
+
+/// The last sequence number of each of the tables, as SQL over ?1 = item_key(run, 0), ?2 = item_key(run, max).
+extern const char* const last_key_sql;
+
+} // namespace aeolis::archive

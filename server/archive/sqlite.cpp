@@ -1,0 +1,167 @@
+#include "server/archive/sqlite.hpp"
+
+#include "common/check.hpp"
+
+#include <sqlite3.h>
+
+namespace aeolis::archive::sqlite {
+
+namespace {
+
+/// A reader never waits; a writer only for a checkpoint of another connection.
+constexpr int busy_timeout_ms = 250;
+
+} // namespace
+
+void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
+    sqlite3_finalize(statement);
+}
+void Database::Close::operator()(sqlite3* database) const {
+    sqlite3_close_v2(database);
+}
+
+Statement& Statement::bind(int parameter, std::int64_t value) {
+    AEOLIS_CHECK(sqlite3_bind_int64(statement_.get(), parameter, value) == SQLITE_OK);
+    return *this;
+}
+Statement& Statement::bind(int parameter, double value) {
+    AEOLIS_CHECK(sqlite3_bind_double(statement_.get(), parameter, value) == SQLITE_OK);
+    return *this;
+}
+Statement& Statement::bind(int parameter, std::string_view text) {
+    // An empty view may have no data, which SQLite would take for NULL.
+    const char* data = text.data() == nullptr ? "" : text.data();
+    AEOLIS_CHECK(sqlite3_bind_text64(statement_.get(), parameter, data, text.size(), SQLITE_STATIC, SQLITE_UTF8) ==
+                 SQLITE_OK);
+    return *this;
+}
+Statement& Statement::bind_octets(int parameter, std::span<const std::uint8_t> octets) {
+    if (octets.empty()) {
+        AEOLIS_CHECK(sqlite3_bind_zeroblob(statement_.get(), parameter, 0) == SQLITE_OK);
+        return *this;
+    }
+    AEOLIS_CHECK(sqlite3_bind_blob64(statement_.get(), parameter, octets.data(), octets.size(), SQLITE_STATIC) ==
+                 SQLITE_OK);
+    return *this;
+}
+Statement& Statement::bind_null(int parameter) {
+    AEOLIS_CHECK(sqlite3_bind_null(statement_.get(), parameter) == SQLITE_OK);
+    return *this;
+}
+
+Result<bool> Statement::step() {
+    const int code = sqlite3_step(statement_.get());
+    if (code == SQLITE_ROW) return true;
+    if (code == SQLITE_DONE) {
+        sqlite3_reset(statement_.get());
+        return false;
+    }
+    sqlite3* database = sqlite3_db_handle(statement_.get());
+    const char* name = sqlite3_db_filename(database, "main");
+    Error error{std::string(name == nullptr ? "archive" : name) + ": " + sqlite3_errmsg(database)};
+    sqlite3_reset(statement_.get());
+    return error;
+}
+
+Result<void> Statement::run() {
+    auto row = step();
+    if (!row) return row.error();
+    if (*row) reset();
+    return {};
+}
+
+void Statement::reset() {
+    sqlite3_reset(statement_.get());
+}
+
+std::int64_t Statement::integer(int column) const {
+    return sqlite3_column_int64(statement_.get(), column);
+}
+double Statement::real(int column) const {
+    return sqlite3_column_double(statement_.get(), column);
+}
+std::string_view Statement::text(int column) const {
+    const auto* text = sqlite3_column_text(statement_.get(), column);
+    if (text == nullptr) return {};
+    return {reinterpret_cast<const char*>(text),
+            static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+}
+std::span<const std::uint8_t> Statement::octets(int column) const {
+    const auto* octets = static_cast<const std::uint8_t*>(sqlite3_column_blob(statement_.get(), column));
+    if (octets == nullptr) return {};
+    return {octets, static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column))};
+}
+bool Statement::is_null(int column) const {
+    return sqlite3_column_type(statement_.get(), column) == SQLITE_NULL;
+}
+
+Result<Database> Database::open(const std::string& file, Mode mode) {
+    Database database;
+    database.file_ = file;
+    // NOMUTEX: each connection has one owner.
+    const int flags = SQLITE_OPEN_NOMUTEX |
+                      (mode == Mode::read_only ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    sqlite3* handle = nullptr;
+    const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
+    database.database_.reset(handle);
+    if (code != SQLITE_OK) return Error{file + ": " + sqlite3_errstr(code)};
+    sqlite3_extended_result_codes(handle, 1);
+    sqlite3_busy_timeout(handle, busy_timeout_ms);
+    return database;
+}
+
+Result<void> Database::execute(const char* sql) {
+    if (sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK) return {};
+    return error("");
+}
+
+Result<Statement> Database::prepare(const char* sql) {
+    sqlite3_stmt* handle = nullptr;
+    if (sqlite3_prepare_v3(database_.get(), sql, -1, SQLITE_PREPARE_PERSISTENT, &handle, nullptr) != SQLITE_OK)
+        return error("");
+    Statement statement;
+    statement.statement_.reset(handle);
+    return statement;
+}
+
+Result<std::int64_t> Database::integer_of(const char* sql) {
+    auto statement = prepare(sql);
+    if (!statement) return statement.error();
+    auto row = statement->step();
+    if (!row) return row.error();
+    return *row ? statement->integer(0) : 0;
+}
+
+bool Database::autocommit() const {
+    return sqlite3_get_autocommit(database_.get()) != 0;
+}
+
+Error Database::error(std::string_view doing) const {
+    std::string text = file_ + ": ";
+    if (!doing.empty()) text.append(doing).append(": ");
+    return {text + sqlite3_errmsg(database_.get())};
+}
+
+Result<Transaction> Transaction::begin_write(Database& database) {
+    auto begun = database.execute("BEGIN IMMEDIATE");
+    if (!begun) return begun.error();
+    return Transaction(database);
+}
+Result<Transaction> Transaction::begin_read(Database& database) {
+    auto begun = database.execute("BEGIN");
+    if (!begun) return begun.error();
+    return Transaction(database);
+}
+
+Transaction::~Transaction() {
+    // Some errors have rolled back already.
+    if (database_ != nullptr && !database_->autocommit()) (void)database_->execute("ROLLBACK").ok();
+}
+
+Result<void> Transaction::commit() {
+    auto done = database_->execute("COMMIT");
+    if (done) database_ = nullptr;
+    return done;
+}
+
+} // namespace aeolis::archive::sqlite

@@ -1,0 +1,95 @@
+#pragma once
+
+#include "common/result.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+// SQLite's C interface with ownership, types and Result. Nothing of the archive's own rules is here.
+namespace aeolis::archive::sqlite {
+
+/// A prepared statement. Bound text and octets are not copied: they must live until the next reset().
+class Statement {
+  public:
+    Statement() = default;
+
+    /// Parameters are numbered from 1.
+    Statement& bind(int parameter, std::int64_t value);
+    Statement& bind(int parameter, double value);
+    Statement& bind(int parameter, std::string_view text);
+    Statement& bind_octets(int parameter, std::span<const std::uint8_t> octets);
+    Statement& bind_null(int parameter);
+
+    /// True: a row stands ready. False: done, and reset. An Error also resets.
+    Result<bool> step();
+    /// For statements without rows.
+    Result<void> run();
+    void reset();
+
+    /// Columns of the row, from 0. Text and octets are valid until the next step().
+    std::int64_t integer(int column) const;
+    double real(int column) const;
+    std::string_view text(int column) const;
+    std::span<const std::uint8_t> octets(int column) const;
+    bool is_null(int column) const;
+
+  private:
+    friend class Database;
+    struct Finalize {
+        void operator()(sqlite3_stmt* statement) const;
+    };
+    std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+};
+
+enum class Mode { read_only, read_write_create };
+
+/// One connection, one owner.
+class Database {
+  public:
+    static Result<Database> open(const std::string& file, Mode mode);
+
+    Result<void> execute(const char* sql);
+    Result<Statement> prepare(const char* sql);
+    /// The first column of the first row; 0 when there is none.
+    Result<std::int64_t> integer_of(const char* sql);
+
+    /// False while a transaction is open.
+    bool autocommit() const;
+    Error error(std::string_view doing) const;
+    const std::string& file() const { return file_; }
+    sqlite3* handle() const { return database_.get(); }
+
+  private:
+    struct Close {
+        void operator()(sqlite3* database) const;
+    };
+    std::string file_;
+    std::unique_ptr<sqlite3, Close> database_;
+};
+
+/// BEGIN; rolled back at the end of the scope unless committed.
+class Transaction {
+  public:
+    static Result<Transaction> begin_write(Database& database);
+    static Result<Transaction> begin_read(Database& database);
+
+    Transaction(Transaction&& other) noexcept : database_(std::exchange(other.database_, nullptr)) {}
+    Transaction& operator=(Transaction&&) = delete;
+    ~Transaction();
+
+    /// Durable when ok. After an Error nothing of the transaction is stored.
+    Result<void> commit();
+
+  private:
+    explicit Transaction(Database& database) : database_(&database) {}
+    Database* database_;
+};
+
+} // namespace aeolis::archive::sqlite

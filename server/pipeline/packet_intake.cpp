@@ -1,0 +1,124 @@
+#include "server/pipeline/packet_intake.hpp"
+
+#include "common/space_packet.hpp"
+#include "telemetry/explanation.hpp"
+#include "telemetry/proof.hpp"
+#include "telemetry/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::pipeline {
+
+using archive::Batch;
+using archive::Source;
+using archive::UnitRecord;
+using telemetry::Standing;
+
+PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns)
+    : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), decommutator_(dictionary),
+      alarms_(dictionary), segments_(columns, segment_samples), latest_(dictionary.channels.size()) {}
+
+std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const dictionary::Dictionary& dictionary) {
+    const auto* packet = dictionary.packet("TimepointFired");
+    if (packet == nullptr) return {};
+    const auto timepoint = telemetry::field_index(*packet, "timepoint");
+    const auto triggered = telemetry::field_index(*packet, "triggered_sclk");
+    const auto fired = telemetry::field_index(*packet, "fired_sclk");
+    const auto verdict = telemetry::field_index(*packet, "verdict");
+    if (!timepoint || !triggered || !fired || !verdict) return {};
+    return FiringFields{static_cast<std::size_t>(packet - dictionary.packets.data()), *timepoint, *triggered, *fired,
+                        *verdict};
+}
+
+void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
+                        const Observer& observer) {
+    const bool recorded = packet.link == simulation::LinkId::relay;
+    UnitRecord unit;
+    unit.seq = numbering.next(batch);
+    unit.ert = packet.ert;
+    unit.link = recorded ? archive::Link::relay : archive::Link::uhf_live;
+    unit.source = recorded ? Source::recorded : Source::realtime;
+    unit.octets = {batch.octets.size(), packet.octets.size()};
+    batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
+    if (recorded) recorded_octets_ += packet.octets.size();
+
+    if (const auto refusal = decommutator_.decode(packet.octets, decoded_)) {
+        ++not_decoded_;
+        unit.refusal = telemetry::name_of(*refusal);
+        if (const auto header = read_primary_header(packet.octets)) unit.apid = header->apid;
+        batch.units.push_back(std::move(unit));
+        return;
+    }
+    unit.apid = decoded_.header.primary.apid;
+    unit.packet = static_cast<std::uint16_t>(decoded_.packet);
+    unit.sclk = decoded_.header.time;
+    unit.standing = register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
+    const bool fresh = unit.standing == Standing::first || unit.standing == Standing::unregistered;
+    unit.sampled = fresh && !columns_.channels(decoded_.packet).empty();
+    batch.units.push_back(unit);
+    if (unit.standing == Standing::again) return;
+    if (unit.sampled) sample(unit, numbering, batch);
+    interpret(unit, numbering, batch);
+    if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
+}
+
+void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& batch) {
+    const std::size_t first = batch.values.size();
+    columns_.append_values(decoded_, batch.values);
+    const auto values = std::span<const double>(batch.values).subspan(first);
+    batch.samples.push_back(
+        {numbering.next(batch), *unit.packet, unit.sclk, unit.source, {first, batch.values.size() - first}});
+    segments_.add(*unit.packet, unit.source, unit.seq, unit.sclk, values, batch.segments);
+    if (unit.source == Source::realtime) judge(unit, values, numbering, batch);
+}
+
+void PacketIntake::judge(const UnitRecord& unit, std::span<const double> values, Numbering& numbering, Batch& batch) {
+    const auto& channels = columns_.channels(*unit.packet);
+    changes_.clear();
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        auto& latest = latest_[channels[i].value];
+        if (latest && latest->sclk > unit.sclk) continue;
+        latest = LatestValue{std::isnan(values[i]) ? std::nullopt : std::optional(values[i]), unit.sclk, unit.ert};
+        if (latest->value) alarms_.sample(channels[i], values[i], unit.sclk, changes_);
+    }
+    for (const auto& change : changes_)
+        batch.alarms.push_back({numbering.next(batch), unit.seq, change.channel, telemetry::name_of(change.severity),
+                                change.value, change.sclk, change.limit});
+}
+
+void PacketIntake::interpret(const UnitRecord& unit, Numbering& numbering, Batch& batch) const {
+    if (const auto* event = telemetry::event_of(dictionary_, decoded_)) {
+        batch.events.push_back({numbering.next(batch), unit.seq, event->id, event->name,
+                                telemetry::name_of(event->level), telemetry::event_text(dictionary_, *event, decoded_),
+                                unit.sclk, unit.ert, unit.source, unit.duplicate()});
+    }
+    if (firing_ && firing_->packet == decoded_.packet) {
+        const auto value = [this](std::size_t field) { return decoded_.value[field].value_or(0.0); };
+        const auto& fields = dictionary_.packets[decoded_.packet].fields;
+        const auto index = static_cast<std::size_t>(value(firing_->timepoint));
+        batch.firings.push_back({numbering.next(batch), unit.seq, TimepointId{static_cast<std::uint16_t>(index)},
+                                 index < dictionary_.timeline.size() ? dictionary_.timeline[index].name : std::string(),
+                                 telemetry::value_text(fields[firing_->verdict].type, decoded_.value[firing_->verdict]),
+                                 Sclk{value(firing_->triggered)}, Sclk{value(firing_->fired)}, unit.source,
+                                 unit.duplicate()});
+    }
+    if (auto explanation = telemetry::explain(dictionary_, decoded_))
+        batch.explanations.push_back(
+            {numbering.next(batch), unit.seq, unit.sclk, std::move(*explanation), unit.source, unit.duplicate()});
+}
+
+archive::RecordingTotals PacketIntake::totals() const {
+    const auto proof = telemetry::prove(register_);
+    archive::RecordingTotals totals;
+    totals.recorded = proof.recorded;
+    totals.recorded_octets = recorded_octets_;
+    totals.realtime = proof.realtime;
+    totals.realtime_not_recorded = proof.realtime_not_recorded;
+    totals.realtime_differs = proof.realtime_differs;
+    totals.never_seen_live = proof.never_seen_live;
+    totals.not_decoded = not_decoded_;
+    return totals;
+}
+
+} // namespace aeolis::pipeline

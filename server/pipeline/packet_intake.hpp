@@ -1,0 +1,74 @@
+#pragma once
+
+#include "server/archive/packet_columns.hpp"
+#include "server/pipeline/pipeline.hpp"
+#include "server/pipeline/segment_builder.hpp"
+#include "simulation/landing.hpp"
+#include "telemetry/alarms.hpp"
+#include "telemetry/decommutator.hpp"
+#include "telemetry/unit_identity.hpp"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace aeolis::pipeline {
+
+/// Hands out sequence numbers, and notes them in the batch that will make them durable.
+class Numbering {
+  public:
+    Sequence next(archive::Batch& batch) {
+        batch.last_seq = next_++;
+        if (batch.first_seq == 0) batch.first_seq = batch.last_seq;
+        return batch.last_seq;
+    }
+
+  private:
+    Sequence next_ = 1;
+};
+
+/// One run's packets as they come, on either path: what each is, whether it was seen before, and all that it says.
+///
+/// In       packets in the order of receipt               Out   records, appended to a batch
+/// Rules    a unit that came before on the other path is kept (it is the proof) and marked, but its samples are not
+///          added again; one that came before on the same path says nothing new at all. Alarms are judged in real
+///          time only: the recording tells what was, not what is.
+/// Memory   the register of units (telemetry/unit_identity.hpp) and the open segments
+class PacketIntake {
+  public:
+    PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns);
+
+    void take(const simulation::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
+              const Observer& observer);
+    void seal(archive::Batch& batch) { segments_.seal(batch.segments); }
+
+    archive::RecordingTotals totals() const;
+    const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
+
+  private:
+    /// Of the packet "TimepointFired", by which ground knows that a timepoint fired.
+    struct FiringFields {
+        std::size_t packet = 0, timepoint = 0, triggered = 0, fired = 0, verdict = 0;
+    };
+    static std::optional<FiringFields> find_firing_fields(const dictionary::Dictionary& dictionary);
+
+    void sample(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch);
+    void interpret(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch) const;
+    void judge(const archive::UnitRecord& unit, std::span<const double> values, Numbering& numbering,
+               archive::Batch& batch);
+
+    const dictionary::Dictionary& dictionary_;
+    const archive::PacketColumns& columns_;
+    std::optional<FiringFields> firing_;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
+    telemetry::UnitRegister register_;
+    telemetry::AlarmMonitor alarms_;
+    std::vector<telemetry::AlarmChange> changes_;
+    SegmentBuilder segments_;
+    std::vector<std::optional<LatestValue>> latest_;
+    std::uint64_t recorded_octets_ = 0;
+    std::uint64_t not_decoded_ = 0;
+};
+
+} // namespace aeolis::pipeline

@@ -1,0 +1,261 @@
+#include "server/pipeline/pipeline.hpp"
+
+#include "server/archive/items.hpp"
+#include "server/archive/packet_columns.hpp"
+#include "server/pipeline/packet_intake.hpp"
+
+#include <algorithm>
+
+namespace aeolis::pipeline {
+
+namespace {
+
+archive::Link link_of(const simulation::LinkState& state) {
+    if (state.x_band) return archive::Link::x_band;
+    return state.link == simulation::LinkId::relay ? archive::Link::relay : archive::Link::uhf_live;
+}
+
+} // namespace
+
+struct Pipeline::State {
+    State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in)
+        : archive(archive_in), dictionary(dictionary_in), columns(dictionary_in) {}
+
+    /// All that belongs to the run that goes on.
+    struct Run {
+        Run(RunId id_in, archive::RunStart start_in, const State& state)
+            : id(id_in), start(std::move(start_in)), intake(state.dictionary, state.columns) {}
+        RunId id;
+        archive::RunStart start;
+        Numbering numbering;
+        PacketIntake intake;
+        archive::Batch pending;
+        double progress = 0.0, durable_progress = 0.0; ///< of the recording
+        Sequence last_durable = 0;
+
+        archive::RecordingTotals totals() const {
+            auto totals = intake.totals();
+            totals.progress = progress;
+            return totals;
+        }
+    };
+
+    Result<void> room() const;
+    void take(const simulation::ReceivedPacket& packet);
+    void take(const simulation::ReceivedTone& tone);
+    void take(const simulation::LinkState& link);
+    std::shared_ptr<const PublishedBatch> published() const;
+
+    archive::Archive& archive;
+    const dictionary::Dictionary& dictionary;
+    archive::PacketColumns columns;
+    Publish publish;
+    Observer observer;
+    bool items_wanted = true;
+    std::optional<Run> run;
+    std::chrono::steady_clock::time_point last_commit{};
+};
+
+Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary)
+    : state_(std::make_unique<State>(archive, dictionary)) {}
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+Pipeline::~Pipeline() = default;
+
+void Pipeline::on_publish(Publish publish) {
+    state_->publish = std::move(publish);
+}
+void Pipeline::on_decoded(Observer observer) {
+    state_->observer = std::move(observer);
+}
+void Pipeline::want_items(bool wanted) {
+    state_->items_wanted = wanted;
+}
+
+std::optional<RunId> Pipeline::run() const {
+    return state_->run ? std::optional(state_->run->id) : std::nullopt;
+}
+Sequence Pipeline::last_durable() const {
+    return state_->run ? state_->run->last_durable : 0;
+}
+std::size_t Pipeline::pending_items() const {
+    if (!state_->run || state_->run->pending.last_seq == 0) return 0;
+    return static_cast<std::size_t>(state_->run->pending.last_seq - state_->run->pending.first_seq + 1);
+}
+
+Result<RunId> Pipeline::begin(const archive::RunStart& start) {
+    if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
+    auto id = state_->archive.begin_run(start, state_->dictionary);
+    if (!id) return id.error();
+    state_->run.emplace(*id, start, *state_);
+    return *id;
+}
+
+void Pipeline::abandon() {
+    state_->run.reset();
+}
+
+Result<void> Pipeline::State::room() const {
+    AEOLIS_CHECK(run.has_value());
+    const std::size_t octets = run->pending.octets.size() + run->pending.values.size() * sizeof(double);
+    if (octets < pending_octets_max) return {};
+    return Error{archive.file().string() + ": " + std::to_string(octets >> 20U) +
+                 " MB wait to be stored; the run is held until they are"};
+}
+
+Result<void> Pipeline::accept(const simulation::CycleReport& report) {
+    if (report.packets.empty() && report.tones.empty() && report.links.empty()) return {};
+    // All of the report or none of it: otherwise what is given again would be doubled.
+    if (auto room = state_->room(); !room) return room;
+    for (const auto& link : report.links)
+        state_->take(link);
+    for (const auto& packet : report.packets)
+        state_->take(packet);
+    for (const auto& tone : report.tones)
+        state_->take(tone);
+    return {};
+}
+
+Result<void> Pipeline::accept(const simulation::ReceivedPacket& packet) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(packet);
+    return {};
+}
+
+Result<void> Pipeline::accept(const simulation::ReceivedTone& tone) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(tone);
+    return {};
+}
+
+Result<void> Pipeline::accept(const simulation::LinkState& link) {
+    if (auto room = state_->room(); !room) return room;
+    state_->take(link);
+    return {};
+}
+
+Result<void> Pipeline::accept(archive::StageRecord stage) {
+    if (auto room = state_->room(); !room) return room;
+    auto& run = *state_->run;
+    stage.seq = run.numbering.next(run.pending);
+    run.pending.stages.push_back(std::move(stage));
+    return {};
+}
+
+void Pipeline::State::take(const simulation::ReceivedPacket& packet) {
+    run->intake.take(packet, run->numbering, run->pending, observer);
+}
+
+void Pipeline::State::take(const simulation::LinkState& link) {
+    run->pending.links.push_back({run->numbering.next(run->pending), link_of(link), link.up, link.reason, link.ert});
+}
+
+void Pipeline::State::take(const simulation::ReceivedTone& tone) {
+    archive::ToneRecord record;
+    record.seq = run->numbering.next(run->pending);
+    record.start = tone.start;
+    record.end = tone.end;
+    record.tone = tone.tone;
+    if (tone.tone && tone.tone->value < dictionary.tones.size()) {
+        record.name = dictionary.tones[tone.tone->value].name;
+        record.meaning = dictionary.tones[tone.tone->value].meaning;
+    }
+    record.likelihood = tone.likelihood;
+    record.runner_up = tone.runner_up;
+    record.runner_up_likelihood = tone.runner_up_likelihood;
+    record.c_n0_dbhz = tone.c_n0_dbhz;
+    record.doppler_hz = tone.doppler_hz;
+    record.locked = tone.locked;
+    record.model = run->start.tone_model;
+    // Ground knows when the symbol began on board by light time alone; what was sent is the simulation's secret.
+    const double sent_s =
+        static_cast<double>(tone.start.microseconds - run->start.correlation.scet.microseconds) * 1e-6 -
+        run->start.light_time_s;
+    record.sclk = run->start.correlation.sclk + sent_s;
+    run->pending.tones.push_back(std::move(record));
+}
+
+void Pipeline::relay_progress(double progress) {
+    AEOLIS_CHECK(state_->run.has_value());
+    state_->run->progress = progress;
+}
+
+archive::RecordingTotals Pipeline::totals() const {
+    return state_->run ? state_->run->totals() : archive::RecordingTotals{};
+}
+
+const std::vector<std::optional<LatestValue>>& Pipeline::latest() const {
+    static const std::vector<std::optional<LatestValue>> nothing;
+    return state_->run ? state_->run->intake.latest() : nothing;
+}
+
+Result<void> Pipeline::commit_if_due(std::chrono::steady_clock::time_point now) {
+    if (pending_items() == 0) return {};
+    if (pending_items() < commit_items && now - state_->last_commit < commit_interval) return {};
+    state_->last_commit = now;
+    return commit();
+}
+
+Result<void> Pipeline::commit_if_full() {
+    return pending_items() < commit_items ? Result<void>{} : commit();
+}
+
+Result<void> Pipeline::commit() {
+    if (!state_->run) return {};
+    auto& run = *state_->run;
+    if (!run.pending.units.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
+    if (run.pending.empty()) return {};
+    if (auto done = state_->archive.append(run.id, run.pending); !done) return done;
+    run.durable_progress = run.progress;
+    const auto batch = state_->published();
+    run.pending.clear();
+    if (!batch) return {};
+    run.last_durable = batch->last_seq;
+    if (state_->publish) state_->publish(batch);
+    return {};
+}
+
+Result<void> Pipeline::finish(const archive::RunEnd& end) {
+    AEOLIS_CHECK(state_->run.has_value());
+    auto& run = *state_->run;
+    run.intake.seal(run.pending);
+    run.pending.end = end;
+    if (auto done = commit(); !done) return done;
+    state_->run.reset();
+    return {};
+}
+
+std::shared_ptr<const PublishedBatch> Pipeline::State::published() const {
+    const auto& batch = run->pending;
+    if (batch.last_seq == 0) return nullptr;
+    auto made = std::make_shared<PublishedBatch>();
+    made->run = run->id;
+    made->first_seq = batch.first_seq;
+    made->last_seq = batch.last_seq;
+    made->built = items_wanted;
+    if (!items_wanted) return made;
+    made->items.resize(static_cast<std::size_t>(batch.last_seq - batch.first_seq + 1));
+    const auto place = [&](v1::Item item) {
+        const auto index = static_cast<std::size_t>(item.seq() - batch.first_seq);
+        made->items[index] = std::move(item);
+    };
+    for (const auto& unit : batch.units)
+        place(to_item(unit, &dictionary));
+    for (const auto& sample : batch.samples)
+        place(to_item(sample, columns.channels(sample.packet),
+                      std::span(batch.values).subspan(sample.values.first, sample.values.count)));
+    const auto place_all = [&](const auto& records) {
+        for (const auto& record : records)
+            place(archive::to_item(record));
+    };
+    place_all(batch.events);
+    place_all(batch.tones);
+    place_all(batch.stages);
+    place_all(batch.firings);
+    place_all(batch.explanations);
+    place_all(batch.links);
+    place_all(batch.alarms);
+    return made;
+}
+
+} // namespace aeolis::pipeline

@@ -1,0 +1,159 @@
+#include "server/archive/archive.hpp"
+#include "server/archive/sqlite.hpp"
+#include "tests/server/landing_fixture.hpp"
+#include "tests/support/catch.hpp"
+
+#include <fstream>
+
+using namespace aeolis;
+using namespace aeolis::archive;
+using test::TemporaryFolder;
+
+namespace {
+
+/// One unit a sequence number, from `first`.
+Batch units(Sequence first, std::size_t count) {
+    Batch batch;
+    batch.first_seq = first;
+    batch.last_seq = first + count - 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        UnitRecord unit;
+        unit.seq = first + i;
+        unit.apid = test::status_apid;
+        unit.packet = std::uint16_t{1};
+        unit.link = Link::uhf_live;
+        unit.source = Source::realtime;
+        unit.sclk = Sclk{static_cast<double>(unit.seq)};
+        const auto octets = test::status_packet(static_cast<std::uint16_t>(unit.seq), unit.sclk.seconds, 1);
+        unit.octets = {batch.octets.size(), octets.size()};
+        batch.octets.insert(batch.octets.end(), octets.begin(), octets.end());
+        batch.units.push_back(unit);
+    }
+    return batch;
+}
+
+std::int64_t ask(const std::filesystem::path& file, const char* sql) {
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
+    REQUIRE(database.ok());
+    auto answer = database->integer_of(sql);
+    REQUIRE(answer.ok());
+    return *answer;
+}
+
+} // namespace
+
+TEST_CASE("a new archive is an SQLite file that names its program and schema", "[archive][R43]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    { REQUIRE(Archive::open(file).ok()); }
+    CHECK(ask(file, "PRAGMA application_id") == application_id);
+    CHECK(ask(file, "PRAGMA user_version") == schema_version);
+    CHECK(ask(file, "SELECT count(*) FROM packets") == 0);
+    CHECK_FALSE(std::filesystem::exists(folder / "a.db-writer"));
+}
+
+TEST_CASE("what is not an archive is refused by name and left as it was", "[archive]") {
+    TemporaryFolder folder;
+    SECTION("text") {
+        const auto file = folder / "notes.db";
+        std::ofstream(file) << std::string(5000, 'x');
+        const auto opened = Archive::open(file);
+        REQUIRE_FALSE(opened.ok());
+        CHECK(opened.error().message == file.string() + " is not an Aeolis archive");
+        CHECK(std::filesystem::file_size(file) == 5000);
+    }
+    SECTION("another program's database") {
+        const auto file = folder / "other.db";
+        {
+            auto other = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(other->execute("CREATE TABLE t(x)").ok());
+        }
+        const auto opened = Archive::open(file);
+        REQUIRE_FALSE(opened.ok());
+        CHECK(opened.error().message == file.string() + " is not an Aeolis archive");
+        CHECK(ask(file, "SELECT count(*) FROM sqlite_schema") == 1);
+    }
+    SECTION("a newer schema") {
+        const auto file = folder / "newer.db";
+        { REQUIRE(Archive::open(file).ok()); }
+        {
+            auto newer = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(newer->execute("PRAGMA user_version = 999").ok());
+        }
+        const auto opened = Archive::open(file);
+        REQUIRE_FALSE(opened.ok());
+        CHECK(opened.error().message.find("newer Aeolis") != std::string::npos);
+    }
+    SECTION("a folder, and a folder that is not there") {
+        CHECK_FALSE(Archive::open(folder / "").ok());
+        CHECK_FALSE(Archive::open(folder / "none/a.db").ok());
+    }
+}
+
+TEST_CASE("an archive has one writer", "[archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    auto first = Archive::open(file);
+    REQUIRE(first.ok());
+    const auto second = Archive::open(file);
+    REQUIRE_FALSE(second.ok());
+    CHECK(second.error().message == file.string() + " is being written by another process");
+    first = Error{"closed"};
+    CHECK(Archive::open(file).ok());
+}
+
+TEST_CASE("a batch is stored whole or not at all, and may be given again", "[archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    auto archive = Archive::open(file);
+    REQUIRE(archive.ok());
+    const auto run = archive->begin_run({}, test::small_dictionary());
+    REQUIRE(run.ok());
+    REQUIRE(archive->append(*run, units(1, 10)).ok());
+
+    auto batch = units(11, 10);
+    batch.units.back().seq = 5; // taken: the ten before it must not be stored either
+    CHECK_FALSE(archive->append(*run, batch).ok());
+    CHECK(ask(file, "SELECT count(*) FROM units") == 10);
+
+    batch.units.back().seq = 20;
+    CHECK(archive->append(*run, batch).ok());
+    CHECK(ask(file, "SELECT count(*) FROM units") == 20);
+    CHECK(ask(file, "SELECT max(seq) FROM packets") == 20);
+}
+
+TEST_CASE("runs are numbered in one file and keep their units apart", "[archive][R43]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    auto archive = Archive::open(file);
+    const auto dictionary = test::small_dictionary();
+    const auto first = archive->begin_run({}, dictionary);
+    REQUIRE(archive->append(*first, units(1, 3)).ok());
+    Batch end;
+    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    REQUIRE(archive->append(*first, end).ok());
+    const auto second = archive->begin_run({}, dictionary);
+    CHECK(second->value == first->value + 1);
+    REQUIRE(archive->append(*second, units(1, 4)).ok());
+    CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 1") == 3);
+    CHECK(ask(file, "SELECT count(*) FROM packets WHERE run = 2 AND name = 'Status'") == 4);
+    CHECK(ask(file, "SELECT last_seq FROM runs WHERE run = 1 AND state = 'finished'") == 3);
+    CHECK(ask(file, "SELECT count(*) FROM dictionaries") == 1);
+}
+
+TEST_CASE("a run that was cut off is marked interrupted, with its last sequence number", "[archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    {
+        auto archive = Archive::open(file);
+        const auto run = archive->begin_run({}, test::small_dictionary());
+        auto batch = units(1, 7);
+        batch.units.back().sampled = true; // its samples are item 8
+        batch.last_seq = 8;
+        REQUIRE(archive->append(*run, batch).ok());
+    }
+    auto archive = Archive::open(file);
+    REQUIRE(archive->interrupted().size() == 1);
+    CHECK(archive->interrupted().front() == RunId{1});
+    CHECK(ask(file, "SELECT last_seq FROM runs WHERE state = 'interrupted'") == 8);
+}
