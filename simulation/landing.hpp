@@ -40,34 +40,34 @@ struct ReceivedPacket {
 
 /// A tone decision of the receiver (statistical model: drawn from the exact symbol error at the scenario's C/N0).
 struct ReceivedTone {
-    Ert start, end;                    ///< of the symbol; 10 s
-    std::optional<ToneId> tone;        ///< none: erasure
-    double likelihood = 0.0;           ///< 0 … 1 that the decision is right
+    Ert start, end;             ///< of the symbol; 10 s
+    std::optional<ToneId> tone; ///< none: erasure
+    double likelihood = 0.0;    ///< 0 … 1 that the decision is right
     std::optional<ToneId> runner_up;
     double runner_up_likelihood = 0.0;
     double c_n0_dbhz = 0.0;
     double doppler_hz = 0.0;
     bool locked = false;
-    std::optional<ToneId> sent;        ///< truth, for the run's score only: never shown as received
+    std::optional<ToneId> sent; ///< truth, for the run's score only: never shown as received
     Sclk sent_at;
 };
 
 /// The state of a link, told when it changes.
 struct LinkState {
     LinkId link{};
-    bool x_band = false;               ///< else `link`
+    bool x_band = false; ///< else `link`
     Ert ert;
     bool up = false;
-    std::string reason;                ///< "plasma blackout", "Earth set", "not switched on", "nominal"
+    std::string reason; ///< "plasma blackout", "Earth set", "not switched on", "nominal"
 };
 
 /// A moment of the truth, named as in the design's table.
 struct TruthEvent {
     std::string name;
     Sclk sclk;
-    double e_s = 0.0;                  ///< from the truth's entry interface
-    double altitude_m = 0.0;           ///< descent stage's (before separation the vehicle's) above the landing radius
-    double speed_mps = 0.0;            ///< planet-relative
+    double e_s = 0.0;        ///< from the truth's entry interface
+    double altitude_m = 0.0; ///< descent stage's (before separation the vehicle's) above the landing radius
+    double speed_mps = 0.0;  ///< planet-relative
 };
 
 struct TruthState {
@@ -86,9 +86,9 @@ struct TouchdownReport {
 
 /// What happened in one 64 Hz cycle. The vectors live until the next step; they keep their capacity.
 struct CycleReport {
-    std::span<const std::uint8_t> recorded;      ///< whole packets appended to NVM in this cycle
-    std::span<const std::uint8_t> radiated;      ///< whole packets given to the UHF transmitter
-    std::vector<ReceivedPacket> packets;         ///< that reach Earth by the end of this cycle
+    std::span<const std::uint8_t> recorded; ///< whole packets appended to NVM in this cycle
+    std::span<const std::uint8_t> radiated; ///< whole packets given to the UHF transmitter
+    std::vector<ReceivedPacket> packets;    ///< that reach Earth by the end of this cycle
     std::vector<ReceivedTone> tones;
     std::vector<LinkState> links;
     std::vector<TruthEvent> events;
@@ -110,25 +110,25 @@ class Landing {
     /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> packet);
 
-    Sclk sclk() const;                 ///< at the vehicle
+    Sclk sclk() const; ///< at the vehicle
     Scet scet() const;
-    Ert ert_now() const;               ///< what Earth's clocks show at this moment: SCET of the vehicle's now
+    Ert ert_now() const; ///< what Earth's clocks show at this moment: SCET of the vehicle's now
     double light_time_s() const;
     ClockCorrelation correlation() const;
     const NavigationSolution& solution() const;
     TruthState truth() const;
     Outcome outcome() const;
     std::string outcome_reason() const;
-    bool finished() const;             ///< outcome known, links empty, recording down
+    bool finished() const; ///< outcome known, links empty, recording down
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
     flight::Computer::Counters counters() const;
-    std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
-    double relay_progress() const;     ///< 0 … 1 of the recording that has come down
+    std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
+    double relay_progress() const;                   ///< 0 … 1 of the recording that has come down
 
   private:
     struct State;
     std::unique_ptr<State> state_;
 };
 
-}  // namespace aeolis::simulation
+} // namespace aeolis::simulation

@@ -15,11 +15,11 @@ namespace aeolis::simulation {
 /// Truth at the epoch, relative to rotating Mars, or at entry interface, from where it is propagated back. [facts]
 struct EntryState {
     double radius_m = 3522200.0;
-    double latitude_deg = -3.9226;        ///< areocentric
-    double longitude_deg = 126.703;       ///< east
-    double speed_mps = 5845.2;            ///< planet-relative
+    double latitude_deg = -3.9226;  ///< areocentric
+    double longitude_deg = 126.703; ///< east
+    double speed_mps = 5845.2;      ///< planet-relative
     double flight_path_deg = -16.14;
-    double azimuth_deg = 93.35;           ///< of the velocity, from north to east
+    double azimuth_deg = 93.35; ///< of the velocity, from north to east
 };
 
 struct Target {
@@ -30,13 +30,13 @@ struct Target {
 
 struct Masses {
     double cruise_stage_kg = 539.0;
-    double cruise_balance_each_kg = 75.0;  ///< two
+    double cruise_balance_each_kg = 75.0; ///< two
     double entry_kg = 3153.0;
-    double entry_balance_each_kg = 25.0;   ///< six
+    double entry_balance_each_kg = 25.0; ///< six
     double heatshield_kg = 385.0;
     double backshell_and_parachute_kg = 349.0;
     double powered_descent_kg = 2269.0;
-    double propellant_kg = 387.0;          ///< of the powered descent mass
+    double propellant_kg = 387.0; ///< of the powered descent mass
     double rover_kg = 899.0;
 };
 
@@ -44,7 +44,7 @@ struct Masses {
 struct Dispersions {
     double delivery_flight_path_deg = 0.0167;
     double delivery_position_m = 900.0;
-    double knowledge_position_m = 930.0;   ///< ground's solution against the truth
+    double knowledge_position_m = 930.0; ///< ground's solution against the truth
     double knowledge_velocity_mps = 0.67;
     double density_fraction = 0.04;
     double drag_fraction = 0.01;
@@ -66,13 +66,13 @@ struct DensityScale {
 struct Radio {
     double light_time_s = 0.0;
     double uhf_rate_bps = 8000.0;
-    double blackout_start_speed_mps = 5400.0;  ///< plasma: between these two speeds after entry, while decelerating
+    double blackout_start_speed_mps = 5400.0; ///< plasma: between these two speeds after entry, while decelerating
     double blackout_end_speed_mps = 2400.0;
     double blackout_start_altitude_m = 65000.0;
-    double uhf_loss_fraction = 0.0;            ///< packets lost at random outside the blackout
-    double x_band_c_n0_dbhz = 22.0;            ///< total power to noise density; the statistical tone model uses it
-    double earth_set_after_entry_s = 299.0;    ///< no tone after that
-    double relay_rate_bps = 2.0e6;             ///< of the recording, after landing
+    double uhf_loss_fraction = 0.0;         ///< packets lost at random outside the blackout
+    double x_band_c_n0_dbhz = 22.0;         ///< total power to noise density; the statistical tone model uses it
+    double earth_set_after_entry_s = 299.0; ///< no tone after that
+    double relay_rate_bps = 2.0e6;          ///< of the recording, after landing
     double relay_start_after_touchdown_s = 20.0;
 };
 
@@ -81,7 +81,7 @@ struct ScriptedCommand {
     double send_before_entry_s = 0.0;
     std::string command;
     std::vector<std::pair<std::string, double>> arguments;
-    bool from_solution = false;   ///< fill the arguments from ground's navigation solution
+    bool from_solution = false; ///< fill the arguments from ground's navigation solution
 };
 
 struct Scenario {
@@ -97,12 +97,12 @@ struct Scenario {
     Masses masses;
     Dispersions dispersions;
     std::vector<DensityScale> density_scale;
-    double parachute_drag_area_m2 = 205.0;   ///< CD·S at terminal speed
+    double parachute_drag_area_m2 = 205.0; ///< CD·S at terminal speed
     double steady_wind_east_mps = 0.0;
     double steady_wind_north_mps = 0.0;
     Radio radio;
     flight::Plan telemetry_plan = flight::Plan::mission;
-    double parachute_speed_mps = 405.0;      ///< trigger of ground's solution
+    double parachute_speed_mps = 405.0; ///< trigger of ground's solution
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
@@ -111,4 +111,4 @@ struct Scenario {
 /// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.
 std::vector<std::string> impossible_values(const Scenario& scenario);
 
-}  // namespace aeolis::simulation
+} // namespace aeolis::simulation

@@ -26,7 +26,7 @@
 namespace aeolis::simulation {
 
 /// In       DeviceOutputs of each 64 Hz cycle             Out   DeviceInputs of the next tick, truth and its events
-/// Memory   about 10 kB, made once; advance() allocates nothing but an event's name
+/// Memory   about 20 kB, made once; advance() allocates nothing but an event's name
 /// Faults   a state that is not finite ends the run as `lost`
 /// Copying a world is a fork: two copies fed the same outputs stay bit-identical.
 class World {
@@ -50,30 +50,30 @@ class World {
     /// The vehicle's recorder tells the computer how full it is.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 
-    Sclk sclk() const;                          ///< of the tick that is now
+    Sclk sclk() const; ///< of the tick that is now
     TruthState truth() const;
     /// Moments that the last sense() or advance() brought to light; a moment's own time may lie some cycles back.
     std::span<const TruthEvent> events() const;
-    Outcome outcome() const;                    ///< `touchdown` once the rover stands and the stage has flown away
+    Outcome outcome() const; ///< `touchdown` once the rover stands and the stage has flown away
     const std::string& outcome_reason() const;
-    const std::optional<TouchdownReport>& touchdown() const;   ///< from the rover's first contact
-    std::optional<Sclk> contact() const;        ///< when that was
+    const std::optional<TouchdownReport>& touchdown() const; ///< from the rover's first contact
+    std::optional<Sclk> contact() const;                     ///< when that was
     double peak_deceleration_mps2() const;
     const NavigationSolution& solution() const;
 
     /// What a test or a report may want to see of the truth, and flight never does.
     struct Inspection {
-        double mass_kg = 0.0;                   ///< of all that flies on
+        double mass_kg = 0.0; ///< of all that flies on
         double propellant_kg = 0.0;
         double mach = 0.0;
         double dynamic_pressure_Pa = 0.0;
-        double angle_of_attack_deg = 0.0;       ///< total, against the wind
-        double bank_deg = 0.0;                  ///< lift vector, positive to the right
+        double angle_of_attack_deg = 0.0; ///< total, against the wind
+        double bank_deg = 0.0;            ///< lift vector, positive to the right
         double density_kgm3 = 0.0;
         double thrust_N = 0.0;
         double bridle_m = 0.0;
         std::array<double, 4> q_MB{1, 0, 0, 0};
-        bool uhf_on = false;                    ///< transmitter on and an antenna selected
+        bool uhf_on = false; ///< transmitter on and an antenna selected
         bool parachute_open = false;
     };
     Inspection inspect() const;
@@ -83,4 +83,4 @@ class World {
     std::unique_ptr<State> state_;
 };
 
-}  // namespace aeolis::simulation
+} // namespace aeolis::simulation

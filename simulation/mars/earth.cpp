@@ -1,0 +1,25 @@
+#include "simulation/mars/earth.hpp"
+
+namespace aeolis::simulation {
+namespace {
+
+// In axes M as they stand at entry interface.
+constexpr double earth_latitude_rad = 23.450 * degree_rad;
+constexpr double earth_longitude_rad = 48.378 * degree_rad;
+constexpr double mars_recedes_mps = 10450.0;
+
+} // namespace
+
+Vector3 earth_direction_M(double e_s) {
+    return place(earth_latitude_rad, earth_longitude_rad - mars_spin_rps * e_s, 1.0);
+}
+
+double earth_elevation_rad(const Vector3& p, double e_s) {
+    return std::asin(earth_direction_M(e_s).dot(p.normalized()));
+}
+
+double earth_range_rate_mps(const Vector3& p, const Vector3& v, double e_s) {
+    return mars_recedes_mps - inertial_velocity(p, v).dot(earth_direction_M(e_s));
+}
+
+} // namespace aeolis::simulation

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "simulation/mars/mars.hpp"
+
+// Earth as seen from the landing: a fixed direction in inertial space and one relative speed, for the minutes around
+// entry. Fitted by us to the published geometry (elevations within 0.01°, range rate within 12 m/s). [facts-od137]
+namespace aeolis::simulation {
+
+/// Unit vector from Mars to Earth in M, `e_s` seconds from entry interface at the scenario's reference entry.
+Vector3 earth_direction_M(double e_s);
+
+/// Elevation of Earth above the local horizontal. [rad]
+double earth_elevation_rad(const Vector3& p_MoB_M, double e_s);
+
+/// Speed at which the vehicle's distance from Earth grows. [m/s]
+double earth_range_rate_mps(const Vector3& p_MoB_M, const Vector3& v_MB_M, double e_s);
+
+} // namespace aeolis::simulation

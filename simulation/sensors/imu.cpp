@@ -1,0 +1,46 @@
+#include "simulation/sensors/imu.hpp"
+
+#include "simulation/mars/mars.hpp"
+
+namespace aeolis::simulation {
+namespace {
+
+constexpr double reading_s = 1.0 / 200.0; // [facts]
+// ours, see the header
+constexpr double scale_by_bias_s2pm = 0.3;
+constexpr double velocity_noise_by_bias_s = 0.15;
+constexpr double angle_noise_by_bias_s = 25.0;
+
+} // namespace
+
+Imu::Imu(const Dispersions& dispersions, Random random)
+    : accelerometer_bias_mps2_(dispersions.imu_bias_mps2 * vector3(random.normal3())),
+      accelerometer_scale_(dispersions.imu_bias_mps2 * scale_by_bias_s2pm * vector3(random.normal3())),
+      gyro_bias_rps_(dispersions.gyro_bias_rps * vector3(random.normal3())),
+      velocity_noise_mps_(dispersions.imu_bias_mps2 * velocity_noise_by_bias_s),
+      angle_noise_rad_(dispersions.gyro_bias_rps * angle_noise_by_bias_s), noise_(random) {}
+
+void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_start, const Quaternion& q_MB_end,
+                    double step_s) {
+    Quaternion middle{q_MB_start.coeffs() + (q_MB_start.dot(q_MB_end) < 0.0 ? -1.0 : 1.0) * q_MB_end.coeffs()};
+    middle.normalize();
+    delta_v_mps_ += middle.conjugate() * (specific_force_M * step_s);
+    turned_ = turned_ * q_MB_start.conjugate() * rotation({0.0, 0.0, mars_spin_rps * step_s}) * q_MB_end;
+}
+
+flight::ImuSample Imu::read() {
+    flight::ImuSample sample;
+    sample.count = ++count_;
+    Vector3 delta_v =
+        delta_v_mps_ + accelerometer_scale_.cwiseProduct(delta_v_mps_) + accelerometer_bias_mps2_ * reading_s;
+    Vector3 delta_angle = rotation_vector(turned_) + gyro_bias_rps_ * reading_s;
+    if (velocity_noise_mps_ > 0.0) delta_v += velocity_noise_mps_ * vector3(noise_.normal3());
+    if (angle_noise_rad_ > 0.0) delta_angle += angle_noise_rad_ * vector3(noise_.normal3());
+    sample.delta_v_mps = array3(delta_v);
+    sample.delta_angle_rad = array3(delta_angle);
+    delta_v_mps_.setZero();
+    turned_.setIdentity();
+    return sample;
+}
+
+} // namespace aeolis::simulation

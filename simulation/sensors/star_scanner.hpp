@@ -1,0 +1,26 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+#include "simulation/random.hpp"
+#include "simulation/scenario.hpp"
+#include "simulation/vectors.hpp"
+
+namespace aeolis::simulation {
+
+/// Cruise attitude determination: the attitude once a second while the cruise stage, which carries it, is there.
+/// A case has one constant error, a small rotation in B of the scenario's deviation on each axis.
+class StarScanner {
+  public:
+    StarScanner(const Dispersions& dispersions, Random random)
+        : error_(rotation(dispersions.attitude_rad * vector3(random.normal3()))) {}
+
+    flight::CruiseAttitude measure(const Quaternion& q_MB) const {
+        const Quaternion measured = (q_MB * error_).normalized();
+        return {array4(measured)};
+    }
+
+  private:
+    Quaternion error_;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,52 @@
+#include "simulation/vehicle/engines.hpp"
+
+#include "simulation/vectors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::simulation {
+namespace {
+
+constexpr double priming_s = 5.0;
+constexpr double ignition_delay_s = 0.15;
+constexpr double throttle_lag_s = 0.06;
+constexpr double shutdown_lag_s = 0.03;
+constexpr double least_impulse_s = 204.0;
+constexpr double most_impulse_s = 223.0;
+
+} // namespace
+
+void Engines::open_valves(double now_s) {
+    if (valves_open_) return;
+    valves_open_ = true;
+    valves_open_since_s_ = now_s;
+}
+
+void Engines::command(const flight::EngineCommand& command, double now_s) {
+    if (command.ignited && !ignited_) ignition_s_ = now_s;
+    ignited_ = command.ignited;
+    for (std::size_t i = 0; i < throttle_.size(); ++i)
+        throttle_[i] = std::isfinite(command.throttle[i]) ? std::clamp(command.throttle[i], 0.0, 1.0) : 0.0;
+}
+
+double Engines::advance(double now_s, double step_s, double propellant_left_kg) {
+    running_ = ignited_ && valves_open_ && propellant_left_kg > 0.0 && now_s - valves_open_since_s_ >= priming_s &&
+               now_s - ignition_s_ >= ignition_delay_s;
+    if (!running_ && thrust_sum_N_ == 0.0) return 0.0;
+    const double kept = std::exp(-step_s / (running_ ? throttle_lag_s : shutdown_lag_s));
+    double burnt_kg = 0.0;
+    thrust_sum_N_ = 0.0;
+    for (std::size_t i = 0; i < thrust_N_.size(); ++i) {
+        const double asked_N = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
+        const double before_N = thrust_N_[i];
+        thrust_N_[i] = asked_N + (before_N - asked_N) * kept;
+        if (!running_ && thrust_N_[i] < 0.1) thrust_N_[i] = 0.0;
+        const double impulse_s = least_impulse_s + (most_impulse_s - least_impulse_s) * thrust_N_[i] / largest_thrust_N;
+        burnt_kg += 0.5 * (before_N + thrust_N_[i]) * step_s / (impulse_s * standard_gravity_mps2);
+        thrust_sum_N_ += thrust_N_[i];
+    }
+    return burnt_kg;
+}
+
+} // namespace aeolis::simulation

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+
+#include <array>
+
+namespace aeolis::simulation {
+
+/// Eight throttled descent engines. All push along −z of B: their cant is left out.
+///
+/// 31 … 3603 N each, specific impulse 204 s at least thrust to 223 s at most. [facts]
+/// Ours: they light only when the valves have been open for 5 s (priming), 0.15 s after the command; thrust follows the
+/// throttle with a time constant of 0.06 s and dies with one of 0.03 s.
+class Engines {
+  public:
+    static constexpr double largest_thrust_N = 3603.0;
+    static constexpr double least_thrust_N = 31.0;
+
+    void open_valves(double now_s);
+    bool valves_open() const { return valves_open_; }
+
+    void command(const flight::EngineCommand& command, double now_s);
+    /// Propellant that the next `step_s` burn [kg]; thrust moves on by that time.
+    double advance(double now_s, double step_s, double propellant_left_kg);
+
+    bool running() const { return running_; }
+    double thrust_N() const { return thrust_sum_N_; }
+
+  private:
+    bool valves_open_ = false;
+    double valves_open_since_s_ = 0.0;
+    bool ignited_ = false;
+    bool running_ = false;
+    double ignition_s_ = 0.0;
+    std::array<double, 8> throttle_{};
+    std::array<double, 8> thrust_N_{};
+    double thrust_sum_N_ = 0.0;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,40 @@
+#include "simulation/vehicle/parachute.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace aeolis::simulation {
+namespace {
+
+constexpr double overshoot = 0.2;          // ours
+constexpr double overshoot_decay_s = 0.25; // ours
+
+struct Row {
+    double mach, factor;
+};
+// ours: see the header
+constexpr std::array<Row, 8> factors{
+    {{0.7, 1.0}, {0.85, 0.99}, {1.0, 0.92}, {1.1, 1.13}, {1.25, 1.24}, {1.6, 1.27}, {1.9, 1.22}, {2.5, 1.05}}};
+
+} // namespace
+
+double parachute_inflation(double since_mortar_s) {
+    if (since_mortar_s <= line_stretch_s) return 0.0;
+    if (since_mortar_s < first_peak_s) {
+        const double part = (since_mortar_s - line_stretch_s) / (first_peak_s - line_stretch_s);
+        return (1.0 + overshoot) * part * part;
+    }
+    return 1.0 + overshoot * std::exp(-(since_mortar_s - first_peak_s) / overshoot_decay_s);
+}
+
+double parachute_mach_factor(double mach) {
+    if (mach <= factors.front().mach) return factors.front().factor;
+    for (std::size_t i = 1; i < factors.size(); ++i) {
+        if (mach > factors[i].mach) continue;
+        const double part = (mach - factors[i - 1].mach) / (factors[i].mach - factors[i - 1].mach);
+        return factors[i - 1].factor + part * (factors[i].factor - factors[i - 1].factor);
+    }
+    return factors.back().factor;
+}
+
+} // namespace aeolis::simulation

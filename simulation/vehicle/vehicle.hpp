@@ -1,0 +1,82 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+#include "simulation/mars/atmosphere.hpp"
+#include "simulation/mars/point_mass.hpp"
+#include "simulation/mars/wind.hpp"
+#include "simulation/scenario.hpp"
+#include "simulation/vehicle/attitude.hpp"
+#include "simulation/vehicle/bridle.hpp"
+#include "simulation/vehicle/configuration.hpp"
+#include "simulation/vehicle/engines.hpp"
+
+#include <optional>
+
+namespace aeolis::simulation {
+
+/// All that moves: a point mass in frame M with an attitude, a configuration, a parachute, engines and a bridle.
+///
+/// Its point is the descent stage's, before separation the vehicle's. The ground is a sphere of the landing radius:
+/// flat around the site. Time is in seconds since the start of the world.
+class Vehicle {
+  public:
+    Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
+            std::uint64_t case_number);
+
+    /// What a pyro does to it. Firing one twice does nothing.
+    void fire(flight::PyroId pyro, double now_s);
+    void command(const flight::DeviceOutputs& out, bool thrusters_enabled, double now_s);
+    /// Flies on by at most 5 ms.
+    void step(double now_s, double step_s);
+
+    const PointMass& at() const { return at_; }
+    const Quaternion& q_MB() const { return attitude_.q_MB(); }
+    const Vector3& specific_force_M() const { return specific_force_M_; } ///< [m/s²] mean over the last step
+    double altitude_m() const { return at_.p_MoB_M.norm() - ground_radius_m_; }
+
+    const Configuration& configuration() const { return configuration_; }
+    const Engines& engines() const { return engines_; }
+    const Bridle& bridle() const { return bridle_; }
+
+    /// What the air does to it now.
+    struct Flow {
+        double density_kgm3 = 0.0, mach = 0.0, dynamic_pressure_Pa = 0.0;
+        double angle_of_attack_rad = 0.0, bank_rad = 0.0;
+    };
+    Flow flow() const;
+    bool parachute_open(double now_s) const;
+
+    /// Height of the rover's wheels above ground while it hangs on the bridle. [m]
+    std::optional<double> wheels_height_m(double now_s) const;
+    double rover_descent_mps(double now_s) const;
+
+  private:
+    /// What a step does not change, and what it changes linearly.
+    struct Step {
+        double start_s = 0.0, length_s = 0.0;
+        Vector3 z_start_M, z_end_M;
+        double thrust_start_N = 0.0, thrust_end_N = 0.0;
+        double mass_kg = 0.0; ///< in its middle
+    };
+    Vector3 specific_force(const Step& step, double fraction, const Vector3& p, const Vector3& v) const;
+    Vector3 air_force_N(double now_s, const Vector3& z_M, const Vector3& p, const Vector3& v) const;
+    Attitude::Surroundings surroundings(double end_s, double step_s) const;
+
+    double ground_radius_m_;
+    double parachute_area_m2_; ///< with this case's own drag
+    double aeroshell_factor_;  ///< this case's own drag and lift
+    Atmosphere atmosphere_;
+    Wind wind_;
+
+    PointMass at_;
+    Vector3 specific_force_M_ = Vector3::Zero();
+    Attitude attitude_;
+    Configuration configuration_;
+    Engines engines_;
+    Bridle bridle_;
+    std::optional<double> mortar_s_;
+    flight::AttitudeCommand attitude_command_;
+    bool thrusters_enabled_ = true;
+};
+
+} // namespace aeolis::simulation

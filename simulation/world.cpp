@@ -1,0 +1,347 @@
+#include "simulation/world.hpp"
+
+#include "simulation/devices/avionics.hpp"
+#include "simulation/initial_state.hpp"
+#include "simulation/moments.hpp"
+#include "simulation/sensors/imu.hpp"
+#include "simulation/sensors/radar.hpp"
+#include "simulation/sensors/star_scanner.hpp"
+#include "simulation/vehicle/vehicle.hpp"
+
+#include <algorithm>
+
+namespace aeolis::simulation {
+namespace {
+
+// All time on a grid of 1/1600 s, in which both the 200 Hz of the IMU and the 64 Hz of the computer are whole.
+constexpr std::int64_t grid_hz = 1600;
+constexpr std::int64_t grid_per_tick = 25;
+constexpr std::int64_t grid_per_reading = 8;
+
+constexpr double entry_margin_m = 1.0;              // the state was propagated back and forth: far below a tick's 25 m
+constexpr double burns_up_m = 80000.0;              // ours: below it a cruise stage that is still there is the end
+constexpr double wheels_break_vertical_mps = 2.0;   // ours
+constexpr double wheels_break_horizontal_mps = 1.5; // ours
+constexpr double stage_clear_m = 50.0;              // ours: a stage that falls nearer has hit the rover
+constexpr double waits_for_cutting_s = 20.0;        // ours
+
+} // namespace
+
+struct World::State {
+    Scenario scenario;
+    InitialState initial;
+    Vehicle vehicle;
+    Avionics avionics;
+    Imu imu;
+    Radar radar;
+    StarScanner star_scanner;
+
+    std::int64_t ticks = 0; ///< since the start
+    flight::DeviceInputs in;
+    FixedVector<flight::ImuSample, 4> imu_samples;
+    FixedVector<flight::UplinkPacket, 8> received;
+    std::uint32_t nvm_used_octets = 0, nvm_capacity_octets = 0;
+
+    BankReversals reversals;
+    PeakDeceleration peak;
+    std::vector<TruthEvent> events;
+    bool entered = false, engines_commanded = false, sky_crane_started = false, flown_away = false;
+    std::optional<Sclk> contact, bridle_cut, stage_down;
+    Vector3 p_MoRover_M = Vector3::Zero();
+    std::optional<TouchdownReport> touchdown;
+    Outcome outcome = Outcome::running;
+    std::string reason;
+
+    State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
+        : scenario(s), initial(initial_state(s, seed, case_number)),
+          vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
+          avionics(Random{seed, case_number, Stream::devices}),
+          imu(s.dispersions, Random{seed, case_number, Stream::imu}),
+          radar(s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}),
+          star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
+        events.reserve(8);
+    }
+
+    std::int64_t grid() const { return ticks * grid_per_tick; }
+    static double seconds(std::int64_t grid) { return static_cast<double>(grid) / grid_hz; }
+    double now_s() const { return seconds(grid()); }
+    Sclk sclk() const { return initial.start + static_cast<double>(ticks) * seconds_per_tick; }
+
+    TruthState truth() const {
+        TruthState truth;
+        truth.sclk = sclk();
+        truth.e_s = truth.sclk - scenario.entry_sclk;
+        truth.p_MoB_M_m = array3(vehicle.at().p_MoB_M);
+        truth.v_MB_M_mps = array3(vehicle.at().v_MB_M);
+        truth.altitude_m = vehicle.altitude_m();
+        truth.speed_mps = vehicle.at().v_MB_M.norm();
+        truth.sensed_mps2 = vehicle.specific_force_M().norm();
+        return truth;
+    }
+
+    void tell(const char* name) { events.push_back(moment(name, truth())); }
+    void end(Outcome how, std::string why) {
+        if (outcome != Outcome::running) return;
+        outcome = how;
+        reason = std::move(why);
+    }
+
+    void take_commands(const flight::DeviceOutputs& out);
+    void take_pyro(flight::PyroId pyro);
+    void fly_one_tick();
+    void touch_ground(std::int64_t grid);
+    void watch();
+};
+
+void World::State::take_pyro(flight::PyroId pyro) {
+    using flight::PyroId;
+    if (!avionics.fire(pyro, ticks)) return;
+    switch (pyro) {
+    case PyroId::cruise_stage_separation:
+        tell("cruise_stage_separation");
+        break;
+    case PyroId::entry_balance_1:
+        tell("sufr_start");
+        break;
+    case PyroId::parachute_mortar:
+        tell("parachute_deploy");
+        break;
+    case PyroId::heatshield_separation:
+        tell("heatshield_separation");
+        break;
+    case PyroId::engine_valves:
+        tell("engine_priming");
+        break;
+    case PyroId::backshell_separation:
+        tell("backshell_separation");
+        break;
+    case PyroId::rover_separation:
+        tell("rover_separation");
+        break;
+    case PyroId::bridle_cutter:
+        tell("bridle_cut");
+        bridle_cut = sclk();
+        if (!contact) end(Outcome::impact, "the bridle was cut before the rover stood");
+        break;
+    default:
+        break;
+    }
+    vehicle.fire(pyro, now_s());
+}
+
+void World::State::take_commands(const flight::DeviceOutputs& out) {
+    for (const flight::PyroId pyro : out.pyros)
+        take_pyro(pyro);
+    for (const flight::SwitchReply& wanted : out.switches)
+        avionics.set(wanted, ticks);
+    if (out.thrusters_enabled) avionics.enable_thrusters(*out.thrusters_enabled, ticks);
+    vehicle.command(out, avionics.thrusters_enabled(), now_s());
+
+    const auto& throttle = out.engines.throttle;
+    const auto idle = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t < 0.05; });
+    const auto pushing = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t > 0.1; });
+    if (out.engines.ignited && !sky_crane_started && idle == 4 && pushing == 4) {
+        sky_crane_started = true;
+        tell("sky_crane_start");
+    }
+    if (engines_commanded && !out.engines.ignited && bridle_cut && !flown_away) {
+        flown_away = true;
+        tell("flyaway_end");
+    }
+    engines_commanded = out.engines.ignited;
+}
+
+void World::State::fly_one_tick() {
+    imu_samples.clear();
+    const std::int64_t end_grid = grid() + grid_per_tick;
+    for (std::int64_t at = grid(); at < end_grid;) {
+        const std::int64_t next = std::min(end_grid, (at / grid_per_reading + 1) * grid_per_reading);
+        const double step_s = seconds(next - at);
+        const Quaternion before = vehicle.q_MB();
+        Vector3 felt = -free_fall(vehicle.at().p_MoB_M, Vector3::Zero());
+        if (!stage_down) {
+            vehicle.step(seconds(at), step_s);
+            felt = vehicle.specific_force_M();
+            touch_ground(next);
+        }
+        imu.integrate(felt, before, vehicle.q_MB(), step_s);
+        if (next % grid_per_reading == 0) {
+            const flight::ImuSample sample = imu.read();
+            if (avionics.on(flight::SwitchId::descent_imu)) imu_samples.push_back(sample);
+        }
+        at = next;
+    }
+    ++ticks;
+}
+
+void World::State::touch_ground(std::int64_t grid) {
+    const double time_s = seconds(grid);
+    const PointMass& at = vehicle.at();
+    if (const auto wheels_m = vehicle.wheels_height_m(time_s); !contact && wheels_m && *wheels_m <= 0.0) {
+        const Horizon local = horizon(at.p_MoB_M);
+        const double vertical_mps = vehicle.rover_descent_mps(time_s);
+        const double horizontal_mps = std::hypot(at.v_MB_M.dot(local.east), at.v_MB_M.dot(local.north));
+        const Vector3 target =
+            place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0);
+        const double miss_m =
+            scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
+        contact = sclk() + seconds_per_tick;
+        p_MoRover_M = local.up * scenario.target.radius_m;
+        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(at.p_MoB_M) / degree_rad,
+                                    longitude_rad(at.p_MoB_M) / degree_rad};
+        if (vertical_mps > wheels_break_vertical_mps || horizontal_mps > wheels_break_horizontal_mps)
+            end(Outcome::impact, "the rover touched the ground too fast");
+    }
+    if (vehicle.altitude_m() <= 0.0) stage_down = sclk() + seconds_per_tick;
+}
+
+void World::State::watch() {
+    const TruthState now = truth();
+    if (!std::isfinite(now.altitude_m) || !std::isfinite(now.speed_mps)) {
+        end(Outcome::lost, "the state of the vehicle is no longer a number");
+        stage_down = now.sclk;
+        return;
+    }
+    if (!entered && vehicle.at().p_MoB_M.norm() <= scenario.entry.radius_m + entry_margin_m) {
+        entered = true;
+        tell("entry_interface");
+    }
+    if (auto event = peak.observe(now)) events.push_back(*event);
+    if (vehicle.configuration().backshell && now.e_s > 0.0 && !avionics.fired(flight::PyroId::parachute_mortar))
+        if (auto event = reversals.observe(now, vehicle.flow().bank_rad)) events.push_back(*event);
+
+    if (outcome != Outcome::running) return;
+    if (now.altitude_m < burns_up_m && vehicle.configuration().cruise_stage)
+        return end(Outcome::not_commanded, "entered with the cruise stage attached: nothing was commanded");
+    if (!contact && stage_down) return end(Outcome::impact, "the vehicle hit the ground");
+    if (now.e_s > scenario.timeout_after_entry_s) return end(Outcome::timeout, "not on the ground in time");
+    if (!contact) return;
+    const double since_contact_s = now.sclk - *contact;
+    if (!bridle_cut) {
+        if (stage_down) return end(Outcome::lost, "the descent stage sank onto the rover");
+        if (since_contact_s > waits_for_cutting_s) return end(Outcome::lost, "the bridle was not cut");
+        return;
+    }
+    if (!stage_down && since_contact_s < scenario.end_after_touchdown_s) return;
+    if ((vehicle.at().p_MoB_M - p_MoRover_M).norm() < stage_clear_m)
+        return end(Outcome::lost, "the descent stage fell onto the rover");
+    end(Outcome::touchdown, "the rover stands, the descent stage is away");
+}
+
+World::World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)
+    : state_(std::make_unique<State>(scenario, seed, case_number)) {}
+World::World(const World& other) : state_(std::make_unique<State>(*other.state_)) {}
+World& World::operator=(const World& other) {
+    if (this != &other) state_ = std::make_unique<State>(*other.state_);
+    return *this;
+}
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+World::~World() = default;
+
+const flight::DeviceInputs& World::sense() {
+    State& s = *state_;
+    flight::DeviceInputs& in = s.in;
+    in.now = s.sclk();
+    in.imu = s.imu_samples;
+    in.cruise_attitude.reset();
+    in.radar.clear();
+    in.pyro_replies.clear();
+    in.switch_replies.clear();
+    in.engines.reset();
+    in.thrusters.reset();
+    in.bridle.reset();
+    in.uplink.clear();
+    if (s.vehicle.configuration().cruise_stage && in.now.ticks() % 64 == 0)
+        in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB());
+    if (s.avionics.on(flight::SwitchId::radar)) {
+        for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
+            if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
+            flight::RadarBeam reading = s.radar.measure(beam, s.vehicle.at(), s.vehicle.q_MB());
+            if (s.vehicle.configuration().heatshield) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
+            in.radar.push_back(reading);
+        }
+    }
+    s.avionics.reply(s.ticks, in);
+    const Engines& engines = s.vehicle.engines();
+    if (engines.valves_open()) in.engines = flight::EngineReply{engines.running(), engines.thrust_N()};
+    if (!s.vehicle.configuration().rover_on_stage)
+        in.bridle = flight::BridleReply{s.vehicle.bridle().payed_out_m(s.now_s())};
+    while (!s.received.empty() && !in.uplink.full()) {
+        in.uplink.push_back(s.received[0]);
+        s.received.erase_at(0);
+    }
+    in.nvm_used_octets = s.nvm_used_octets;
+    in.nvm_capacity_octets = s.nvm_capacity_octets;
+    return in;
+}
+
+void World::advance(const flight::DeviceOutputs& out) {
+    State& s = *state_;
+    s.events.clear();
+    s.take_commands(out);
+    s.fly_one_tick();
+    s.watch();
+}
+
+bool World::receive(std::span<const std::uint8_t> telecommand) {
+    flight::UplinkPacket packet;
+    if (telecommand.size() > packet.octets.size()) return false;
+    std::copy(telecommand.begin(), telecommand.end(), packet.octets.begin());
+    packet.size = static_cast<std::uint16_t>(telecommand.size());
+    return state_->received.try_push_back(packet);
+}
+
+void World::set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets) {
+    state_->nvm_used_octets = used_octets;
+    state_->nvm_capacity_octets = capacity_octets;
+}
+
+Sclk World::sclk() const {
+    return state_->sclk();
+}
+TruthState World::truth() const {
+    return state_->truth();
+}
+std::span<const TruthEvent> World::events() const {
+    return state_->events;
+}
+Outcome World::outcome() const {
+    return state_->outcome;
+}
+const std::string& World::outcome_reason() const {
+    return state_->reason;
+}
+const std::optional<TouchdownReport>& World::touchdown() const {
+    return state_->touchdown;
+}
+std::optional<Sclk> World::contact() const {
+    return state_->contact;
+}
+double World::peak_deceleration_mps2() const {
+    return state_->peak.mps2();
+}
+const NavigationSolution& World::solution() const {
+    return state_->initial.solution;
+}
+
+World::Inspection World::inspect() const {
+    const State& s = *state_;
+    const Vehicle::Flow flow = s.vehicle.flow();
+    using flight::SwitchId;
+    return {.mass_kg = s.vehicle.configuration().total_kg(),
+            .propellant_kg = s.vehicle.configuration().propellant_kg(),
+            .mach = flow.mach,
+            .dynamic_pressure_Pa = flow.dynamic_pressure_Pa,
+            .angle_of_attack_deg = flow.angle_of_attack_rad / degree_rad,
+            .bank_deg = flow.bank_rad / degree_rad,
+            .density_kgm3 = flow.density_kgm3,
+            .thrust_N = s.vehicle.engines().thrust_N(),
+            .bridle_m = s.vehicle.bridle().payed_out_m(s.now_s()),
+            .q_MB = array4(s.vehicle.q_MB()),
+            .uhf_on = s.avionics.on(SwitchId::uhf) &&
+                      (s.avionics.on(SwitchId::entry_antenna) || s.avionics.on(SwitchId::parachute_antenna)),
+            .parachute_open = s.vehicle.parachute_open(s.now_s())};
+}
+
+} // namespace aeolis::simulation
