@@ -1,0 +1,73 @@
+// The header: which run, what time it is, what is connected.
+import { fromEntry, duration } from '../run/time';
+import { cutoff, modeNow, pastRange, store, stream, tick, timepoints } from '../run/session';
+import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
+import type { LinkLine } from './model';
+import './style.css';
+
+const SHAPES = { up: '●', down: '✖', unknown: '○' } as const;
+
+function Link({ line, testId }: { line: LinkLine; testId: string }) {
+  return (
+    <div class={`link link-${line.look}`} data-testid={testId}>
+      <b><span aria-hidden="true">{SHAPES[line.look]}</span> {line.name}</b>
+      <small>{line.detail}</small>
+    </div>
+  );
+}
+
+export function Header() {
+  void tick.value;
+  const run = store.value;
+  const past = pastRange.value;
+  const badge = badgeOf(run, past);
+  const clocks = run && clocksOf(run, past?.to);
+  const send = run?.going && !past ? latestSend(run, timepoints.value) : undefined;
+  const severities = run ? [...run.alarms.values()] : [];
+  return (
+    <header class="header" data-testid="header">
+      <div class="brand">AEOLIS</div>
+      <div class={`badge badge-${modeNow()}`} data-testid="badge" role="status">
+        <b>{badge.title}</b> <span>{badge.detail}</span>
+      </div>
+      {run && (
+        <div class="clock clock-entry">
+          <small>from entry{run.run.lightTimeS > 0 ? ', as seen on Earth' : ''}</small>
+          <output data-testid="clock-entry">{clocks?.entry ?? fromEntry(NaN)}</output>
+        </div>
+      )}
+      {clocks?.others.map((clock) => (
+        <div class="clock" key={clock.id}>
+          <small>{clock.label}</small>
+          <output data-testid={`clock-${clock.id}`}>{clock.value}</output>
+        </div>
+      ))}
+      {send && (
+        <div class={`clock ${send.left_s < 60 ? 'late' : ''}`} title={`before ${send.first}`}>
+          <small>send at the latest</small>
+          <output data-testid="latest-send">
+            {send.left_s < 0 ? `▲ too late since ${send.at}` : `${send.at}, in ${duration(send.left_s)}`}
+          </output>
+        </div>
+      )}
+      <div class="links">
+        {severities.length > 0 && (
+          <div class="link link-alarm" data-testid="alarm-count">
+            <b><span aria-hidden="true">▲</span> {severities.length} {severities.length === 1 ? 'alarm' : 'alarms'}</b>
+            <small>{[...new Set(severities.map((alarm) => alarm.severity))].join(', ')}</small>
+          </div>
+        )}
+        {run && linksOf(run, cutoff.value).map((line) => (
+          <Link key={line.name} line={line} testId={`link-${line.name}`} />
+        ))}
+        <Link line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} testId="stream-state" />
+        {run && (
+          <div class="link" data-testid="complete-through">
+            <b>complete</b>
+            <small>through {run.completeThrough.toLocaleString('en').replaceAll(',', ' ')}</small>
+          </div>
+        )}
+      </div>
+    </header>
+  );
+}

@@ -1,0 +1,38 @@
+// The one animation loop of the page: at most 20 draws a second, numbers at 5 a second, and nothing at all while
+// nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
+import { store, tick } from '../run/session';
+
+const DRAW_EVERY_MS = 50;
+const NUMBERS_EVERY_MS = 200;
+
+const drawings = new Set<() => void>();
+let lastDraw = 0;
+let lastNumbers = 0;
+let shownVersion = -1;
+let shownStore: unknown;
+
+/** Called at each draw; `draw` itself decides whether it is still current. Returns how to stop. */
+export function onDraw(draw: () => void): () => void {
+  drawings.add(draw);
+  return () => drawings.delete(draw);
+}
+
+function frame(now: number): void {
+  requestAnimationFrame(frame);
+  if (now - lastDraw < DRAW_EVERY_MS - 4) return;
+  lastDraw = now;
+  if (now - lastNumbers >= NUMBERS_EVERY_MS - 4) {
+    const version = store.value?.version ?? 0;
+    if (version !== shownVersion || store.value !== shownStore) {
+      shownVersion = version;
+      shownStore = store.value;
+      lastNumbers = now;
+      tick.value += 1;
+    }
+  }
+  for (const draw of drawings) draw();
+}
+
+export function startLoop(): void {
+  requestAnimationFrame(frame);
+}

@@ -1,0 +1,80 @@
+// Events and the explanations that belong to them, newest first.
+import type { RunStore } from '../run/store';
+
+export interface EventLine {
+  key: string;
+  seq: number;
+  e_s: number;
+  level: string;
+  name: string;
+  text: string;
+  why: string[];
+  live: boolean;
+  recorded: boolean;
+  explanation: boolean;
+}
+
+export const LEVELS = ['DIAGNOSTIC', 'ACTIVITY_LO', 'ACTIVITY_HI', 'COMMAND', 'WARNING_LO', 'WARNING_HI', 'FATAL'] as const;
+const SHAPES: Record<string, string> = {
+  FATAL: '✖', WARNING_HI: '▲', WARNING_LO: '△', COMMAND: '▸', ACTIVITY_HI: '◆', ACTIVITY_LO: '●', DIAGNOSTIC: '·',
+};
+export const levelShape = (level: string) => SHAPES[level] ?? '○';
+export const levelWords = (level: string) => level.replace('_HI', ', high').replace('_LO', ', low').toLowerCase();
+
+export interface EventFilter {
+  from: (typeof LEVELS)[number];
+  search: string;
+  range: { from: number; to: number } | undefined;
+}
+
+const SAME_MOMENT_S = 1 / 16; // ours: an explanation and its event leave within a few cycles
+
+/** At most `most` lines. An explanation stands with the event of its moment that it speaks of, else by itself. */
+export function eventLines(store: RunStore, filter: EventFilter, most: number): { lines: EventLine[]; warnings: number } {
+  const least = LEVELS.indexOf(filter.from);
+  const words = filter.search.toLowerCase().split(/\s+/).filter((word) => word !== '');
+  const inRange = (sclk: number) => {
+    const e_s = sclk - store.entrySclk;
+    return !filter.range || (e_s >= filter.range.from && e_s <= filter.range.to);
+  };
+  const matches = (line: EventLine) => {
+    const all = `${line.name} ${line.text} ${line.why.join(' ')}`.toLowerCase();
+    return words.every((word) => all.includes(word));
+  };
+  const lines: EventLine[] = [];
+  let warnings = 0;
+  for (const row of store.events) {
+    if (!inRange(row.fact.sclk)) continue;
+    const level = LEVELS.indexOf(row.fact.level as (typeof LEVELS)[number]);
+    if (level >= 4) ++warnings;
+    if (level >= 0 && level < least) continue;
+    lines.push({
+      key: `e${row.seq}`, seq: row.seq, e_s: row.fact.sclk - store.entrySclk, level: row.fact.level,
+      name: row.fact.name, text: row.fact.text || row.fact.name, why: [], live: row.live, recorded: row.recorded,
+      explanation: false,
+    });
+  }
+  for (const row of store.explanations) {
+    if (!inRange(row.fact.sclk)) continue;
+    const e_s = row.fact.sclk - store.entrySclk;
+    const decision = row.fact.decision.toLowerCase();
+    const owner = lines.findLast((line) =>
+      !line.explanation && Math.abs(line.e_s - e_s) <= SAME_MOMENT_S && decision !== '' &&
+      (line.name.toLowerCase().includes(decision) || decision.includes(line.name.toLowerCase())));
+    if (owner) owner.why.push(row.fact.text);
+    else if (least <= 1 || row.fact.verdict !== 'chosen') {
+      lines.push({
+        key: `x${row.seq}`, seq: row.seq, e_s, level: 'why', name: row.fact.decision, text: row.fact.text, why: [],
+        live: row.live, recorded: row.recorded, explanation: true,
+      });
+    }
+  }
+  lines.sort((a, b) => b.e_s - a.e_s || b.seq - a.seq);
+  return { lines: lines.filter(matches).slice(0, most), warnings };
+}
+
+export function sourceWords(line: { live: boolean; recorded: boolean }): { shape: string; words: string } {
+  if (line.live && line.recorded) return { shape: '◆▣', words: 'seen live and found in the recording' };
+  if (line.recorded) return { shape: '▣', words: 'known from the recording only' };
+  return { shape: '◆', words: 'seen live; the recording is not here yet' };
+}

@@ -1,0 +1,58 @@
+// The default layout: the one place that knows names of a mission. Each pick is a list of names in order of preference;
+// where the dictionary has none of them, the panel does without or takes the first channels there are.
+
+export const LAYOUT = {
+  phase: ['edl_phase'],
+  altitude: ['altitude_m'],
+  speed: ['speed_mps'],
+  nextDesired: ['next_desired_sclk'],
+  nextMinimum: ['next_minimum_sclk'],
+  currentTimepoint: ['timepoint_index'],
+
+  /** Plots, from the top. `per` scales the dictionary's unit to the one shown. */
+  plots: [
+    { title: 'Altitude', channel: ['altitude_m'], unit: 'km', per: 1000, digits: 2 },
+    { title: 'Speed', channel: ['speed_mps'], unit: 'm/s', per: 1, digits: 1 },
+    { title: 'Deceleration', channel: ['sensed_deceleration_g', 'drag_mps2'], unit: undefined, per: 1, digits: 2 },
+    { title: 'Bank', channel: ['bank_deg'], unit: 'deg', per: 1, digits: 1 },
+  ],
+
+  /** The strip of phases, and which values of the phase channel belong to each. */
+  phases: [
+    { title: 'Approach', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'] },
+    {
+      title: 'Entry',
+      of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
+    },
+    { title: 'Parachute', of: ['parachute_descent'] },
+    { title: 'Powered descent', of: ['powered_descent'] },
+    { title: 'Sky crane', of: ['sky_crane'] },
+    { title: 'Landed', of: ['landed', 'flyaway'] },
+  ],
+
+  /** Shown first in the table of channels. */
+  channels: [
+    'edl_phase', 'altitude_m', 'speed_mps', 'descent_rate_mps', 'sensed_deceleration_g', 'bank_deg',
+    'bank_command_deg', 'range_to_go_m', 'crossrange_m', 'mach', 'dynamic_pressure_Pa', 'radar_altitude_m',
+    'propellant_kg', 'timepoint_index', 'timepoint_state', 'tone_current', 'uhf_queue_octets', 'nvm_used_octets',
+  ],
+
+  /** What begins a landing, with words for someone who opened the page five minutes ago. */
+  firstSteps: [
+    {
+      command: 'EDL_SET_PARAMETERS',
+      words: 'set edl parameters',
+      why: 'tells the vehicle where it is and where to land; the form is filled from ground’s navigation solution',
+    },
+    { command: 'EDL_DO_EDL', words: 'do edl', why: 'starts the timeline on board; from then on it flies alone' },
+  ],
+
+  /** Seconds from entry that the timeline shows when nothing else is chosen. */
+  window: { from: -60, to: 470 },
+  /** Named moments that get a label in the timeline; the others are marks only. */
+  labelled: [
+    'cruise_stage_separation', 'entry_interface', 'guidance_start', 'heading_alignment', 'sufr_start',
+    'parachute_deploy', 'heatshield_separation', 'radar_lock', 'engine_priming', 'backshell_separation',
+    'powered_approach_start', 'sky_crane_start', 'rover_separation', 'touchdown', 'flyaway_end',
+  ],
+} as const;

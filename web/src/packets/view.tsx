@@ -1,0 +1,68 @@
+import { signal } from '@preact/signals';
+import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
+import { ask, cutoff, notify, store, tick } from '../run/session';
+import { fromEntry } from '../run/time';
+import { hexLines, linkRates, newestUnits } from './model';
+import './style.css';
+
+const opened = signal<PacketRow | undefined>(undefined);
+
+async function open(unit: number): Promise<void> {
+  const run = store.value;
+  if (!run) return;
+  try {
+    const list = await ask<PacketList>('packets', `/runs/${run.id}/packets?after=${unit - 1}&limit=1`);
+    opened.value = list.packets[0];
+    if (!opened.value) notify(`unit ${unit} is not in the archive`);
+  } catch (error) {
+    notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
+  }
+}
+
+export function Packets() {
+  void tick.value;
+  const run = store.value;
+  if (!run) return null;
+  const packet = opened.value;
+  return (
+    <div class="table-box">
+      <div class="table-tools" data-testid="link-rates">
+        {linkRates(run).map((rate) => (
+          <span key={rate.link}>
+            <b>{rate.link}</b> {rate.units} units, {rate.octets} octets
+            {rate.octets_per_s !== undefined && `, ${(rate.octets_per_s * 8 / 1000).toFixed(1)} kb/s`}
+            {rate.duplicates > 0 && `, ${rate.duplicates} seen before`}
+          </span>
+        ))}
+        {run.unitTotals.size === 0 && <span>no unit yet</span>}
+      </div>
+      <div class="packets">
+        <div class="table-scroll" tabIndex={0} aria-label="units">
+          <table data-testid="unit-table">
+            <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th></tr></thead>
+            <tbody>
+              {newestUnits(run, cutoff.value, 120).map(({ seq, fact }) => (
+                <tr key={seq}>
+                  <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
+                  <td><button type="button" class="link-button" onClick={() => void open(Number(fact.unit))}>{String(fact.unit)}</button></td>
+                  <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
+                  <td>{fact.name}</td>
+                  <td class="number">{fact.octets}</td>
+                  <td>{fact.link}{fact.duplicate ? ' (again)' : ''}</td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        </div>
+        {packet && (
+          <div class="packet table-scroll" data-testid="packet">
+            <b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b>
+            <button type="button" class="quiet" aria-label="close" onClick={() => (opened.value = undefined)}>×</button>
+            <pre>{hexLines(packet.hex).map((line) => `${line.at}  ${line.octets.padEnd(47)}  ${line.text}`).join('\n')}</pre>
+            <dl>{packet.fields.map((field) => (<><dt>{field.name}</dt><dd>{field.text}</dd></>))}</dl>
+          </div>
+        )}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,111 @@
+// A recorded range: asked of the archive, shown as numbers here and as the past in every panel.
+import { signal } from '@preact/signals';
+import type { ChannelSeriesList, RecordingSummary } from '../gen/aeolis/v1/run_pb';
+import { LAYOUT } from '../layout';
+import { numberText } from '../run/dictionary';
+import { ask, dictionary, pastRange, store, tick } from '../run/session';
+import { fromEntry, readFromEntry } from '../run/time';
+import { rangeProblem, rangeRow, seriesPath } from './model';
+import type { RangeRow } from './model';
+import './style.css';
+
+const from = signal('E+3:50');
+const to = signal('E+5:00');
+const channels = signal<string | undefined>(undefined);
+const size = signal('20000');
+const rows = signal<RangeRow[]>([]);
+const summary = signal<RecordingSummary | undefined>(undefined);
+const message = signal<{ good: boolean; text: string } | undefined>(undefined);
+const csvPath = signal<string | undefined>(undefined);
+const underWay = signal(false);
+
+function defaultChannels(): string {
+  return LAYOUT.plots.map((plot) => dictionary.value?.pick(plot.channel)?.name).filter((name) => name !== undefined).join(' ');
+}
+
+async function query(): Promise<void> {
+  const run = store.value;
+  const words = dictionary.value;
+  if (!run || !words) return;
+  const start = readFromEntry(from.value);
+  const end = readFromEntry(to.value);
+  const names = (channels.value ?? defaultChannels()).split(/[\s,]+/).filter((name) => name !== '');
+  const unknown = names.find((name) => !words.pick([name]));
+  const points = Number(size.value);
+  const problem = rangeProblem(start, end) ?? (names.length === 0 ? 'name at least one channel' : undefined) ??
+    (unknown === undefined ? undefined : `no channel ${unknown} in the dictionary`) ??
+    (Number.isInteger(points) && points >= 2 && points <= 100000 ? undefined : 'points: a whole number from 2 to 100000');
+  if (problem !== undefined || start === undefined || end === undefined) {
+    message.value = { good: false, text: problem ?? '' };
+    return;
+  }
+  underWay.value = true;
+  message.value = undefined;
+  rows.value = [];
+  try {
+    const path = seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points, false);
+    const list = await ask<ChannelSeriesList>('series', path);
+    if (store.value !== run) return;
+    rows.value = list.channels.map(rangeRow);
+    csvPath.value = `api/v1${seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points, true)}`;
+    pastRange.value = { from: start, to: end };
+    const samples = rows.value.reduce((sum, row) => sum + row.samples, 0);
+    message.value = { good: true, text: `${samples} samples of ${rows.value.length} channels; every panel now shows this range` };
+    summary.value = await ask<RecordingSummary>('recording', `/runs/${run.id}/recording`).catch(() => undefined);
+  } catch (error) {
+    message.value = { good: false, text: error instanceof Error ? error.message : String(error) };
+  } finally {
+    underWay.value = false;
+  }
+}
+
+export function backToLive(): void {
+  pastRange.value = undefined;
+}
+
+export function Recorded() {
+  void tick.value;
+  const run = store.value;
+  if (!run) return null;
+  return (
+    <div class="table-box" data-testid="recorded">
+      <form class="table-tools recorded-form" onSubmit={(event) => {
+        event.preventDefault();
+        void query();
+      }}>
+        <label>from <input class="time" data-testid="range-from" value={from.value} onInput={(event) => (from.value = event.currentTarget.value)} /></label>
+        <label>to <input class="time" data-testid="range-to" value={to.value} onInput={(event) => (to.value = event.currentTarget.value)} /></label>
+        <label class="wide">channels <input data-testid="range-channels" value={channels.value ?? defaultChannels()} onInput={(event) => (channels.value = event.currentTarget.value)} /></label>
+        <label>points <input class="points" value={size.value} inputMode="numeric" onInput={(event) => (size.value = event.currentTarget.value)} /></label>
+        <button type="submit" disabled={underWay.value} data-testid="range-query">{underWay.value ? 'asking…' : 'ask'}</button>
+        {pastRange.value && <button type="button" onClick={backToLive} data-testid="range-leave">leave the past view</button>}
+      </form>
+      {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">{message.value.good ? '✓' : '✖'} {message.value.text}</p>}
+      <div class="table-scroll" tabIndex={0} aria-label="recorded range">
+        {rows.value.length > 0 && (
+          <table data-testid="range-table">
+            <thead><tr><th>channel</th><th>unit</th><th class="number">samples</th><th class="number">live</th><th class="number">recorded</th><th class="number">least</th><th class="number">largest</th><th>first … last</th><th>live against recording</th></tr></thead>
+            <tbody>
+              {rows.value.map((row) => (
+                <tr key={row.name} data-samples={row.samples}>
+                  <td>{row.name}</td><td>{row.unit}</td><td class="number">{row.samples}{row.thinned ? ` (${row.given} shown)` : ''}</td>
+                  <td class="number">{row.live}</td><td class="number">{row.recorded}</td>
+                  <td class="number">{numberText(row.least)}</td><td class="number">{numberText(row.largest)}</td>
+                  <td class="number">{fromEntry(row.first_sclk - run.entrySclk, { tenths: true })} … {fromEntry(row.last_sclk - run.entrySclk, { tenths: true })}</td>
+                  <td>{row.differing === undefined ? '? not comparable here' : row.differing === 0 ? '✓ the same' : `✖ ${row.differing} differ`}</td>
+                </tr>
+              ))}
+            </tbody>
+          </table>
+        )}
+        {rows.value.length === 0 && <p class="none">A range of this run, by time from entry. The answer comes from the archive; every panel then shows that range and says so.</p>}
+        {summary.value && (
+          <p data-testid="recording-summary">
+            Recording: {String(summary.value.recorded)} packets, {String(summary.value.realtime)} of them also live; live but not recorded {String(summary.value.realtimeNotRecorded)}, differing {String(summary.value.realtimeDiffers)}.
+          </p>
+        )}
+        {csvPath.value && rows.value.length > 0 && <p><a href={csvPath.value} download="aeolis.csv">take these samples as CSV</a></p>}
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,74 @@
+// The mission's words, as the API tells them, with the look-ups that the panels need.
+import type {
+  DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone,
+} from '../gen/aeolis/v1/run_pb';
+
+export class Dictionary {
+  readonly channels: DictionaryChannel[];
+  readonly commands: DictionaryCommand[];
+  readonly tones = new Map<number, DictionaryTone>();
+  private readonly byId = new Map<number, DictionaryChannel>();
+  private readonly byName = new Map<string, DictionaryChannel>();
+  /** For each channel, all that come in the same packet. */
+  readonly packets = new Map<number, number[]>();
+
+  constructor(readonly reply: DictionaryReply) {
+    this.channels = reply.channels;
+    this.commands = reply.commands;
+    for (const tone of reply.tones) this.tones.set(tone.id, tone);
+    const inPacket = new Map<string, number[]>();
+    for (const channel of reply.channels) {
+      this.byId.set(channel.id, channel);
+      this.byName.set(channel.name, channel);
+      if (channel.packet === '') continue;
+      const ids = inPacket.get(channel.packet) ?? [];
+      ids.push(channel.id);
+      inPacket.set(channel.packet, ids);
+      this.packets.set(channel.id, ids);
+    }
+  }
+
+  channel(id: number): DictionaryChannel | undefined {
+    return this.byId.get(id);
+  }
+
+  /** The first of `names` that the dictionary has. */
+  pick(names: readonly string[]): DictionaryChannel | undefined {
+    for (const name of names) {
+      const found = this.byName.get(name);
+      if (found) return found;
+    }
+    return undefined;
+  }
+
+  command(name: string): DictionaryCommand | undefined {
+    return this.commands.find((command) => command.name === name);
+  }
+
+  label(channel: DictionaryChannel, value: number): string | undefined {
+    return channel.labels.find((label) => Number(label.value) === value)?.label;
+  }
+}
+
+/** "heatshield_separation" → "heatshield separation". */
+export function inWords(name: string): string {
+  return name.replaceAll('_', ' ').toLowerCase();
+}
+
+/** A value as people read it: label, or five significant digits and no more than four decimals. */
+export function valueText(channel: DictionaryChannel | undefined, value: number | undefined): string {
+  if (value === undefined) return '—';
+  if (Number.isNaN(value)) return 'undefined';
+  const label = channel?.labels.find((candidate) => Number(candidate.value) === value)?.label;
+  if (label !== undefined) return inWords(label);
+  return numberText(value);
+}
+
+export function numberText(value: number): string {
+  if (!Number.isFinite(value)) return String(value);
+  if (Number.isInteger(value)) return String(value);
+  const size = Math.abs(value);
+  if (size >= 1e9 || size < 1e-4) return value.toExponential(3);
+  if (size >= 1e5) return value.toFixed(1);
+  return value.toFixed(size >= 1000 ? 1 : size >= 100 ? 2 : size >= 1 ? 3 : 4);
+}

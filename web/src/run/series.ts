@@ -1,0 +1,110 @@
+// One channel's samples in order of SCLK, bounded. Live samples are appended; history read from the archive replaces
+// what it covers. When full, the older half is thinned to the least and the largest of each four.
+
+const LIMIT = 1 << 16; // of points: 1 MB a channel at most
+
+export class Series {
+  sclk = new Float64Array(256);
+  value = new Float64Array(256);
+  length = 0;
+  /** Counts changes, so that a drawing knows whether it is current. */
+  version = 0;
+
+  append(sclk: Float64Array, value: Float64Array): void {
+    ++this.version;
+    for (let i = 0; i < sclk.length; ++i) {
+      const at = sclk[i] as number;
+      const last = this.length > 0 ? (this.sclk[this.length - 1] as number) : -Infinity;
+      if (at > last) this.push(at, value[i] as number);
+      else if (at < last) this.insert(at, value[i] as number);
+    }
+  }
+
+  /** History comes in: what we hold is kept only where it is newer than the last point of the history. */
+  replaceBefore(sclk: Float64Array, value: Float64Array): void {
+    const newest = sclk[sclk.length - 1];
+    if (newest === undefined) return;
+    ++this.version;
+    const keptFrom = this.firstAfter(newest);
+    const keptSclk = this.sclk.slice(keptFrom, this.length);
+    const keptValue = this.value.slice(keptFrom, this.length);
+    this.length = 0;
+    let last = -Infinity;
+    for (let i = 0; i < sclk.length; ++i) {
+      const at = sclk[i] as number;
+      if (at >= last) this.push(at, value[i] as number);
+      last = Math.max(last, at);
+    }
+    for (let i = 0; i < keptSclk.length; ++i) this.push(keptSclk[i] as number, keptValue[i] as number);
+  }
+
+  /** Index of the first sample later than `sclk`. */
+  firstAfter(sclk: number): number {
+    let low = 0;
+    let high = this.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if ((this.sclk[middle] as number) <= sclk) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /** The newest sample at or before `sclk`. */
+  at(sclk: number): { sclk: number; value: number } | undefined {
+    const index = this.firstAfter(sclk) - 1;
+    return index < 0 ? undefined : { sclk: this.sclk[index] as number, value: this.value[index] as number };
+  }
+
+  private push(sclk: number, value: number): void {
+    if (this.length === this.sclk.length) this.grow();
+    this.sclk[this.length] = sclk;
+    this.value[this.length] = value;
+    ++this.length;
+  }
+
+  private insert(sclk: number, value: number): void {
+    const index = this.firstAfter(sclk);
+    if (index > 0 && this.sclk[index - 1] === sclk) return; // the same sample again
+    if (this.length === this.sclk.length) this.grow();
+    this.sclk.copyWithin(index + 1, index, this.length);
+    this.value.copyWithin(index + 1, index, this.length);
+    this.sclk[index] = sclk;
+    this.value[index] = value;
+    ++this.length;
+  }
+
+  private grow(): void {
+    if (this.length >= LIMIT) {
+      this.thinOlderHalf();
+      return;
+    }
+    const sclk = new Float64Array(this.length * 2);
+    const value = new Float64Array(this.length * 2);
+    sclk.set(this.sclk);
+    value.set(this.value);
+    this.sclk = sclk;
+    this.value = value;
+  }
+
+  private thinOlderHalf(): void {
+    const half = this.length >> 1;
+    let to = 0;
+    for (let from = 0; from + 4 <= half; from += 4) {
+      let least = from;
+      let largest = from;
+      for (let i = from + 1; i < from + 4; ++i) {
+        if ((this.value[i] as number) < (this.value[least] as number)) least = i;
+        if ((this.value[i] as number) > (this.value[largest] as number)) largest = i;
+      }
+      for (const i of least < largest ? [least, largest] : least > largest ? [largest, least] : [least]) {
+        this.sclk[to] = this.sclk[i] as number;
+        this.value[to] = this.value[i] as number;
+        ++to;
+      }
+    }
+    this.sclk.copyWithin(to, half, this.length);
+    this.value.copyWithin(to, half, this.length);
+    this.length -= half - to;
+  }
+}

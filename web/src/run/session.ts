@@ -1,0 +1,254 @@
+// The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
+import { computed, effect, signal } from '@preact/signals';
+import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
+import { Dictionary } from './dictionary';
+import { RunStore } from './store';
+
+export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
+  state: 'connecting', attempt: 0, gaps: 0, serverVersion: '',
+});
+export const store = signal<RunStore | undefined>(undefined);
+export const dictionary = signal<Dictionary | undefined>(undefined);
+export const timepoints = signal<TimepointRow[]>([]);
+export const runs = signal<RunState[]>([]);
+export const scenarios = signal<{ name: string; title: string }[]>([]);
+/** The run asked for: 0 is "the one that is going on". */
+export const watched = signal(0);
+/** Five times a second, when something has changed. Numbers on the screen follow this and nothing faster. */
+export const tick = signal(0);
+/** A part of the run looked at as the past, in seconds from entry; undefined: not a past view. */
+export const pastRange = signal<{ from: number; to: number } | undefined>(undefined);
+
+export interface Notice {
+  id: number;
+  text: string;
+}
+export const notices = signal<Notice[]>([]);
+let lastNotice = 0;
+
+export function notify(text: string): void {
+  const shown = notices.value.filter((notice) => notice.text !== text);
+  notices.value = [...shown.slice(-3), { id: ++lastNotice, text }];
+}
+export function dismissNotice(id?: number): void {
+  notices.value = id === undefined ? [] : notices.value.filter((notice) => notice.id !== id);
+}
+
+/** SCLK up to which things are shown: the end of the past view, else all. */
+export const cutoff = computed(() =>
+  pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity);
+
+export type Mode = 'none' | 'rehearsal' | 'finished' | 'past';
+/** Read with `tick`: a run's own state changes without a new store. */
+export function modeNow(): Mode {
+  void tick.value;
+  if (!store.value) return 'none';
+  if (pastRange.value) return 'past';
+  return store.value.going ? 'rehearsal' : 'finished';
+}
+
+let worker: Worker | undefined;
+let lastAsk = 0;
+let lastRequest = 0;
+const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
+const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
+
+function post(message: ToWorker): void {
+  worker?.postMessage(message);
+}
+
+/** Asks an HTTP route; rejects with the server's own words. */
+export function ask<T>(question: Question, path: string): Promise<T> {
+  const number = ++lastAsk;
+  return new Promise<T>((resolve, reject) => {
+    asked.set(number, { resolve: resolve as (value: unknown) => void, reject });
+    post({ type: 'ask', ask: number, question, path });
+  });
+}
+
+export function control(action: ControlAction): void {
+  post({ type: 'control', control: action });
+  if (action.action === 'start') watch(0);
+}
+
+export interface CommandIntent {
+  command: string;
+  arguments: { name: string; value: number }[];
+  armed: boolean;
+  confirmation: string;
+  fromSolution: boolean;
+}
+
+/** Sends once. Rejects when nothing was sent, or when the connection was lost before an answer: then it is not known. */
+export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
+  if (stream.value.state !== 'live' && stream.value.state !== 'catching_up') {
+    return Promise.reject(new Error('not connected: nothing was sent'));
+  }
+  const request = ++lastRequest;
+  return new Promise((resolve, reject) => {
+    requests.set(request, { resolve, reject });
+    post({ type: 'command', request, run: store.value?.id ?? 0, ...intent });
+  });
+}
+
+export function watch(run: number): void {
+  watched.value = run;
+  pastRange.value = undefined;
+  const url = new URL(location.href);
+  if (run === 0) url.searchParams.delete('run');
+  else url.searchParams.set('run', String(run));
+  history.replaceState(null, '', url);
+  store.value = undefined;
+  timepoints.value = [];
+  post({ type: 'watch', run });
+}
+
+export function refreshHistory(): void {
+  if (store.value) store.value.thinnedSinceHistory = false;
+  post({ type: 'refresh_history' });
+}
+
+function onMessage(message: FromWorker): void {
+  switch (message.type) {
+    case 'stream': {
+      const before = stream.value.state;
+      stream.value = message;
+      if (message.state === 'lost' && before !== 'lost') {
+        for (const request of requests.values()) {
+          request.reject(new Error('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
+        }
+        requests.clear();
+      }
+      break;
+    }
+    case 'run':
+      takeRun(message.run);
+      break;
+    case 'batch':
+      if (store.value?.id === message.batch.run) store.value.add(message.batch);
+      break;
+    case 'history':
+      if (store.value?.id === message.run) store.value.addHistory(message.columns);
+      break;
+    case 'reply': {
+      const request = Number(message.reply.request);
+      requests.get(request)?.resolve(message.reply);
+      requests.delete(request);
+      break;
+    }
+    case 'refusal': {
+      // A refusal names no request; where one is under way it is the one that is meant.
+      const [first] = requests;
+      if (first) {
+        requests.delete(first[0]);
+        first[1].reject(new Error(message.reason));
+      } else {
+        notify(message.reason);
+      }
+      break;
+    }
+    case 'answer': {
+      const question = asked.get(message.ask);
+      asked.delete(message.ask);
+      if (message.ok) question?.resolve(message.value);
+      else question?.reject(new Error(message.error));
+      break;
+    }
+  }
+}
+
+function takeRun(run: RunState | undefined): void {
+  if (!run || run.run === 0n) return;
+  const known = store.value;
+  if (known?.id === Number(run.run)) {
+    known.update(run);
+  } else if (watched.value === 0 || watched.value === Number(run.run)) {
+    store.value = new RunStore(run);
+    pastRange.value = undefined;
+  } else {
+    return;
+  }
+  void refreshTimepoints();
+  runs.value = [run, ...runs.value.filter((other) => other.run !== run.run)].sort((a, b) => Number(b.run - a.run));
+}
+
+let timepointsUnderWay = false;
+async function refreshTimepoints(): Promise<void> {
+  const of = store.value;
+  if (!of || timepointsUnderWay) return;
+  timepointsUnderWay = true;
+  try {
+    const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints`);
+    if (store.value === of) timepoints.value = list.timepoints;
+  } catch {
+    // The timeline says that it has no plan; the next round asks again.
+  } finally {
+    timepointsUnderWay = false;
+  }
+}
+
+async function refreshRuns(): Promise<void> {
+  try {
+    const list = await ask<RunList>('runs', '/runs');
+    runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
+    const mine = list.runs.find((run) => Number(run.run) === store.value?.id);
+    if (mine && store.value && !store.value.going) store.value.update(mine);
+  } catch {
+    // Not connected; the header says so.
+  }
+}
+
+async function everySeconds(seconds: number, what: () => Promise<void>): Promise<never> {
+  for (;;) {
+    await new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+    await what();
+  }
+}
+
+/** Starts the worker, learns the dictionary, chooses the run that is going on or the last one, and connects. */
+export async function begin(): Promise<void> {
+  worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
+  worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
+  worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
+
+  for (let attempt = 0; ; ++attempt) {
+    try {
+      const [words, list] = await Promise.all([
+        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'),
+      ]);
+      dictionary.value = new Dictionary(words);
+      runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
+      break;
+    } catch (error) {
+      stream.value = { ...stream.value, state: 'lost', attempt: attempt + 1 };
+      if (attempt === 3) notify(`the server does not answer: ${error instanceof Error ? error.message : ''}`);
+      await new Promise((resolve) => setTimeout(resolve, Math.min(5000, 250 * 2 ** attempt)));
+    }
+  }
+  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
+  const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
+  const chosen = runs.value.some((run) => Number(run.run) === wanted)
+    ? wanted
+    : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
+  watched.value = chosen;
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(dictionary.value?.packets ?? []) });
+  ask<ScenarioList>('scenarios', '/scenarios').then(
+    (list) => (scenarios.value = list.scenarios), () => undefined);
+  void everySeconds(3, refreshRuns);
+  void everySeconds(2, async () => {
+    if (store.value?.going) await refreshTimepoints();
+    if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory();
+  });
+}
+
+/** For tests of views: a page without a worker. */
+export function useForTest(run: RunStore | undefined, words: Dictionary | undefined): void {
+  store.value = run;
+  dictionary.value = words;
+  tick.value += 1;
+}
+
+effect(() => {
+  document.documentElement.dataset['stream'] = stream.value.state;
+});

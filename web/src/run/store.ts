@@ -1,0 +1,209 @@
+// All that the page holds of one run. Filled by the stream; read by every panel. One store a run: another run, another
+// store, so that nothing of one can be seen in the other.
+import type {
+  Alarm, Clocks, CommandStage, Event, Explanation, LinkChange, TimepointFiring, Tone, Unit,
+} from '../gen/aeolis/v1/items_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { BatchOfFacts, Column, Fact } from '../stream/messages';
+import { Series } from './series';
+import { secondsOfDayOfYear } from './time';
+
+export const SOURCE_RECORDED = 2; // Source.RECORDED; the page itself does not load the schema
+
+const EVENT_LIMIT = 20000;
+const UNIT_LIMIT = 400;
+const LINK_LIMIT = 5000;
+
+export interface Known<T> {
+  seq: number;
+  fact: T;
+}
+export interface EventRow extends Known<Event> {
+  live: boolean;
+  recorded: boolean;
+}
+export interface ExplanationRow extends Known<Explanation> {
+  live: boolean;
+  recorded: boolean;
+}
+export interface FiringPair {
+  name: string;
+  live?: TimepointFiring;
+  recorded?: TimepointFiring;
+}
+export interface CommandRow {
+  command: number;
+  name: string;
+  arguments: string;
+  stages: Map<string, CommandStage>;
+}
+export interface UnitTotals {
+  units: number;
+  octets: number;
+  duplicates: number;
+}
+export interface Sample {
+  sclk: number;
+  value: number;
+  recorded: boolean;
+}
+
+export class RunStore {
+  live = new Map<number, Series>();
+  recorded = new Map<number, Series>();
+  events: EventRow[] = [];
+  explanations: ExplanationRow[] = [];
+  tones: Known<Tone>[] = [];
+  firings = new Map<number, FiringPair>();
+  commands = new Map<number, CommandRow>();
+  links = new Map<string, Known<LinkChange>[]>();
+  alarms = new Map<number, Alarm>();
+  units: Known<Unit>[] = [];
+  unitTotals = new Map<string, UnitTotals>();
+  clocks: Clocks | undefined;
+  completeThrough = 0;
+  thinnedSinceHistory = false;
+  /** Counts changes of anything. */
+  version = 0;
+
+  constructor(public run: RunState) {
+    this.clocks = run.clocks;
+  }
+
+  get id(): number {
+    return Number(this.run.run);
+  }
+  get going(): boolean {
+    return ['waiting', 'running', 'paused'].includes(this.run.state);
+  }
+  get entrySclk(): number {
+    return this.run.entrySclk;
+  }
+  /** Of what reaches Earth now. */
+  get seenSclk(): number {
+    return this.clocks?.seenSclk || this.clocks?.sclk || this.run.startSclk;
+  }
+  get seenE(): number {
+    return this.seenSclk - this.entrySclk;
+  }
+  /** SCLK of what was received at `ert`. The two run side by side, a light time apart. */
+  sclkSeenAt(ert: string): number {
+    if (!this.clocks) return NaN;
+    return this.seenSclk + secondsOfDayOfYear(ert) - secondsOfDayOfYear(this.clocks.ert);
+  }
+
+  update(run: RunState): void {
+    this.run = run;
+    if (run.clocks) this.clocks = run.clocks;
+    ++this.version;
+  }
+
+  /** Of a channel, at `cutoff` or before: the newest, whichever way it came. */
+  latest(id: number, cutoff = Infinity): Sample | undefined {
+    const live = this.live.get(id)?.at(cutoff);
+    const recorded = this.recorded.get(id)?.at(cutoff);
+    if (recorded && (!live || recorded.sclk >= live.sclk)) return { ...recorded, recorded: true };
+    return live && { ...live, recorded: false };
+  }
+
+  add(batch: BatchOfFacts): void {
+    ++this.version;
+    this.completeThrough = Math.max(this.completeThrough, batch.completeThrough);
+    if (batch.clocks) this.clocks = batch.clocks;
+    if (batch.thinned) this.thinnedSinceHistory = true;
+    for (const column of batch.columns) this.series(column).append(column.sclk, column.value);
+    for (const fact of batch.facts) this.addFact(fact);
+    if (this.events.length > EVENT_LIMIT) this.events.splice(0, this.events.length - EVENT_LIMIT);
+  }
+
+  addHistory(columns: Column[]): void {
+    ++this.version;
+    for (const column of columns) this.series(column).replaceBefore(column.sclk, column.value);
+  }
+
+  private series(column: Column): Series {
+    const all = column.recorded ? this.recorded : this.live;
+    let series = all.get(column.id);
+    if (!series) all.set(column.id, (series = new Series()));
+    return series;
+  }
+
+  private addFact(item: Fact): void {
+    switch (item.kind) {
+      case 'event':
+        this.addTwin(this.events, item, (a, b) => a.id === b.id && a.text === b.text);
+        break;
+      case 'explanation':
+        this.addTwin(this.explanations, item, (a, b) => a.text === b.text && a.decision === b.decision);
+        break;
+      case 'tone':
+        this.tones.push(item);
+        break;
+      case 'timepoint':
+        this.addFiring(item.fact);
+        break;
+      case 'commandStage':
+        this.addStage(item.fact);
+        break;
+      case 'link': {
+        const changes = this.links.get(item.fact.link) ?? [];
+        changes.push(item);
+        if (changes.length > LINK_LIMIT) changes.shift();
+        this.links.set(item.fact.link, changes);
+        break;
+      }
+      case 'alarm':
+        if (item.fact.severity === 'none') this.alarms.delete(item.fact.channel);
+        else this.alarms.set(item.fact.channel, item.fact);
+        break;
+      case 'unit':
+        this.addUnit(item);
+        break;
+    }
+  }
+
+  /** Keeps `rows` in order of SCLK. What came live and again with the recording is one row that was seen twice. */
+  private addTwin<T extends { sclk: number; source: number; duplicate: boolean }>(
+    rows: (Known<T> & { live: boolean; recorded: boolean })[], item: Known<T>, same: (a: T, b: T) => boolean,
+  ): void {
+    const recorded = item.fact.source === SOURCE_RECORDED;
+    let index = rows.length;
+    while (index > 0 && (rows[index - 1] as Known<T>).fact.sclk > item.fact.sclk) --index;
+    for (let i = index - 1; i >= 0; --i) {
+      const row = rows[i] as (typeof rows)[number];
+      if (row.fact.sclk < item.fact.sclk) break;
+      if (same(row.fact, item.fact) && (recorded ? !row.recorded : !row.live)) {
+        if (recorded) row.recorded = true;
+        else row.live = true;
+        return;
+      }
+    }
+    rows.splice(index, 0, { seq: item.seq, fact: item.fact, live: !recorded, recorded });
+  }
+
+  private addFiring(firing: TimepointFiring): void {
+    const pair = this.firings.get(firing.timepoint) ?? { name: firing.name };
+    if (firing.source === SOURCE_RECORDED) pair.recorded = firing;
+    else pair.live = firing;
+    this.firings.set(firing.timepoint, pair);
+  }
+
+  private addStage(stage: CommandStage): void {
+    const number = Number(stage.command);
+    let row = this.commands.get(number);
+    if (!row) this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
+    if (stage.name) row.name = stage.name;
+    if (stage.arguments) row.arguments = stage.arguments;
+    row.stages.set(stage.stage, stage);
+  }
+
+  private addUnit(item: Known<Unit>): void {
+    const totals = this.unitTotals.get(item.fact.link) ?? { units: 0, octets: 0, duplicates: 0 };
+    ++totals.units;
+    totals.octets += item.fact.octets;
+    if (item.fact.duplicate) ++totals.duplicates;
+    this.unitTotals.set(item.fact.link, totals);
+    this.units.push(item);
+    if (this.units.length > UNIT_LIMIT * 2) this.units.splice(0, UNIT_LIMIT);
+  }
+}

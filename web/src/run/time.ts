@@ -1,0 +1,57 @@
+// Times as controllers write them. All of them come from the stream; the browser's clock is never read.
+
+const DAY_S = 86400;
+
+/** Seconds since 1970 of "2012-219T05:10:47.400" (year, day of year), UTC; NaN when it is not such a text. */
+export function secondsOfDayOfYear(text: string): number {
+  const parts = /^(\d{4})-(\d{3})T(\d{2}):(\d{2}):(\d{2}(?:\.\d+)?)Z?$/.exec(text);
+  if (!parts) return NaN;
+  const [, year, day, hours, minutes, seconds] = parts.map(Number) as [number, number, number, number, number, number];
+  return Date.UTC(year, 0, 1) / 1000 + (day - 1) * DAY_S + hours * 3600 + minutes * 60 + seconds;
+}
+
+/** The other way round, to a tenth of a second, cut off and not rounded, as a clock shows it. */
+export function dayOfYear(seconds: number): string {
+  if (!Number.isFinite(seconds)) return '—';
+  const tenths = Math.floor(seconds * 10 + 1e-6);
+  const date = new Date(Math.floor(tenths / 10) * 1000);
+  const year = date.getUTCFullYear();
+  const day = Math.floor((date.getTime() - Date.UTC(year, 0, 1)) / 1000 / DAY_S) + 1;
+  return `${year}-${pad(day, 3)}T${date.toISOString().slice(11, 19)}.${tenths % 10}`;
+}
+
+/** "E+00:04:28", "E−19:02"; with tenths "E+04:28.3". Hours only where there are some, unless `hours`. */
+export function fromEntry(e_s: number, options: { tenths?: boolean; hours?: boolean } = {}): string {
+  if (!Number.isFinite(e_s)) return 'E —';
+  const unit = options.tenths ? 10 : 1;
+  const count = options.tenths ? Math.round(e_s * 10) : Math.floor(e_s + 1e-6);
+  const sign = count < 0 ? '−' : '+';
+  const all = Math.abs(count);
+  const whole = Math.floor(all / unit);
+  const hours = Math.floor(whole / 3600);
+  const text = `${pad(Math.floor(whole / 60) % 60, 2)}:${pad(whole % 60, 2)}${options.tenths ? `.${all % 10}` : ''}`;
+  return `E${sign}${hours > 0 || options.hours ? `${pad(hours, 2)}:` : ''}${text}`;
+}
+
+/** "13 m 48.1 s", "0 s": a duration. */
+export function duration(seconds: number): string {
+  if (!Number.isFinite(seconds)) return '—';
+  const all = Math.abs(seconds);
+  const sign = seconds < 0 ? '−' : '';
+  if (all === 0) return '0 s';
+  if (all < 60) return `${sign}${all.toFixed(1)} s`;
+  if (all < 3600) return `${sign}${Math.floor(all / 60)} m ${pad(Math.floor(all % 60), 2)} s`;
+  return `${sign}${Math.floor(all / 3600)} h ${pad(Math.floor(all / 60) % 60, 2)} m`;
+}
+
+/** Reads "E+3:20", "-120", "200.5", "4:28" as seconds from entry; undefined when it is none of these. */
+export function readFromEntry(text: string): number | undefined {
+  const parts = /^\s*e?\s*([+\-−]?)\s*(?:(?:(\d+):)?(\d+):)?(\d+(?:\.\d+)?)\s*s?\s*$/i.exec(text);
+  if (!parts) return undefined;
+  const value = Number(parts[2] ?? 0) * 3600 + Number(parts[3] ?? 0) * 60 + Number(parts[4]);
+  return parts[1] === '-' || parts[1] === '−' ? -value : value;
+}
+
+function pad(value: number, digits: number): string {
+  return String(value).padStart(digits, '0');
+}

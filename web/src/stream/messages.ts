@@ -1,0 +1,66 @@
+// What the page and its worker tell each other. Everything here is plain data that can be posted.
+// Sequence and run numbers are JavaScript numbers: exact up to 2^53.
+import type {
+  Alarm, Clocks, CommandStage, Event, Explanation, LinkChange, TimepointFiring, Tone, Unit,
+} from '../gen/aeolis/v1/items_pb';
+import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
+
+/** Samples of one channel, side by side. A value that is undefined on board is NaN. */
+export interface Column {
+  id: number;
+  sclk: Float64Array;
+  value: Float64Array;
+  recorded: boolean;
+}
+
+/** A numbered item that is not a sample, flattened. */
+export type Fact =
+  | { kind: 'event'; seq: number; fact: Event }
+  | { kind: 'tone'; seq: number; fact: Tone }
+  | { kind: 'commandStage'; seq: number; fact: CommandStage }
+  | { kind: 'timepoint'; seq: number; fact: TimepointFiring }
+  | { kind: 'explanation'; seq: number; fact: Explanation }
+  | { kind: 'link'; seq: number; fact: LinkChange }
+  | { kind: 'alarm'; seq: number; fact: Alarm }
+  | { kind: 'unit'; seq: number; fact: Unit };
+
+export interface BatchOfFacts {
+  run: number;
+  completeThrough: number;
+  facts: Fact[];
+  columns: Column[];
+  thinned: boolean;
+  clocks: Clocks | undefined;
+}
+
+/** "catching_up": connected, what was missed is on its way. "lost": no connection, trying again. */
+export type StreamState = 'connecting' | 'catching_up' | 'live' | 'lost';
+
+export type FromWorker =
+  | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
+  | { type: 'run'; run: RunState | undefined; fresh: boolean }
+  | { type: 'batch'; batch: BatchOfFacts }
+  | { type: 'history'; run: number; columns: Column[]; from: number; to: number }
+  | { type: 'reply'; reply: CommandReply }
+  | { type: 'refusal'; reason: string }
+  | { type: 'answer'; ask: number; ok: true; value: unknown }
+  | { type: 'answer'; ask: number; ok: false; error: string };
+
+export type ControlAction =
+  | { action: 'start'; scenario: string; seed: number; pace: number }
+  | { action: 'pause'; pause: boolean }
+  | { action: 'pace'; pace: number }
+  | { action: 'stop' };
+
+export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording';
+
+export type ToWorker =
+  | { type: 'open'; run: number; packets: Record<number, number[]> }
+  | { type: 'watch'; run: number }
+  | { type: 'refresh_history' }
+  | {
+      type: 'command'; request: number; run: number; command: string;
+      arguments: { name: string; value: number }[]; armed: boolean; confirmation: string; fromSolution: boolean;
+    }
+  | { type: 'control'; control: ControlAction }
+  | { type: 'ask'; ask: number; question: Question; path: string };

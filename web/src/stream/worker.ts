@@ -1,0 +1,306 @@
+// Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
+// batches at most every 25 ms. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
+//
+// A run is taken up in two steps. First everything that is not a sample, from the beginning; the answer is small.
+// Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
+// it is fetched, thinned by the server: no seam, and no million of samples through the socket.
+import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
+import type { DescMessage } from '@bufbuild/protobuf';
+import { Source } from '../gen/aeolis/v1/items_pb';
+import {
+  ChannelSeriesListSchema, DictionaryReplySchema, PacketListSchema, RecordingSummarySchema, RunListSchema,
+  ScenarioListSchema, TimepointListSchema,
+} from '../gen/aeolis/v1/run_pb';
+import type { ChannelSeries } from '../gen/aeolis/v1/run_pb';
+import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
+import type { Batch, ClientMessage } from '../gen/aeolis/v1/stream_pb';
+import { ColumnCollector } from './columns';
+import type { Column, FromWorker, Question, StreamState, ToWorker } from './messages';
+import { SequenceCheck, backoffSeconds } from './sequence';
+
+const POST_EVERY_MS = 25;
+const HISTORY_POINTS = 1500; // of each channel: about the pixels of a plot
+const MAX_RATE_HZ = 0; // all; the server thins when we are slow
+
+const post = (message: FromWorker) => self.postMessage(message);
+
+const apiUrl = new URL('/api/v1', self.location.origin).href;
+const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
+
+let socket: WebSocket | undefined;
+let attempt = 0;
+let wantedRun = 0;
+let currentRun = 0;
+let serverVersion = '';
+let check = new SequenceCheck();
+let packetOf = new Map<number, readonly number[]>();
+let collector = new ColumnCollector();
+let posting = false;
+let state: StreamState = 'connecting';
+let step: 'facts' | 'samples' = 'facts';
+let historyDue = false;
+let stopAt = 0; // sequence number the first step ends at
+
+function say(next: StreamState): void {
+  state = next;
+  post({ type: 'stream', state, attempt, gaps: check.gaps, serverVersion });
+}
+
+function send(message: ClientMessage['message']): boolean {
+  if (!socket || socket.readyState !== WebSocket.OPEN) return false;
+  socket.send(toBinary(ClientMessageSchema, create(ClientMessageSchema, { message })) as Uint8Array<ArrayBuffer>);
+  return true;
+}
+
+function subscribe(): void {
+  send({
+    case: 'subscribe',
+    value: {
+      $typeName: 'aeolis.v1.Subscribe', run: BigInt(currentRun || wantedRun), afterSeq: BigInt(check.completeThrough),
+      channels: [], allChannels: step === 'samples', maxRateHz: MAX_RATE_HZ,
+    },
+  });
+}
+
+function connect(): void {
+  say(attempt === 0 ? 'connecting' : 'lost');
+  const mine = new WebSocket(socketUrl, ['aeolis.v1.protobuf']);
+  mine.binaryType = 'arraybuffer';
+  socket = mine;
+  mine.onopen = () => {
+    attempt = 0;
+    say('catching_up');
+    subscribe();
+  };
+  mine.onmessage = (event: MessageEvent<ArrayBuffer>) => {
+    if (socket === mine) receive(new Uint8Array(event.data));
+  };
+  mine.onclose = () => {
+    if (socket !== mine) return;
+    socket = undefined;
+    ++attempt;
+    say('lost');
+    setTimeout(connect, backoffSeconds(attempt) * 1000);
+  };
+}
+
+/** Forget the run and take up another from its beginning. */
+function restart(run: number): void {
+  currentRun = run;
+  check = new SequenceCheck();
+  collector = new ColumnCollector(packetOf);
+  step = 'facts';
+  stopAt = 0;
+  historyDue = false;
+}
+
+function receive(bytes: Uint8Array): void {
+  let message;
+  try {
+    message = fromBinary(ServerMessageSchema, bytes).message;
+  } catch (error) {
+    post({ type: 'refusal', reason: `a message of the server could not be read: ${String(error)}` });
+    return;
+  }
+  switch (message.case) {
+    case 'welcome': {
+      const welcome = message.value;
+      serverVersion = welcome.serverVersion;
+      const run = Number(welcome.runState?.run ?? 0);
+      const fresh = run !== currentRun || step === 'facts';
+      if (run !== currentRun) restart(run);
+      if (step === 'facts') stopAt = Number(welcome.lastSeq);
+      post({ type: 'run', run: welcome.runState, fresh });
+      if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
+      break;
+    }
+    case 'batch':
+      receiveBatch(message.value);
+      break;
+    case 'commandReply':
+      post({ type: 'reply', reply: message.value });
+      break;
+    case 'refusal':
+      post({ type: 'refusal', reason: message.value.reason });
+      break;
+    case 'runState':
+      post({ type: 'run', run: message.value, fresh: false });
+      break;
+  }
+}
+
+function receiveBatch(batch: Batch): void {
+  const run = Number(batch.run);
+  if (run !== currentRun) {
+    // The next run has begun on a subscription to "the one that is going on".
+    restart(run);
+    subscribe();
+    return;
+  }
+  const first = batch.items[0];
+  const verdict = check.judge(Number(batch.afterSeq), Number(batch.completeThrough), first && Number(first.seq));
+  if (verdict === 'gap') {
+    say('catching_up');
+    subscribe();
+    return;
+  }
+  if (verdict === 'repeats') return;
+  collector.add(batch);
+  if (step === 'facts' && check.completeThrough >= stopAt) goOnWithSamples();
+  else if (step === 'samples' && state !== 'live' && !batch.history) say('live');
+  if (step === 'samples' && historyDue) {
+    historyDue = false;
+    void fetchHistory();
+  }
+  if (!posting) {
+    posting = true;
+    setTimeout(flush, POST_EVERY_MS);
+  }
+}
+
+function flush(): void {
+  posting = false;
+  if (collector.empty) return;
+  const batch = collector.take();
+  self.postMessage({ type: 'batch', batch } satisfies FromWorker,
+    { transfer: batch.columns.flatMap((column) => [column.sclk.buffer, column.value.buffer] as ArrayBuffer[]) });
+}
+
+function goOnWithSamples(): void {
+  step = 'samples';
+  historyDue = true;
+  say('live');
+  subscribe();
+  // A run that has ended sends no live frame to wait for.
+  setTimeout(() => {
+    if (!historyDue) return;
+    historyDue = false;
+    void fetchHistory();
+  }, 300);
+}
+
+async function fetchHistory(): Promise<void> {
+  const run = currentRun;
+  if (run === 0) return;
+  try {
+    const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?size=${HISTORY_POINTS}&strategy=minmax`);
+    if (run !== currentRun) return;
+    const columns = list.channels.flatMap(splitBySource);
+    post({ type: 'history', run, columns, from: 0, to: Infinity });
+  } catch (error) {
+    post({ type: 'refusal', reason: `history: ${error instanceof Error ? error.message : String(error)}` });
+  }
+}
+
+/** Real time and recording are kept apart, so that each can be seen for itself. */
+function splitBySource(series: ChannelSeries): Column[] {
+  const live: [number[], number[]] = [[], []];
+  const recorded: [number[], number[]] = [[], []];
+  for (let i = 0; i < series.sclk.length; ++i) {
+    const into = series.source[i] === Source.RECORDED ? recorded : live;
+    into[0].push(series.sclk[i] ?? NaN);
+    into[1].push(series.value[i] ?? NaN);
+  }
+  const columns: Column[] = [];
+  for (const [part, isRecorded] of [[live, false], [recorded, true]] as const) {
+    if (part[0].length > 0) {
+      columns.push({
+        id: series.id, recorded: isRecorded, sclk: Float64Array.from(part[0]), value: Float64Array.from(part[1]),
+      });
+    }
+  }
+  return columns;
+}
+
+const ANSWERS: Record<Question, DescMessage> = {
+  runs: RunListSchema, dictionary: DictionaryReplySchema, timepoints: TimepointListSchema, scenarios: ScenarioListSchema,
+  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema,
+};
+
+async function askJson(path: string): Promise<unknown> {
+  const response = await fetch(apiUrl + path);
+  const text = await response.text();
+  if (!response.ok) {
+    let error = text.slice(0, 300);
+    try {
+      error = (JSON.parse(text) as { error?: string }).error ?? error;
+    } catch {
+      // The answer was not of our API; its text says what it says.
+    }
+    throw new Error(error || `${response.status} ${response.statusText}`);
+  }
+  return JSON.parse(text);
+}
+
+async function ask<T extends DescMessage>(schema: T, path: string) {
+  return fromJson(schema, (await askJson(path)) as never, { ignoreUnknownFields: true });
+}
+
+self.onmessage = (event: MessageEvent<ToWorker>) => {
+  const message = event.data;
+  switch (message.type) {
+    case 'open':
+      wantedRun = message.run;
+      packetOf = new Map(Object.entries(message.packets).map(([id, all]) => [Number(id), all]));
+      collector = new ColumnCollector(packetOf);
+      connect();
+      break;
+    case 'watch':
+      wantedRun = message.run;
+      restart(0);
+      subscribe();
+      break;
+    case 'refresh_history':
+      void fetchHistory();
+      break;
+    case 'command': {
+      const sent = send({
+        case: 'command',
+        value: {
+          $typeName: 'aeolis.v1.CommandRequest', run: BigInt(message.run), command: message.command,
+          arguments: message.arguments.map((a) => ({ $typeName: 'aeolis.v1.CommandArgument', ...a })),
+          armed: message.armed, confirmation: message.confirmation, request: BigInt(message.request),
+          fromSolution: message.fromSolution,
+        },
+      });
+      if (!sent) post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+      break;
+    }
+    case 'control':
+      if (!send({ case: 'control', value: control(message.control) })) {
+        post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+      }
+      break;
+    case 'ask':
+      ask(ANSWERS[message.question], message.path).then(
+        (value) => post({ type: 'answer', ask: message.ask, ok: true, value }),
+        (error: unknown) => post({
+          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error),
+        }),
+      );
+      break;
+  }
+};
+
+function control(wanted: Extract<ToWorker, { type: 'control' }>['control']) {
+  const $typeName = 'aeolis.v1.RehearsalControl' as const;
+  switch (wanted.action) {
+    case 'start':
+      return {
+        $typeName,
+        action: {
+          case: 'start' as const,
+          value: {
+            $typeName: 'aeolis.v1.StartRehearsal' as const, scenario: wanted.scenario, seed: BigInt(wanted.seed),
+            pace: wanted.pace,
+          },
+        },
+      };
+    case 'pause':
+      return { $typeName, action: { case: 'pause' as const, value: wanted.pause } };
+    case 'pace':
+      return { $typeName, action: { case: 'pace' as const, value: wanted.pace } };
+    case 'stop':
+      return { $typeName, action: { case: 'stop' as const, value: true } };
+  }
+}

@@ -1,0 +1,290 @@
+// The timeline: lanes one under the other on one axis of time, so that plan and each way of knowing can be compared.
+import { signal } from '@preact/signals';
+import { Canvas } from '../draw/canvas';
+import type { Surface } from '../draw/canvas';
+import { axisTime, ticks, timeStep } from '../draw/axis';
+import { Panel } from '../panel';
+import { cutoff, pastRange, store, tick, timepoints } from '../run/session';
+import { fromEntry } from '../run/time';
+import { choice, pan, spanNow, zoom } from '../run/window';
+import type { Choice } from '../run/window';
+import { lanesOf, pointDetail, title } from './model';
+import type { Lanes, Mark } from './model';
+import './style.css';
+
+const GUTTER = 118;
+const TOP = 26;
+const LANE = 25;
+const LANES = ['plan', 'by tone', 'by UHF, live', 'by recording'] as const;
+const selected = signal<number | undefined>(undefined);
+
+let hits: { x: number; y: number; id: number }[] = [];
+
+function drawTimeline({ context: c, width, height, colours }: Surface): void {
+  const run = store.value;
+  const { from, to } = spanNow(run);
+  const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
+  const y = (lane: number) => TOP + LANE * lane + LANE / 2;
+  const bottom = TOP + LANE * LANES.length;
+  hits = [];
+
+  const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
+  c.textAlign = 'center';
+  c.textBaseline = 'middle';
+  c.font = `11px ${colours.mono}`;
+  for (const e_s of ticks(from, to, step)) {
+    c.strokeStyle = e_s === 0 ? colours.faint : colours.line;
+    line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
+    c.fillStyle = colours.dim;
+    c.fillText(axisTime(e_s, step), x(e_s), 11);
+  }
+  c.font = `12.5px ${colours.sans}`;
+  c.textAlign = 'left';
+  LANES.forEach((name, lane) => {
+    c.fillStyle = colours.text;
+    c.fillText(name, 14, y(lane));
+    c.strokeStyle = colours.line;
+    line(c, GUTTER, y(lane) + 0.5, width - 14, y(lane) + 0.5);
+  });
+  if (!run) return;
+  const lanes = lanesOf(run, timepoints.value, cutoff.value);
+
+  c.save();
+  c.beginPath();
+  c.rect(GUTTER - 6, 0, width - GUTTER, height);
+  c.clip();
+  drawOutages(c, lanes, x, y, width, colours);
+  if (lanes.recorded.length === 0) {
+    c.fillStyle = colours.dim;
+    c.textAlign = 'center';
+    const words = lanes.relay > 0 ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
+      : 'the recording comes down after landing';
+    c.fillText(words, (GUTTER + width) / 2, y(3) - 0.5);
+  }
+  marks(c, lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), false);
+  marks(c, lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.violet), false);
+  marks(c, lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : diamond(c, px, py, 5, colours.blue)), true);
+  marks(c, lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : disc(c, px, py, 3.6, colours.green)), true);
+  labels(c, lanes, x, bottom, width, colours);
+  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours);
+  c.restore();
+}
+
+function drawOutages(
+  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, y: (lane: number) => number, width: number,
+  colours: Surface['colours'],
+): void {
+  for (const [lane, all] of [[1, lanes.toneOutages], [2, lanes.liveOutages]] as const) {
+    for (const outage of all) {
+      const left = Math.max(GUTTER, x(outage.from));
+      const right = Math.min(width - 14, x(outage.to));
+      if (right < GUTTER || left > width || right - left < 2) continue;
+      c.fillStyle = colours.panel;
+      c.fillRect(left, y(lane) - 8, right - left, 16);
+      c.save();
+      c.globalAlpha = 0.2;
+      c.fillStyle = colours.amber;
+      c.fillRect(left, y(lane) - 8, right - left, 16);
+      c.restore();
+      c.strokeStyle = colours.amber;
+      c.setLineDash([3, 3]);
+      c.strokeRect(left + 0.5, y(lane) - 7.5, right - left - 1, 15);
+      c.setLineDash([]);
+      c.save();
+      c.beginPath();
+      c.rect(left, y(lane) - 8, right - left, 16);
+      c.clip();
+      c.fillStyle = colours.amber;
+      c.textAlign = 'left';
+      c.font = `11px ${colours.sans}`;
+      if (right - left > 40) c.fillText(outage.words, left + 6, y(lane) + 0.5);
+      c.restore();
+    }
+  }
+}
+
+function marks(
+  c: CanvasRenderingContext2D, all: Mark[], x: (e: number) => number, y: number,
+  shape: (x: number, y: number, bad: boolean) => void, hit: boolean,
+): void {
+  for (const mark of all) {
+    const px = x(mark.e_s);
+    if (px < GUTTER - 6) continue;
+    shape(px, y, mark.bad);
+    if (hit || mark.id >= 0) hits.push({ x: px, y, id: y > TOP + LANE && y < TOP + 2 * LANE ? -1 : mark.id });
+  }
+  c.setLineDash([]);
+}
+
+/** Names under the lanes, in as many rows as it takes that none covers another. */
+function labels(
+  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number,
+  colours: Surface['colours'],
+): void {
+  const known = new Map<number, { mark: Mark; done: boolean }>();
+  for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
+  for (const mark of [...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
+  const all = [...known.values()].sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
+  const rows: [number, number][][] = [[], [], [], []];
+  c.font = `12px ${colours.sans}`;
+  c.textAlign = 'center';
+  for (const { mark, done } of all) {
+    const px = x(mark.e_s);
+    if (px < GUTTER || px > width - 14) continue;
+    const words = title(mark.name);
+    const half = c.measureText(words).width / 2 + 5;
+    const at = Math.min(width - 14 - half, Math.max(GUTTER + half, px));
+    const row = rows.findIndex((taken) => taken.every(([left, right]) => at + half < left || at - half > right));
+    if (row < 0 || (!mark.important && row > 2)) continue;
+    rows[row]?.push([at - half, at + half]);
+    c.strokeStyle = colours.line;
+    line(c, px, top, px, top + 6 + row * 15);
+    c.fillStyle = done ? colours.text : colours.dim;
+    c.globalAlpha = mark.important ? 1 : 0.75;
+    c.fillText(words, at, top + 13 + row * 15);
+    c.globalAlpha = 1;
+  }
+}
+
+function cursors(
+  c: CanvasRenderingContext2D, seen: number, lightTime: number, x: (e: number) => number, bottom: number,
+  colours: Surface['colours'],
+): void {
+  if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom);
+  const past = pastRange.value;
+  flag(c, x(past ? past.to : seen), past ? 'end of past view' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom);
+}
+
+function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number): void {
+  c.strokeStyle = colour;
+  line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
+  c.font = 'bold 11px sans-serif';
+  const half = c.measureText(words).width / 2 + 6;
+  c.fillStyle = colour;
+  c.beginPath();
+  c.roundRect(px - half, 3, half * 2, 17, 3);
+  c.fill();
+  c.fillStyle = ink;
+  c.textAlign = 'center';
+  c.fillText(words, px, 12);
+}
+
+function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  c.lineWidth = 1;
+  c.beginPath();
+  c.moveTo(x1, y1);
+  c.lineTo(x2, y2);
+  c.stroke();
+}
+function ring(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
+  c.strokeStyle = colour;
+  c.beginPath();
+  c.arc(x, y, r, 0, 7);
+  c.stroke();
+}
+function disc(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
+  c.fillStyle = colour;
+  c.beginPath();
+  c.arc(x, y, r, 0, 7);
+  c.fill();
+}
+function box(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
+  c.fillStyle = colour;
+  c.fillRect(x - r, y - r, 2 * r, 2 * r);
+}
+function diamond(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
+  c.fillStyle = colour;
+  c.beginPath();
+  c.moveTo(x, y - r);
+  c.lineTo(x + r, y);
+  c.lineTo(x, y + r);
+  c.lineTo(x - r, y);
+  c.fill();
+}
+function triangle(c: CanvasRenderingContext2D, x: number, y: number, colour: string): void {
+  c.fillStyle = colour;
+  c.beginPath();
+  c.moveTo(x, y - 5);
+  c.lineTo(x + 5, y + 4);
+  c.lineTo(x - 5, y + 4);
+  c.fill();
+}
+
+function select(px: number, py: number): void {
+  let best: (typeof hits)[number] | undefined;
+  for (const hit of hits) {
+    const distance = Math.hypot(hit.x - px, hit.y - py);
+    if (hit.id >= 0 && distance < 14 && (!best || distance < Math.hypot(best.x - px, best.y - py))) best = hit;
+  }
+  selected.value = best?.id;
+}
+
+const CHOICES: [Choice & string, string, string][] = [
+  ['landing', 'landing', '1'], ['minute', 'last minute', '2'], ['run', 'whole run', '3'],
+];
+
+function Detail() {
+  void tick.value;
+  const run = store.value;
+  const id = selected.value;
+  if (!run || id === undefined) return null;
+  const detail = pointDetail(run, timepoints.value, id, cutoff.value);
+  if (!detail) return null;
+  const { row } = detail;
+  const offset = (value: number | undefined) => (value === undefined ? 'undefined' : `${value} s`);
+  return (
+    <div class="point" data-testid="timepoint-detail">
+      <b>{title(row.name)}</b> <span class={`state state-${detail.state.replaceAll(' ', '-')}`}>{detail.state}</span>
+      <button type="button" class="quiet" onClick={() => (selected.value = undefined)} aria-label="close">×</button>
+      <dl>
+        <dt>desired</dt><dd>{offset(row.desiredOffsetS)} after {row.anchor || 'the one before'}</dd>
+        <dt>minimum</dt><dd>{offset(row.minimumOffsetS)} after the one before</dd>
+        {row.plannedES !== undefined && <><dt>planned</dt><dd>{fromEntry(row.plannedES, { tenths: true })}</dd></>}
+        {detail.triggered_e_s !== undefined && <><dt>triggered</dt><dd>{fromEntry(detail.triggered_e_s, { tenths: true })}</dd></>}
+        {detail.firedLive_e_s !== undefined && <><dt>fired, by UHF</dt><dd>{fromEntry(detail.firedLive_e_s, { tenths: true })}</dd></>}
+        {detail.firedRecorded_e_s !== undefined && <><dt>fired, by recording</dt><dd>{fromEntry(detail.firedRecorded_e_s, { tenths: true })}</dd></>}
+        {row.tone && <><dt>tone</dt><dd>{row.tone}</dd></>}
+      </dl>
+      {detail.why && <p class="why">why: {detail.why}</p>}
+      {row.note && <p>{row.note}</p>}
+    </div>
+  );
+}
+
+export function Timeline() {
+  void tick.value;
+  const run = store.value;
+  const fired = run ? [...run.firings.values()].filter((pair) => pair.live || pair.recorded).length : 0;
+  return (
+    <Panel name="timeline" title="Timeline" extra={
+      <>
+        <span data-testid="timepoints-fired">{fired} of {timepoints.value.length} timepoints fired</span>
+        <span class="choices" role="group" aria-label="Stretch of time">
+          {CHOICES.map(([id, words, key]) => (
+            <button type="button" key={id} aria-pressed={choice.value === id} disabled={pastRange.value !== undefined}
+              onClick={() => (choice.value = id)} title={`key ${key}`}>{words}</button>
+          ))}
+          <button type="button" title="key ]" aria-label="zoom in" onClick={() => zoom(run, 0.5)}>+</button>
+          <button type="button" title="key [" aria-label="zoom out" onClick={() => zoom(run, 2)}>−</button>
+          <button type="button" aria-label="earlier" title="key ←" onClick={() => pan(run, -0.25)}>‹</button>
+          <button type="button" aria-label="later" title="key →" onClick={() => pan(run, 0.25)}>›</button>
+        </span>
+      </>
+    }>
+      <Canvas
+        label="Timepoints by plan, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
+        keyOf={() => {
+          const span = spanNow(store.value);
+          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value}`;
+        }}
+        draw={drawTimeline}
+        onPoint={select}
+        onWheel={(px, width, delta) => {
+          const { from, to } = spanNow(store.value);
+          zoom(store.value, delta > 0 ? 1.25 : 0.8, from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from));
+        }}
+      />
+      <Detail />
+    </Panel>
+  );
+}

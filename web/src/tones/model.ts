@@ -1,0 +1,47 @@
+import type { Tone } from '../gen/aeolis/v1/items_pb';
+import type { RunStore } from '../run/store';
+import { secondsOfDayOfYear } from '../run/time';
+
+export interface ToneBar {
+  from_e_s: number;
+  to_e_s: number;
+  tone: number | undefined; // undefined: an erasure, nothing decoded
+  likelihood: number;
+}
+
+const SYMBOL_S = 10; // R31: one tone for 10 s
+
+export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
+  const bars: ToneBar[] = [];
+  for (const { fact } of store.tones) {
+    if (fact.sclk > cutoff) break;
+    const span = secondsOfDayOfYear(fact.ertEnd) - secondsOfDayOfYear(fact.ertStart);
+    const from = fact.sclk - store.entrySclk;
+    bars.push({
+      from_e_s: from, to_e_s: from + (span > 0 ? span : SYMBOL_S), tone: fact.tone, likelihood: fact.likelihood,
+    });
+  }
+  return bars;
+}
+
+export function latestTone(store: RunStore, cutoff: number): Tone | undefined {
+  return store.tones.findLast(({ fact }) => fact.sclk <= cutoff)?.fact;
+}
+
+/** The title in words: what the vehicle says now. */
+export function toneTitle(tone: Tone | undefined): string {
+  if (!tone) return 'Tones';
+  if (tone.tone === undefined) return 'Tone not decoded';
+  return `Tone ${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
+}
+
+export function toneEvidence(tone: Tone | undefined): string {
+  if (!tone) return 'one of 256, each for 10 s';
+  const parts: string[] = [];
+  if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);
+  if (tone.runnerUp !== undefined) parts.push(`next ${tone.runnerUp} at ${tone.runnerUpLikelihood.toFixed(3)}`);
+  parts.push(tone.locked ? `■ lock, ${tone.cN0Dbhz.toFixed(1)} dB-Hz` : '□ no lock');
+  if (tone.dopplerHz !== 0) parts.push(`Doppler ${(tone.dopplerHz / 1000).toFixed(1)} kHz`);
+  if (tone.model !== '') parts.push(tone.model);
+  return parts.join(' · ');
+}

@@ -1,0 +1,138 @@
+// What the vehicle waits for and which condition is missing, in plain words; and before that, what to press.
+import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import { outcomeWords } from '../clocks/model';
+import { LAYOUT } from '../layout';
+import { inWords, numberText } from '../run/dictionary';
+import type { Dictionary } from '../run/dictionary';
+import type { RunStore } from '../run/store';
+import { duration, fromEntry } from '../run/time';
+import { nextTimepoint } from '../timeline/model';
+
+/** holds: yes, no, or not known. */
+export interface Line {
+  words: string;
+  value: string;
+  holds: boolean | undefined;
+}
+export interface Waiting {
+  kind: 'begin' | 'waiting' | 'ended';
+  title: string;
+  words: string;
+  lines: Line[];
+}
+
+const RELATIONS: Record<string, string> = { lt: '<', le: '≤', eq: '=', ge: '≥', gt: '>' };
+
+export function conditionLine(condition: Condition): Line {
+  const relation = RELATIONS[condition.comparison] ?? condition.comparison;
+  return {
+    words: `${inWords(condition.quantity)} ${relation} ${numberText(condition.bound)}`,
+    value: numberText(condition.value),
+    holds: condition.holds,
+  };
+}
+
+export function waitingFor(
+  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number,
+): Waiting {
+  if (!store.going && cutoff === Infinity) return ended(store);
+  const begun = [...store.firings.values()].some((pair) => pair.live || pair.recorded);
+  const accepted = stepDone(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1]?.command ?? '');
+  if (!begun && !accepted) return beginning(store, dictionary);
+  const next = nextTimepoint(store, plan, cutoff);
+  if (!next) {
+    return {
+      kind: 'waiting', title: 'The timeline is complete',
+      words: store.run.relayProgress > 0 && store.run.relayProgress < 1
+        ? `The recording is coming down: ${Math.round(store.run.relayProgress * 100)} %` : 'Every timepoint has fired.',
+      lines: [],
+    };
+  }
+  return { kind: 'waiting', title: `Waiting for ${inWords(next.name)}`, words: next.note, lines: conditions(store, dictionary, next, cutoff) };
+}
+
+function ended(store: RunStore): Waiting {
+  const run = store.run;
+  const complete = run.relayProgress >= 1 ? 'The recording is complete.' : `${Math.round(run.relayProgress * 100)} % of the recording came down.`;
+  return {
+    kind: 'ended',
+    title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
+    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state === 'interrupted' ? '' : complete}`,
+    lines: [],
+  };
+}
+
+/** Whether a command was carried out, by the vehicle's own word. */
+export function stepDone(store: RunStore, command: string): boolean {
+  return [...store.commands.values()].some((row) =>
+    row.name === command && ['executed', 'verified'].some((stage) => row.stages.get(stage)?.status === 'ok'));
+}
+
+function beginning(store: RunStore, dictionary: Dictionary): Waiting {
+  const steps = LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
+  const missing = steps.find((step) => !stepDone(store, step.command));
+  return {
+    kind: 'begin',
+    title: missing ? `Press / and type “${missing.words}”` : 'The commands are on their way',
+    words: missing ? `It ${missing.why}.` : 'Flight has not answered yet.',
+    lines: steps.map((step) => ({
+      words: step.words, value: stepDone(store, step.command) ? 'done' : sentWords(store, step.command),
+      holds: stepDone(store, step.command),
+    })),
+  };
+}
+
+function sentWords(store: RunStore, command: string): string {
+  const row = [...store.commands.values()].findLast((candidate) => candidate.name === command);
+  if (!row) return 'to be sent';
+  const failed = [...row.stages.values()].find((stage) => stage.status === 'failed');
+  return failed ? `failed: ${failed.evidence}` : 'on its way';
+}
+
+function conditions(store: RunStore, dictionary: Dictionary, next: TimepointRow, cutoff: number): Line[] {
+  const now = Math.min(store.seenSclk, cutoff);
+  const lines: Line[] = [];
+  const time = (names: readonly string[]): number | undefined => {
+    const channel = dictionary.pick(names);
+    const sample = channel && store.latest(channel.id, cutoff);
+    return sample?.value;
+  };
+  const current = time(LAYOUT.currentTimepoint);
+  // The vehicle's own times only count while it speaks of the same timepoint.
+  const itsOwn = current === undefined || current === next.id;
+  const desired = itsOwn ? time(LAYOUT.nextDesired) : undefined;
+  const minimum = itsOwn ? time(LAYOUT.nextMinimum) : undefined;
+  const base = next.anchor ? inWords(next.anchor) : 'the one before';
+  lines.push(timeLine(`${offsetWords(next.desiredOffsetS)} ${base}`, desired, now, store.entrySclk));
+  if (next.minimumOffsetS !== undefined && next.anchor !== '') {
+    lines.push(timeLine(`${offsetWords(next.minimumOffsetS)} the one before`, minimum, now, store.entrySclk));
+  }
+  const held = latestHeld(store, cutoff);
+  if (held) lines.push(...held.conditions.map(conditionLine));
+  return lines;
+}
+
+function offsetWords(offset_s: number | undefined): string {
+  if (offset_s === undefined) return 'undefined time from';
+  if (offset_s === 0) return 'at';
+  return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
+}
+
+function timeLine(words: string, due_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
+  if (due_sclk === undefined) return { words, value: 'not known', holds: undefined };
+  if (Number.isNaN(due_sclk)) return { words, value: 'has not happened', holds: false };
+  const left = due_sclk - now_sclk;
+  return {
+    words, value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`,
+    holds: left <= 0,
+  };
+}
+
+const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now
+
+function latestHeld(store: RunStore, cutoff: number): Explanation | undefined {
+  const now = Math.min(store.seenSclk, cutoff);
+  const row = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0);
+  return row && row.fact.verdict === 'held' && now - row.fact.sclk < FRESH_S ? row.fact : undefined;
+}
