@@ -114,8 +114,9 @@ class Reader {
     Result<v1::TimepointList> timepoints(RunId run);
     Result<v1::RecordingSummary> recording(RunId run);
 
+    struct State; ///< reader_state.hpp: shared by the reader's parts
+
   private:
-    struct State;
     explicit Reader(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
 };

@@ -1,0 +1,153 @@
+#include "server/archive/reader.hpp"
+
+#include "server/archive/reader_state.hpp"
+#include "server/archive/schema.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace aeolis::archive {
+
+Reader::Reader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Reader::Reader(Reader&&) noexcept = default;
+Reader& Reader::operator=(Reader&&) noexcept = default;
+Reader::~Reader() = default;
+
+Result<ClosedRange> closed(const SclkRange& range) {
+    constexpr double everything = std::numeric_limits<double>::infinity();
+    const ClosedRange closed{range.from_s.value_or(-everything), range.to_s.value_or(everything)};
+    if (std::isnan(closed.from_s) || std::isnan(closed.to_s)) return Error{"the range is not a number"};
+    if (closed.from_s > closed.to_s)
+        return Error{"the range is upside down: from " + std::to_string(closed.from_s) + " to " +
+                     std::to_string(closed.to_s)};
+    return closed;
+}
+
+Result<void> check_limit(std::size_t limit, std::size_t most) {
+    if (limit >= 1 && limit <= most) return {};
+    return Error{"limit " + std::to_string(limit) + " is not 1 … " + std::to_string(most)};
+}
+
+Result<Reader> Reader::open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
+    if (!database) return database.error();
+    if (auto done = check_for_reading(*database); !done) return done.error();
+    return Reader(std::make_unique<State>(std::move(database).value(), dictionary));
+}
+
+Result<Query> Reader::State::query(const char* sql) {
+    auto found = statements.find(sql);
+    if (found == statements.end()) {
+        auto prepared = database.prepare(sql);
+        if (!prepared) return prepared.error();
+        found = statements.emplace(sql, std::move(prepared).value()).first;
+    }
+    return Query(found->second);
+}
+
+Result<RunInfo> Reader::State::info(RunId run) {
+    static constexpr char sql[] = "SELECT state, dictionary, entry_sclk FROM runs WHERE run = ?";
+    auto rows = query(sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    auto found = row.step();
+    if (!found) return found.error();
+    if (!*found) return Error{"no run " + std::to_string(run.value)};
+    return RunInfo{run, row.text(0) == "finished", static_cast<std::uint16_t>(row.integer(1)), Sclk{row.real(2)}};
+}
+
+Result<void> Reader::State::same_dictionary(const RunInfo& run) const {
+    if (words_of(run) != nullptr) return {};
+    return Error{"run " + std::to_string(run.run.value) + " was recorded with dictionary " +
+                 std::to_string(run.dictionary) + ", this program has " + std::to_string(dictionary.id) +
+                 ": only its packets and texts can be shown"};
+}
+
+Result<Sequence> Reader::State::last_seq(RunId run) {
+    auto rows = query(last_key_sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    auto found = row.step();
+    if (!found) return found.error();
+    return row.is_null(0) ? Sequence{0} : sequence_of(row.integer(0));
+}
+
+Result<Sequence> Reader::last_seq(RunId run) {
+    if (auto info = state_->info(run); !info) return info.error();
+    return state_->last_seq(run);
+}
+
+namespace {
+constexpr char runs_sql[] =
+    "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
+    " light_time_s, tone_model, digest, coalesce(progress, 0) FROM runs r LEFT JOIN recordings c ON c.run = r.run"
+    " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
+constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
+} // namespace
+
+Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
+    v1::RunState state;
+    const RunId run{static_cast<std::uint32_t>(row.integer(0))};
+    state.set_run(run.value);
+    state.set_scenario(std::string(row.text(1)));
+    state.set_title(std::string(row.text(2)));
+    state.set_venue(std::string(row.text(3)));
+    state.set_seed(static_cast<std::uint64_t>(row.integer(4)));
+    state.set_state(std::string(row.text(5)));
+    state.set_outcome(std::string(row.text(6)));
+    state.set_pace(row.real(7));
+    state.set_started(std::string(row.text(8)));
+    state.set_entry_sclk(row.real(10));
+    state.set_start_sclk(row.real(11));
+    state.set_light_time_s(row.real(12));
+    state.set_tone_model(std::string(row.text(13)));
+    state.set_digest(std::string(row.text(14)));
+    state.set_relay_progress(row.real(15));
+    auto last = row.is_null(9) ? last_seq(run) : Result<Sequence>(static_cast<Sequence>(row.integer(9)));
+    if (!last) return last.error();
+    state.set_last_seq(*last);
+    auto values = query(solution_sql);
+    if (!values) return values.error();
+    (*values)->bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto found = (*values)->step();
+        if (!found) return found.error();
+        if (!*found) return state;
+        auto& argument = *state.add_solution();
+        argument.set_name(std::string((*values)->text(0)));
+        argument.set_value((*values)->real(1));
+    }
+}
+
+Result<v1::RunList> Reader::runs() {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    auto rows = state_->query(runs_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind_null(1);
+    v1::RunList list;
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return list;
+        auto state = state_->run_state(**rows);
+        if (!state) return state.error();
+        *list.add_runs() = std::move(state).value();
+    }
+}
+
+Result<v1::RunState> Reader::run(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    auto rows = state_->query(runs_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, std::int64_t{run.value});
+    auto found = (*rows)->step();
+    if (!found) return found.error();
+    if (!*found) return Error{"no run " + std::to_string(run.value)};
+    return state_->run_state(**rows);
+}
+
+} // namespace aeolis::archive

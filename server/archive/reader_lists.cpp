@@ -1,0 +1,264 @@
+#include "server/archive/items.hpp"
+#include "server/archive/reader.hpp"
+#include "server/archive/reader_state.hpp"
+#include "server/archive/row_reader.hpp"
+#include "server/archive/schema.hpp"
+#include "server/archive/timeline_plan.hpp"
+#include "telemetry/text.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+namespace aeolis::archive {
+
+namespace {
+
+std::string hex(std::span<const std::uint8_t> octets) {
+    static constexpr char digits[] = "0123456789abcdef";
+    std::string text;
+    text.reserve(2 * octets.size());
+    for (const auto octet : octets) {
+        text.push_back(digits[octet >> 4U]);
+        text.push_back(digits[octet & 15U]);
+    }
+    return text;
+}
+
+std::string lower(std::string_view text) {
+    std::string lowered(text);
+    for (char& c : lowered)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return lowered;
+}
+
+/// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
+/// more.
+template <typename Take>
+Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take) {
+    auto rows = reader.query(sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, item_key(run, std::min(after, sequence_max - 1) + 1)).bind(2, item_key(run, sequence_max));
+    row.bind(3, static_cast<std::int64_t>(rows_scanned_max));
+    Sequence last = 0;
+    for (std::size_t scanned = 0;; ++scanned) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return scanned == rows_scanned_max ? last : Sequence{0};
+        last = sequence_of(row.integer(0));
+        Result<bool> full = take(row);
+        if (!full) return full.error();
+        if (*full) return last;
+    }
+}
+
+void add_fields(v1::PacketRow& row, const dictionary::Packet& packet, const telemetry::Decoded& decoded) {
+    for (std::size_t i = 0; i < packet.fields.size(); ++i) {
+        const auto& field = packet.fields[i];
+        auto& written = *row.add_fields();
+        written.set_name(field.name);
+        written.set_text(telemetry::value_text(field.type, decoded.value[i]));
+        written.set_position_bits(field.position_bits);
+        written.set_bits(field.type.bits);
+    }
+}
+
+} // namespace
+
+Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
+    const auto range = closed(query.range);
+    if (!range) return range.error();
+    if (auto fits = check_limit(query.limit, packets_page_max); !fits) return fits.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    std::optional<std::uint16_t> wanted;
+    if (query.name) {
+        if (auto same = state_->same_dictionary(*info); !same) return same.error();
+        const auto* packet = state_->dictionary.packet(*query.name);
+        if (packet == nullptr) return Error{"no packet '" + *query.name + "'"};
+        wanted = static_cast<std::uint16_t>(packet - state_->dictionary.packets.data());
+    }
+    const auto* words = state_->words_of(*info);
+    v1::PacketList list;
+    const auto next = scan(*state_, row::unit_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto unit = row::unit(row);
+        if ((wanted && unit.packet != wanted) || !range->holds(unit.sclk.seconds)) return false;
+        auto& written = *list.add_packets();
+        *written.mutable_unit() = std::move(*to_item(unit, words).mutable_unit());
+        const auto octets = row.octets(row::unit_octets_column);
+        written.set_hex(hex(octets));
+        if (query.fields && words != nullptr && unit.packet && !state_->decommutator.decode(octets, state_->decoded))
+            add_fields(written, words->packets[state_->decoded.packet], state_->decoded);
+        return static_cast<std::size_t>(list.packets_size()) == query.limit;
+    });
+    if (!next) return next.error();
+    list.set_next_after(*next);
+    return list;
+}
+
+Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
+    const auto range = closed(query.range);
+    if (!range) return range.error();
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    const auto text = lower(query.text);
+    v1::EventList list;
+    const auto next = scan(*state_, row::event_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto event = row::event(row);
+        if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
+        if (!query.levels.empty() &&
+            std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
+            return false;
+        if (!text.empty() && lower(event.name).find(text) == std::string::npos &&
+            lower(event.text).find(text) == std::string::npos)
+            return false;
+        *list.add_events() = to_item(event);
+        return static_cast<std::size_t>(list.events_size()) == query.limit;
+    });
+    if (!next) return next.error();
+    list.set_next_after(*next);
+    return list;
+}
+
+Result<v1::ToneList> Reader::tones(RunId run, SclkRange asked) {
+    const auto range = closed(asked);
+    if (!range) return range.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    v1::ToneList list;
+    const auto done = scan(*state_, row::tone_rows, run, 0, [&](const auto& row) -> Result<bool> {
+        const auto tone = row::tone(row);
+        if (range->holds(tone.sclk.seconds)) *list.add_tones() = to_item(tone);
+        return false;
+    });
+    if (!done) return done.error();
+    return list;
+}
+
+Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQuery& query) {
+    const auto range = closed(query.range);
+    if (!range) return range.error();
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    v1::ExplanationList list;
+    const auto next = scan(*state_, row::explanation_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto record = row::explanation(row);
+        if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
+        if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
+        auto item = state_->explanation_item(row);
+        if (!item) return item.error();
+        *list.add_explanations() = std::move(item).value();
+        return static_cast<std::size_t>(list.explanations_size()) == query.limit;
+    });
+    if (!next) return next.error();
+    list.set_next_after(*next);
+    return list;
+}
+
+Result<v1::CommandList> Reader::commands(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    std::map<std::uint64_t, v1::CommandHistory> histories;
+    const auto done = scan(*state_, row::stage_rows, run, 0, [&](const auto& row) -> Result<bool> {
+        const auto stage = row::stage(row);
+        auto& history = histories[stage.command];
+        if (history.stages_size() == 0) {
+            history.set_command(stage.command);
+            history.set_name(stage.name);
+            history.set_arguments(stage.arguments);
+        }
+        *history.add_stages() = to_item(stage);
+        return false;
+    });
+    if (!done) return done.error();
+    static constexpr char octets_sql[] = "SELECT command, octets FROM commands WHERE run = ?1";
+    auto rows = state_->query(octets_sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) break;
+        histories[static_cast<std::uint64_t>(row.integer(0))].set_octets(hex(row.octets(1)));
+    }
+    v1::CommandList list;
+    for (auto& [number, history] : histories)
+        *list.add_commands() = std::move(history);
+    return list;
+}
+
+Result<v1::TimepointList> Reader::timepoints(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    const auto& dictionary = state_->dictionary;
+    const auto planned = planned_from_entry_s(dictionary);
+    v1::TimepointList list;
+    list.set_timeline_version(dictionary.timeline_version);
+    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
+        const auto& row = dictionary.timeline[i];
+        auto& written = *list.add_timepoints();
+        written.set_id(row.id.value);
+        written.set_name(row.name);
+        if (row.anchor) written.set_anchor(dictionary.anchors[row.anchor->value].name);
+        if (row.desired_offset_s) written.set_desired_offset_s(*row.desired_offset_s);
+        if (row.minimum_offset_s) written.set_minimum_offset_s(*row.minimum_offset_s);
+        if (row.tone) written.set_tone(dictionary.tones[row.tone->value].name);
+        written.set_event(row.event);
+        written.set_note(row.note);
+        written.set_waits_for_reply(row.reply_timeout_s.has_value());
+        if (planned[i]) written.set_planned_e_s(*planned[i]);
+        written.set_verdict("pending");
+    }
+    const auto done = scan(*state_, row::firing_rows, run, 0, [&](const auto& row) -> Result<bool> {
+        const auto firing = row::firing(row);
+        if (firing.timepoint.value >= dictionary.timeline.size()) return false;
+        auto& written = *list.mutable_timepoints(firing.timepoint.value);
+        if (firing.source == Source::realtime)
+            written.set_realtime_sclk(firing.fired.seconds);
+        else
+            written.set_recorded_sclk(firing.fired.seconds);
+        written.set_verdict(firing.verdict);
+        return false;
+    });
+    if (!done) return done.error();
+    return list;
+}
+
+Result<v1::RecordingSummary> Reader::recording(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    static constexpr char sql[] = "SELECT recorded, realtime, realtime_not_recorded, realtime_differs,"
+                                  " never_seen_live, progress, recorded_octets FROM recordings WHERE run = ?1";
+    auto rows = state_->query(sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    auto found = row.step();
+    if (!found) return found.error();
+    v1::RecordingSummary summary;
+    if (!*found) return summary;
+    const auto number = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
+    summary.set_recorded(number(0));
+    summary.set_realtime(number(1));
+    summary.set_realtime_not_recorded(number(2));
+    summary.set_realtime_differs(number(3));
+    summary.set_never_seen_live(number(4));
+    summary.set_progress(row.real(5));
+    summary.set_recorded_octets(number(6));
+    return summary;
+}
+
+} // namespace aeolis::archive

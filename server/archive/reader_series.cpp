@@ -1,0 +1,127 @@
+#include "server/archive/reader.hpp"
+#include "server/archive/sample_query.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::archive {
+
+namespace {
+
+constexpr char newest_sql[] = "SELECT octets, source FROM units WHERE run = ?1 AND apid = ?2 AND sclk <= ?3"
+                              " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
+
+Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::Dictionary& dictionary,
+                                                              const std::vector<std::string>& names) {
+    if (names.empty()) return Error{"no channel is named"};
+    if (names.size() > channels_max)
+        return Error{std::to_string(names.size()) + " channels are named; at most " + std::to_string(channels_max)};
+    std::vector<const dictionary::Channel*> channels;
+    for (const auto& name : names) {
+        const auto* channel = dictionary.channel(name);
+        if (channel == nullptr) return Error{"no channel '" + name + "'"};
+        channels.push_back(channel);
+    }
+    return channels;
+}
+
+void write(v1::ChannelSeries& series, const std::vector<Sample>& samples) {
+    const auto count = static_cast<int>(samples.size());
+    series.mutable_sclk()->Reserve(count);
+    series.mutable_value()->Reserve(count);
+    series.mutable_source()->Reserve(count);
+    for (const auto& sample : samples) {
+        series.add_sclk(sample.sclk_s);
+        series.add_value(sample.value);
+        series.add_source(static_cast<v1::Source>(sample.source));
+    }
+}
+
+Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, const dictionary::Channel& channel,
+                                     const ClosedRange& range, std::optional<std::size_t> points) {
+    v1::ChannelSeries series;
+    series.set_id(channel.id.value);
+    series.set_name(channel.name);
+    series.set_unit(channel.type.unit);
+    const auto count = samples_at_most(reader, run, channel.id, range);
+    if (!count) return count.error();
+    if (points && *count > *points) {
+        const auto thinned = thinned_samples(reader, run, channel.id, range, *points);
+        if (!thinned) return thinned.error();
+        series.set_samples(thinned->samples);
+        series.set_thinned(thinned->points.size() < thinned->samples);
+        write(series, thinned->points);
+        return series;
+    }
+    if (*count > exact_samples_max)
+        return Error{"the range holds some " + std::to_string(*count) + " samples of '" + channel.name + "'; at most " +
+                     std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
+    const auto samples = exact_samples(reader, run, channel.id, range);
+    if (!samples) return samples.error();
+    series.set_samples(samples->size());
+    write(series, *samples);
+    return series;
+}
+
+} // namespace
+
+Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
+    const auto range = closed(query.range);
+    if (!range) return range.error();
+    if (query.points && (*query.points < 2 || *query.points > thinned_points_max))
+        return Error{"points " + std::to_string(*query.points) + " is not 2 … " + std::to_string(thinned_points_max)};
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    const auto channels = find_channels(state_->dictionary, query.channels);
+    if (!channels) return channels.error();
+    v1::ChannelSeriesList list;
+    for (const auto* channel : *channels) {
+        auto series = one_series(*state_, *info, *channel, *range, query.points);
+        if (!series) return series.error();
+        *list.add_channels() = std::move(series).value();
+    }
+    return list;
+}
+
+Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> at) {
+    const auto range = closed({{}, at ? std::optional(at->seconds) : std::nullopt});
+    if (!range) return range.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    std::vector<std::optional<ChannelValue>> newest(state_->dictionary.channels.size());
+    std::vector<double> values;
+    for (std::size_t packet = 0; packet < state_->columns.packets(); ++packet) {
+        const auto& channels = state_->columns.channels(packet);
+        if (channels.empty()) continue;
+        auto rows = state_->query(newest_sql);
+        if (!rows) return rows.error();
+        auto& row = **rows;
+        row.bind(1, std::int64_t{run.value})
+            .bind(2, std::int64_t{state_->dictionary.packets[packet].apid.value})
+            .bind(3, range->to_s)
+            .bind(4, static_cast<std::int64_t>(packet));
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found || state_->decommutator.decode(row.octets(0), state_->decoded)) continue;
+        values.clear();
+        state_->columns.append_values(state_->decoded, values);
+        const Sclk sclk = state_->decoded.header.time;
+        for (std::size_t i = 0; i < channels.size(); ++i) {
+            auto& known = newest[channels[i].value];
+            if (!known || known->sclk < sclk)
+                known = ChannelValue{channels[i], values[i], sclk, static_cast<Source>(row.integer(1))};
+        }
+    }
+    std::vector<ChannelValue> answer;
+    for (const auto& value : newest)
+        if (value && !std::isnan(value->value)) answer.push_back(*value);
+    return answer;
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,70 @@
+#pragma once
+
+#include "server/archive/packet_columns.hpp"
+#include "server/archive/reader.hpp"
+#include "server/archive/sqlite.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <map>
+
+// What the parts of the reader share; not for others.
+namespace aeolis::archive {
+
+/// A prepared statement in use; reset at the end of the scope, so that it never holds a snapshot open.
+class Query {
+  public:
+    explicit Query(sqlite::Statement& statement) : statement_(&statement) {}
+    Query(Query&& other) noexcept : statement_(std::exchange(other.statement_, nullptr)) {}
+    Query& operator=(Query&&) = delete;
+    ~Query() {
+        if (statement_ != nullptr) statement_->reset();
+    }
+    sqlite::Statement& operator*() const { return *statement_; }
+    sqlite::Statement* operator->() const { return statement_; }
+
+  private:
+    sqlite::Statement* statement_;
+};
+
+struct RunInfo {
+    RunId run;
+    bool finished = false; ///< every sample is in a segment
+    std::uint16_t dictionary = 0;
+    Sclk entry;
+};
+
+/// A range with both ends, for SQL.
+struct ClosedRange {
+    double from_s = 0.0, to_s = 0.0;
+    bool holds(double sclk_s) const { return from_s <= sclk_s && sclk_s <= to_s; }
+};
+Result<ClosedRange> closed(const SclkRange& range);
+/// 1 … `most`, or an Error that says so.
+Result<void> check_limit(std::size_t limit, std::size_t most);
+
+struct Reader::State {
+    State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in)
+        : database(std::move(database_in)), dictionary(dictionary_in), columns(dictionary_in),
+          decommutator(dictionary_in) {}
+
+    /// Prepared once; `sql` is a constant.
+    Result<Query> query(const char* sql);
+    Result<RunInfo> info(RunId run);
+    Result<Sequence> last_seq(RunId run);
+    Result<v1::RunState> run_state(const sqlite::Statement& row);
+    Result<v1::Item> explanation_item(const sqlite::Statement& row);
+    /// Null when the run was recorded with another dictionary.
+    const dictionary::Dictionary* words_of(const RunInfo& run) const {
+        return run.dictionary == dictionary.id ? &dictionary : nullptr;
+    }
+    Result<void> same_dictionary(const RunInfo& run) const;
+
+    sqlite::Database database;
+    const dictionary::Dictionary& dictionary;
+    PacketColumns columns;
+    telemetry::Decommutator decommutator;
+    telemetry::Decoded decoded;
+    std::map<const char*, sqlite::Statement> statements;
+};
+
+} // namespace aeolis::archive

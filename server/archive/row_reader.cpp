@@ -1,0 +1,123 @@
+#include "server/archive/row_reader.hpp"
+
+#include "server/archive/schema.hpp"
+
+#include <limits>
+
+namespace aeolis::archive::row {
+
+namespace {
+
+Sequence seq(const sqlite::Statement& row) {
+    return sequence_of(row.integer(0));
+}
+Source source(const sqlite::Statement& row, int column) {
+    return static_cast<Source>(row.integer(column));
+}
+std::string text(const sqlite::Statement& row, int column) {
+    return std::string(row.text(column));
+}
+/// NULL stands for NaN.
+double number(const sqlite::Statement& row, int column) {
+    return row.is_null(column) ? std::numeric_limits<double>::quiet_NaN() : row.real(column);
+}
+std::optional<ToneId> maybe_tone(const sqlite::Statement& row, int column) {
+    if (row.is_null(column)) return {};
+    return ToneId{static_cast<std::uint8_t>(row.integer(column))};
+}
+
+} // namespace
+
+UnitRecord unit(const sqlite::Statement& row) {
+    UnitRecord record;
+    record.seq = seq(row);
+    record.apid = Apid{static_cast<std::uint16_t>(row.integer(1))};
+    if (!row.is_null(2)) record.packet = static_cast<std::uint16_t>(row.integer(2));
+    record.refusal = text(row, 3);
+    record.sclk = Sclk{row.real(4)};
+    record.ert = Ert{row.integer(5)};
+    record.link = static_cast<Link>(row.integer(6));
+    record.source = source(row, 7);
+    record.standing = static_cast<telemetry::Standing>(row.integer(8));
+    record.sampled = row.integer(9) != 0;
+    record.octets = {0, row.octets(unit_octets_column).size()};
+    return record;
+}
+
+EventRecord event(const sqlite::Statement& row) {
+    return {seq(row),
+            static_cast<Sequence>(row.integer(1)),
+            EvrId{static_cast<std::uint16_t>(row.integer(2))},
+            text(row, 3),
+            text(row, 4),
+            text(row, 5),
+            Sclk{row.real(6)},
+            Ert{row.integer(7)},
+            source(row, 8),
+            row.integer(9) != 0};
+}
+
+ToneRecord tone(const sqlite::Statement& row) {
+    return {seq(row),     Ert{row.integer(1)},  Ert{row.integer(2)}, maybe_tone(row, 3), text(row, 4),
+            text(row, 5), row.real(6),          maybe_tone(row, 7),  row.real(8),        row.real(9),
+            row.real(10), row.integer(11) != 0, text(row, 12),       Sclk{row.real(13)}};
+}
+
+StageRecord stage(const sqlite::Statement& row) {
+    return {seq(row),
+            static_cast<std::uint64_t>(row.integer(1)),
+            text(row, 2),
+            text(row, 3),
+            text(row, 4),
+            text(row, 5),
+            Ert{row.integer(6)},
+            text(row, 7),
+            static_cast<std::uint32_t>(row.integer(8)),
+            {}};
+}
+
+FiringRecord firing(const sqlite::Statement& row) {
+    return {seq(row),
+            static_cast<Sequence>(row.integer(1)),
+            TimepointId{static_cast<std::uint16_t>(row.integer(2))},
+            text(row, 3),
+            text(row, 6),
+            Sclk{row.real(4)},
+            Sclk{row.real(5)},
+            source(row, 7),
+            row.integer(8) != 0};
+}
+
+ExplanationRecord explanation(const sqlite::Statement& row) {
+    ExplanationRecord record;
+    record.seq = seq(row);
+    record.unit = static_cast<Sequence>(row.integer(1));
+    record.sclk = Sclk{row.real(2)};
+    record.explanation.decision = text(row, 3);
+    record.explanation.verdict = text(row, 4);
+    record.explanation.subject = text(row, 5);
+    record.explanation.text = text(row, 6);
+    record.source = source(row, 7);
+    record.duplicate = row.integer(8) != 0;
+    return record;
+}
+
+telemetry::Condition condition(const sqlite::Statement& row) {
+    return {text(row, 0), number(row, 1), text(row, 2), number(row, 3), row.integer(4) != 0};
+}
+
+LinkRecord link(const sqlite::Statement& row) {
+    return {seq(row), static_cast<Link>(row.integer(1)), row.integer(2) != 0, text(row, 3), Ert{row.integer(4)}};
+}
+
+AlarmRecord alarm(const sqlite::Statement& row) {
+    return {seq(row),
+            static_cast<Sequence>(row.integer(1)),
+            ChannelId{static_cast<std::uint16_t>(row.integer(2))},
+            text(row, 3),
+            number(row, 4),
+            Sclk{row.real(5)},
+            text(row, 6)};
+}
+
+} // namespace aeolis::archive::row

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "server/archive/records.hpp"
+#include "server/archive/sqlite.hpp"
+
+// Rows back to records: for each table the question (keys ?1 to ?2, at most ?3 rows, in order), and the record of the
+// row that stands ready.
+namespace aeolis::archive::row {
+
+inline constexpr char unit_rows[] =
+    "SELECT key, apid, packet, refusal, sclk, ert_us, link, source, standing, sampled, octets"
+    " FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+/// The octets themselves stay in the row: column unit_octets_column.
+UnitRecord unit(const sqlite::Statement& row);
+inline constexpr int unit_octets_column = 10;
+
+inline constexpr char event_rows[] = "SELECT key, unit, event, name, level, text, sclk, ert_us, source, duplicate"
+                                     " FROM events WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+EventRecord event(const sqlite::Statement& row);
+
+inline constexpr char tone_rows[] = "SELECT key, start_us, end_us, tone, name, meaning, likelihood, runner_up, "
+                                    "runner_up_likelihood, c_n0_dbhz, doppler_hz, locked, model, sclk"
+                                    " FROM tones WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+ToneRecord tone(const sqlite::Statement& row);
+
+inline constexpr char stage_rows[] = "SELECT key, command, name, stage, status, evidence, at_us, arguments, count"
+                                     " FROM command_stages WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+StageRecord stage(const sqlite::Statement& row);
+
+inline constexpr char firing_rows[] =
+    "SELECT key, unit, timepoint, name, triggered_sclk, fired_sclk, verdict, source, duplicate"
+    " FROM timepoint_firings WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+FiringRecord firing(const sqlite::Statement& row);
+
+/// Without its conditions, which have rows of their own.
+inline constexpr char explanation_rows[] = "SELECT key, unit, sclk, decision, verdict, subject, text, source, duplicate"
+                                           " FROM explanations WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+ExplanationRecord explanation(const sqlite::Statement& row);
+inline constexpr char condition_rows[] = "SELECT quantity, value, comparison, bound, holds"
+                                         " FROM explanation_conditions WHERE key = ?1 ORDER BY position";
+telemetry::Condition condition(const sqlite::Statement& row);
+
+inline constexpr char link_rows[] = "SELECT key, link, up, reason, ert_us"
+                                    " FROM link_changes WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+LinkRecord link(const sqlite::Statement& row);
+
+inline constexpr char alarm_rows[] = "SELECT key, unit, channel, severity, value, sclk, limit_text"
+                                     " FROM alarms WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+AlarmRecord alarm(const sqlite::Statement& row);
+
+} // namespace aeolis::archive::row
