@@ -70,7 +70,8 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
     double sum = 0.0;
     for (const double one : throttle) sum += one;
     const auto percent = [&](std::size_t engine) { return f(throttle[engine] * parts_in_percent); };
-    return {.thrust_command_N = f(gnc.thrust_command_N),
+    return {.descent_mode = static_cast<GncMode>(gnc.mode),
+            .thrust_command_N = f(gnc.thrust_command_N),
             .throttle_mean_percent = f(sum / static_cast<double>(throttle.size()) * parts_in_percent),
             .throttle_1_percent = percent(0),
             .throttle_2_percent = percent(1),
@@ -82,7 +83,6 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .throttle_8_percent = percent(7),
             .mass_estimate_kg = f(gnc.mass_kg),
             .propellant_kg = f(gnc.propellant_kg),
-            .descent_mode = static_cast<GncMode>(gnc.mode),
             .bridle_m = f(bridle_m)};
 }
 

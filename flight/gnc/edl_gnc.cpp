@@ -357,6 +357,7 @@ void EdlGnc::report(Output& out) const {
     const double carried_kg = load_.descent_stage_dry_kg + (mode_ == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
     out.propellant_kg = (on_engines ? mass_kg_ : load_.powered_descent_mass_kg) - carried_kg;
     out.radar_locked = radar_filter_.locked();
+    out.radar_beams = last_radar_beams_;
 }
 
 } // namespace aeolis::flight::gnc

@@ -137,6 +137,7 @@ struct Output {
     double mass_kg = 0.0;
     double propellant_kg = 0.0;
     bool radar_locked = false;
+    std::uint16_t radar_beams = 0; ///< of the last radar solution
 };
 
 /// All of GNC's state, a value of fixed size.
