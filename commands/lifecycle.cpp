@@ -17,9 +17,6 @@ constexpr std::array ground_stages{Stage::queued, Stage::authorised, Stage::rele
 std::size_t index_of(Stage stage) {
     return static_cast<std::size_t>(stage);
 }
-Stage next_of(Stage stage) {
-    return static_cast<Stage>(index_of(stage) + 1);
-}
 
 Ert later(Ert time, double by_s) {
     return {time.microseconds + static_cast<std::int64_t>(by_s * 1.0e6)};
@@ -115,23 +112,24 @@ void CommandLifecycle::on(const Answer& answer, std::vector<StageChange>& out) {
     if (answer.opcode != command_->opcode || answer.count != count_) return;
     for (const dictionary::Verifier& way : command_->verifiers) {
         const auto stage = stage_named(way.stage);
-        if (!stage) continue;
-        if (answer.event == way.event) {
+        if (stage && answer.event == way.event) {
             infer_before(*stage, answer, out);
             set(*stage, Status::ok, evidence_of(answer), answer.ert, out);
             if (*stage == Stage::executed && !executed_sclk_) executed_sclk_ = answer.sclk;
             return;
         }
-        if (way.failure_event && answer.event == *way.failure_event) {
-            // A command that was accepted can still be refused by the module that was to carry it out.
-            const Stage failed = status(*stage) == Status::ok && *stage != Stage::verified ? next_of(*stage) : *stage;
-            if (!exists(failed) || status(failed) == Status::ok) return;
-            infer_before(failed, answer, out);
-            set(failed, Status::failed, evidence_of(answer), answer.ert, out);
-            fail_after(failed, "because it was refused on board", answer.ert, out);
-            return;
-        }
     }
+    const auto refuses = [&](const auto& way) { return way.failure_event && *way.failure_event == answer.event; };
+    if (std::any_of(command_->verifiers.begin(), command_->verifiers.end(), refuses)) refused(answer, out);
+}
+
+/// A command that was accepted can still be refused by the module that was to carry it out.
+void CommandLifecycle::refused(const Answer& answer, std::vector<StageChange>& out) {
+    const Stage failed = status(Stage::accepted) == Status::ok ? Stage::executed : Stage::accepted;
+    if (status(failed) == Status::ok) return;
+    infer_before(Stage::accepted, answer, out);
+    set(failed, Status::failed, evidence_of(answer), answer.ert, out);
+    fail_after(failed, "because it was refused on board", answer.ert, out);
 }
 
 void CommandLifecycle::on(const ReadBack& read_back, Ert at, std::vector<StageChange>& out) {

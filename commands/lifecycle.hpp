@@ -71,6 +71,7 @@ class CommandLifecycle {
   private:
     void set(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
     void await_answers(Ert at, std::vector<StageChange>& out);
+    void refused(const Answer& answer, std::vector<StageChange>& out);
     void infer_before(Stage stage, const Answer& answer, std::vector<StageChange>& out);
     void fail_after(Stage stage, const std::string& why, Ert at, std::vector<StageChange>& out);
     static std::optional<Stage> stage_named(const std::string& name);

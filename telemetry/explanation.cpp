@@ -7,22 +7,20 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t fields_of_a_condition = 5;
+constexpr std::size_t slots = 4;
 
-/// One field of the packet, as text or number.
+/// Fields of the packet by name; one that the dictionary lacks is empty or zero.
 struct Reader {
     const dictionary::Packet& packet;
     const Decoded& decoded;
 
-    std::string label(std::size_t field) const { return number_text(packet.fields[field].type, decoded.value[field]); }
     std::string label(std::string_view name) const {
         const auto field = field_index(packet, name);
-        return field ? label(*field) : std::string{};
+        return field ? number_text(packet.fields[*field].type, decoded.value[*field]) : std::string{};
     }
-    double number(std::size_t field) const { return decoded.value[field].value_or(0.0); }
     double number(std::string_view name) const {
         const auto field = field_index(packet, name);
-        return field ? number(*field) : 0.0;
+        return field ? decoded.value[*field].value_or(0.0) : 0.0;
     }
 };
 
@@ -35,41 +33,30 @@ std::string symbol_of(const std::string& comparison) {
     return comparison;
 }
 
-bool mentions(const std::string& decision, std::string_view word) {
-    return decision.find(word) != std::string::npos;
-}
-
 std::string subject_of(const dictionary::Dictionary& dictionary, const std::string& decision, double number) {
-    if (mentions(decision, "timepoint")) {
-        const auto id = static_cast<std::size_t>(number);
-        return id < dictionary.timeline.size() ? dictionary.timeline[id].name : "number " + std::to_string(id);
-    }
-    if (mentions(decision, "tone")) {
-        const auto id = static_cast<std::size_t>(number);
-        const bool named = id < dictionary.tones.size() && !dictionary.tones[id].name.empty();
-        return std::to_string(id) + (named ? " " + dictionary.tones[id].name : std::string{});
-    }
-    const auto* command = dictionary.command(Opcode{static_cast<std::uint16_t>(number)});
-    return command != nullptr ? command->name : std::string{};
+    if (decision == "timepoint" || decision == "tone") return reference_text(dictionary, decision, number);
+    if (decision == "command" || decision == "do_edl" || decision == "set_parameters")
+        return reference_text(dictionary, "opcode", number);
+    if (decision == "bank_reversal") return std::to_string(static_cast<unsigned>(number));
+    // "edl_phase", "gnc_mode": the subject is the new value of the channel of that name.
+    const dictionary::Channel* channel = dictionary.channel(decision);
+    return channel != nullptr ? number_text(channel->type, number) : std::string{};
 }
 
 std::string sentence_of(const Condition& condition) {
-    return std::string{condition.holds ? "" : "not "} + std::string{without_unit(condition.quantity)} + " " +
-           named_value_text(condition.quantity, condition.value) + " " + condition.comparison + " " +
+    return std::string{without_unit(condition.quantity)} + " " + named_value_text(condition.quantity, condition.value) +
+           (condition.holds ? " " : ", not ") + condition.comparison + " " +
            named_value_text(condition.quantity, condition.bound);
 }
 
 std::vector<Condition> conditions_of(const Reader& reader) {
     std::vector<Condition> conditions;
-    const auto count_field = field_index(reader.packet, "condition_count");
-    if (!count_field) return conditions;
-    const std::size_t first = *count_field + 1;
-    const std::size_t slots = (reader.packet.fields.size() - first) / fields_of_a_condition;
-    const auto count = std::min(slots, static_cast<std::size_t>(std::max(0.0, reader.number(*count_field))));
-    for (std::size_t slot = 0; slot < count; ++slot) {
-        const std::size_t at = first + slot * fields_of_a_condition;
-        conditions.push_back({reader.label(at), reader.number(at + 1), symbol_of(reader.label(at + 3)),
-                              reader.number(at + 2), reader.number(at + 4) != 0.0});
+    const auto count = static_cast<std::size_t>(std::clamp(reader.number("condition_count"), 0.0, double{slots}));
+    for (std::size_t slot = 1; slot <= count; ++slot) {
+        const std::string ending = "_" + std::to_string(slot);
+        conditions.push_back({reader.label("condition" + ending), reader.number("value" + ending),
+                              symbol_of(reader.label("comparison" + ending)), reader.number("bound" + ending),
+                              reader.number("holds" + ending) != 0.0});
     }
     return conditions;
 }

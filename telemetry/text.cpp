@@ -53,6 +53,10 @@ const Notation* notation_of_name(std::string_view name) {
     return nullptr;
 }
 
+bool is_reference(std::string_view field) {
+    return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone";
+}
+
 const std::string* label_of(const dictionary::Type& type, double value) {
     for (const dictionary::EnumValue& entry : type.enumeration)
         if (static_cast<double>(entry.value) == value) return &entry.label;
@@ -99,6 +103,23 @@ std::string named_value_text(std::string_view name, double value) {
     return digits(value, notation->decimals) + " " + std::string{notation->unit};
 }
 
+std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number) {
+    const std::string plain = digits(number, 0);
+    if (number < 0.0 || number > 65535.0 || !is_whole(number)) return plain;
+    const auto index = static_cast<std::size_t>(number);
+    if (field == "opcode") {
+        const auto* command = dictionary.command(Opcode{static_cast<std::uint16_t>(index)});
+        return command != nullptr ? command->name : plain;
+    }
+    const auto numbered = [&](const auto& rows) {
+        return index < rows.size() && !rows[index].name.empty() ? plain + " " + rows[index].name : plain;
+    };
+    if (field == "timepoint") return numbered(dictionary.timeline);
+    if (field == "anchor") return numbered(dictionary.anchors);
+    if (field == "tone") return numbered(dictionary.tones);
+    return plain;
+}
+
 const char* name_of(dictionary::EventLevel level) {
     switch (level) {
     case dictionary::EventLevel::fatal:
@@ -124,6 +145,17 @@ const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, cons
     return id ? dictionary.event(*id) : nullptr;
 }
 
+namespace {
+
+std::string argument_text(const dictionary::Dictionary& dictionary, const dictionary::Field& field,
+                          std::optional<double> value) {
+    const bool names_a_thing = field.type.kind == dictionary::ValueKind::integer && value;
+    return names_a_thing && is_reference(field.name) ? reference_text(dictionary, field.name, *value)
+                                                     : number_text(field.type, value);
+}
+
+} // namespace
+
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded) {
     const dictionary::Packet& packet = dictionary.packets[decoded.packet];
@@ -135,10 +167,9 @@ std::string event_text(const dictionary::Dictionary& dictionary, const dictionar
         if (close == std::string_view::npos) break;
         text += rest.substr(0, open);
         const auto field = field_index(packet, rest.substr(open + 1, close - open - 1));
-        if (field && *field < decoded.value.size())
-            text += number_text(packet.fields[*field].type, decoded.value[*field]);
-        else
-            text += rest.substr(open, close - open + 1);
+        text += field && *field < decoded.value.size()
+                    ? argument_text(dictionary, packet.fields[*field], decoded.value[*field])
+                    : std::string{rest.substr(open, close - open + 1)};
         rest.remove_prefix(close + 1);
     }
     return text.append(rest);

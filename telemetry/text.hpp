@@ -18,6 +18,10 @@ std::string number_text(const dictionary::Type& type, std::optional<double> valu
 /// With the unit: "404.6 m/s", "parachute_descent", "undefined".
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
+/// A number that names a thing of the dictionary, by the name of its field: "opcode", "timepoint", "anchor", "tone".
+/// "EDL_DO_EDL", "14 parachute_mortar"; the number alone where it names nothing.
+std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
+
 /// For a number whose unit is only known from the ending of its name, "speed_mps": "speed" and "12.3 m/s".
 std::string_view without_unit(std::string_view name); ///< "speed"
 std::string named_value_text(std::string_view name, double value);
@@ -27,7 +31,7 @@ const char* name_of(dictionary::EventLevel level); ///< "ACTIVITY_HI"
 /// The event of a packet that is one, else none.
 const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
-/// The event's format with its arguments put in; a brace that names no argument stays as it is.
+/// The event's format with its arguments put in, references by name; a brace that names no argument stays as it is.
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded);
 

@@ -1,0 +1,43 @@
+#include "commands/authorise.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/small_dictionary.hpp"
+
+using namespace aeolis;
+using namespace aeolis::commands;
+using State = PreconditionState::State;
+
+namespace {
+
+const dictionary::Command& command(std::string_view name) {
+    static const auto dictionary = tests::small_dictionary();
+    return *dictionary.command(name);
+}
+
+} // namespace
+
+TEST_CASE("a harmless command needs neither arming nor confirmation", "[authorise]") {
+    CHECK_FALSE(is_hazardous(command("NO_OP")));
+    CHECK(authorise(command("NO_OP"), {}, {}).ok());
+}
+
+TEST_CASE("a hazardous command needs arming and its name typed exactly", "[authorise][R44]") {
+    const auto& start = command("EDL_DO_EDL");
+    CHECK(is_hazardous(start));
+    CHECK(authorise(start, {false, "EDL_DO_EDL"}, {}).error().message ==
+          "EDL_DO_EDL is hazardous (it cannot be undone): it must be armed first");
+    CHECK(authorise(start, {true, ""}, {}).error().message ==
+          "EDL_DO_EDL is hazardous (it cannot be undone): its name must be typed to confirm, nothing was typed");
+    CHECK_FALSE(authorise(start, {true, "edl_do_edl"}, {}).ok());
+    CHECK_FALSE(authorise(start, {true, "EDL_DO_EDL "}, {}).ok());
+    CHECK(authorise(start, {true, "EDL_DO_EDL"}, {}).ok());
+}
+
+TEST_CASE("a precondition that fails or is not known refuses, and all of them are told", "[authorise][R23]") {
+    const std::vector<PreconditionState> states{{State::holds, 1.0, "a == 1: is 1"},
+                                                {State::fails, 0.0, "b == 1: is 0"},
+                                                {State::unknown, {}, "c == 1: not known, no value has come"}};
+    CHECK(authorise(command("NO_OP"), {}, states).error().message ==
+          "NO_OP must not be sent now: b == 1: is 0; c == 1: not known, no value has come");
+    CHECK(authorise(command("NO_OP"), {}, std::span{states}.first(1)).ok());
+}

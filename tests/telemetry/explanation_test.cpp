@@ -1,0 +1,67 @@
+#include "telemetry/explanation.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/small_dictionary.hpp"
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+using aeolis::tests::PacketFiller;
+
+namespace {
+
+struct Ground {
+    dictionary::Dictionary dictionary = tests::small_dictionary();
+    Decommutator decommutator{dictionary};
+
+    PacketFiller packet(unsigned decision, unsigned verdict, unsigned subject, unsigned conditions) const {
+        PacketFiller filler{dictionary, "Explanation"};
+        filler.raw("decision", decision).raw("verdict", verdict).raw("subject", subject);
+        filler.raw("condition_count", conditions);
+        return filler;
+    }
+    std::optional<Explanation> explained(PacketFiller filler) const {
+        Decoded decoded;
+        REQUIRE_FALSE(decommutator.decode(filler.seal(), decoded));
+        return explain(dictionary, decoded);
+    }
+};
+
+} // namespace
+
+TEST_CASE("a decision reads with each condition, its value and its bound", "[explanation][R38]") {
+    const Ground ground;
+    auto packet = ground.packet(0, 0, 0, 2);
+    packet.raw("condition_1", 1).real("value_1", 404.6).real("bound_1", 405.0).raw("comparison_1", 1).raw("holds_1", 1);
+    packet.raw("condition_2", 2).real("value_2", 3).real("bound_2", 4).raw("comparison_2", 4);
+    const auto explanation = ground.explained(packet);
+    REQUIRE(explanation);
+    CHECK(explanation->text == "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s; tone_priority 3, not > 4");
+    CHECK(explanation->decision == "parachute_deploy");
+    CHECK(explanation->verdict == "fired");
+    REQUIRE(explanation->conditions.size() == 2);
+    CHECK(explanation->conditions[0].quantity == "speed_mps");
+    CHECK(explanation->conditions[0].comparison == "<=");
+    CHECK(explanation->conditions[0].holds);
+    CHECK_FALSE(explanation->conditions[1].holds);
+}
+
+TEST_CASE("the subject is told by name", "[explanation][R38]") {
+    const Ground ground;
+    CHECK(ground.explained(ground.packet(1, 1, 2, 0))->text == "timepoint 2 coolant_vent held");
+    CHECK(ground.explained(ground.packet(1, 1, 9, 0))->text == "timepoint 9 held");
+    CHECK(ground.explained(ground.packet(2, 2, 37, 0))->text == "tone 37 parachute_out chosen");
+    CHECK(ground.explained(ground.packet(3, 3, 0x0103, 0))->text == "command EDL_DO_EDL refused");
+    CHECK(ground.explained(ground.packet(4, 4, 1, 0))->text == "edl_phase parachute_descent changed");
+}
+
+TEST_CASE("a count of conditions beyond the slots gives the slots there are", "[explanation]") {
+    const Ground ground;
+    CHECK(ground.explained(ground.packet(0, 0, 0, 255))->conditions.size() == 4);
+}
+
+TEST_CASE("only the packet of explanations is explained", "[explanation]") {
+    const Ground ground;
+    Decoded decoded;
+    REQUIRE_FALSE(ground.decommutator.decode(PacketFiller{ground.dictionary, "Status"}.seal(), decoded));
+    CHECK_FALSE(explain(ground.dictionary, decoded));
+}

@@ -1,0 +1,78 @@
+#include "telemetry/text.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/small_dictionary.hpp"
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+using aeolis::tests::PacketFiller;
+
+TEST_CASE("values read with their unit and as many digits as a person needs", "[text]") {
+    CHECK(value_text(tests::f32("m/s"), 404.5678) == "404.6 m/s");
+    CHECK(value_text(tests::f64("deg"), -4.5893) == "-4.59 deg");
+    CHECK(value_text(tests::f64("1"), 0.24) == "0.24");
+    CHECK(value_text(tests::u(16), 65535.0) == "65535");
+    CHECK(value_text(tests::f64("m"), {}) == "undefined");
+    CHECK(value_text(tests::f64("m/s"), -0.01) == "0.0 m/s");
+    CHECK(value_text(tests::f64("furlong"), 1e300) == "1e+300 furlong");
+}
+
+TEST_CASE("enumerations read as labels and flags as true or false", "[text]") {
+    const auto type = tests::labels(8, {{0, "pre_edl"}, {3, "landed"}});
+    CHECK(value_text(type, 3.0) == "landed");
+    CHECK(value_text(type, 7.0) == "7 (no label)");
+    CHECK(value_text(tests::flag(), 1.0) == "true");
+    CHECK(value_text(tests::flag(), 0.0) == "false");
+}
+
+TEST_CASE("the ending of a name gives the unit", "[text]") {
+    CHECK(without_unit("speed_mps") == "speed");
+    CHECK(without_unit("tone_priority") == "tone_priority");
+    CHECK(without_unit("sclk") == "sclk");
+    CHECK(named_value_text("speed_mps", 405.0) == "405.0 m/s");
+    CHECK(named_value_text("tone_priority", 12.0) == "12");
+    CHECK(named_value_text("mach", 1.75) == "1.75");
+}
+
+TEST_CASE("an event's text holds its arguments, undefined ones too", "[text][R48]") {
+    const auto dictionary = tests::small_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    REQUIRE_FALSE(
+        decommutator.decode(PacketFiller{dictionary, "PARACHUTE_DEPLOY"}.real("speed_mps", 404.59).seal(), decoded));
+    const auto* event = event_of(dictionary, decoded);
+    REQUIRE(event != nullptr);
+    CHECK(event_text(dictionary, *event, decoded) == "Mortar at 404.6 m/s, {oddity}, undefined m");
+}
+
+TEST_CASE("an event names the command that it is about", "[text][R44]") {
+    const auto dictionary = tests::small_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    const auto text = [&](std::uint64_t opcode) {
+        const auto packet =
+            PacketFiller{dictionary, "COMMAND_REFUSED"}.raw("opcode", opcode).raw("count", 7).raw("reason", 1).seal();
+        REQUIRE_FALSE(decommutator.decode(packet, decoded));
+        return event_text(dictionary, *event_of(dictionary, decoded), decoded);
+    };
+    CHECK(text(0x0103) == "Command EDL_DO_EDL (packet 7) refused: no_parameters");
+    CHECK(text(0x7777) == "Command 30583 (packet 7) refused: no_parameters");
+}
+
+TEST_CASE("a packet of channels is no event", "[text]") {
+    const auto dictionary = tests::small_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    REQUIRE_FALSE(decommutator.decode(PacketFiller{dictionary, "Status"}.seal(), decoded));
+    CHECK(event_of(dictionary, decoded) == nullptr);
+}
+
+TEST_CASE("a brace that is not closed stays as it is", "[text]") {
+    const auto dictionary = tests::small_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    REQUIRE_FALSE(decommutator.decode(PacketFiller{dictionary, "PARACHUTE_DEPLOY"}.seal(), decoded));
+    dictionary::Event event;
+    event.format = "a {speed_mps} b {speed_mps";
+    CHECK(event_text(dictionary, event, decoded) == "a 0.0 b {speed_mps");
+}
