@@ -44,7 +44,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::unit_, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::event_, "INSERT INTO events VALUES (?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::tone_, "INSERT INTO tones VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
-        {&RowWriter::command_, "INSERT INTO commands VALUES (?,?,?,?,?,?)"},
+        {&RowWriter::command_, "INSERT OR IGNORE INTO commands VALUES (?,?,?,?,?,?)"},
         {&RowWriter::stage_, "INSERT INTO command_stages VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::firing_, "INSERT INTO timepoint_firings VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::explanation_, "INSERT INTO explanations VALUES (?,?,?,?,?,?,?,?,?)"},

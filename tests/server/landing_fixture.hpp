@@ -73,7 +73,7 @@ inline dictionary::Dictionary small_dictionary() {
     Packet mortar{"PARACHUTE_DEPLOY", "", event_apid, mortar_event, tm_overhead_octets + 6, {}, {}};
     mortar.fields = {{"event_id", whole(16), {}, data, {}}, {"speed_mps", real32("m/s"), {}, data + 16, {}}};
     d.packets = {navigation, status, fired, mortar};
-    d.events = {{mortar_event, "PARACHUTE_DEPLOY", EventLevel::activity_hi, "mortar fired at {speed_mps}", 3}};
+    d.events = {{mortar_event, "PARACHUTE_DEPLOY", EventLevel::activity_hi, "mortar fired at {speed_mps} m/s", 3}};
     d.anchors = {{AnchorId{0}, "root", {}, {}, ""}, {AnchorId{1}, "entry", AnchorId{0}, {}, ""}};
     TimelineRow vent;
     vent.id = TimepointId{0};
@@ -102,7 +102,7 @@ using Octets = std::vector<std::uint8_t>;
 
 inline Octets navigation_packet(std::uint16_t count, double sclk_s, std::optional<float> altitude_m, float speed_mps) {
     Octets packet(tm_overhead_octets + 9);
-    BitWriter bits(std::span(packet).subspan(tm_data_offset_octets));
+    BitWriter bits{std::span<std::uint8_t>(packet).subspan(tm_data_offset_octets)};
     bits.put_float(altitude_m.value_or(0.0F));
     bits.put_float(speed_mps);
     bits.put(altitude_m ? 1 : 0, 1);
@@ -117,7 +117,7 @@ inline Octets status_packet(std::uint16_t count, double sclk_s, std::uint8_t pha
 }
 inline Octets fired_packet(std::uint16_t count, double sclk_s, std::uint16_t timepoint) {
     Octets packet(tm_overhead_octets + 19);
-    BitWriter bits(std::span(packet).subspan(tm_data_offset_octets));
+    BitWriter bits{std::span<std::uint8_t>(packet).subspan(tm_data_offset_octets)};
     bits.put(timepoint, 16);
     bits.put_double(sclk_s - 0.25);
     bits.put_double(sclk_s);
@@ -127,7 +127,7 @@ inline Octets fired_packet(std::uint16_t count, double sclk_s, std::uint16_t tim
 }
 inline Octets mortar_packet(std::uint16_t count, double sclk_s, float speed_mps) {
     Octets packet(tm_overhead_octets + 6);
-    BitWriter bits(std::span(packet).subspan(tm_data_offset_octets));
+    BitWriter bits{std::span<std::uint8_t>(packet).subspan(tm_data_offset_octets)};
     bits.put(mortar_event.value, 16);
     bits.put_float(speed_mps);
     seal_tm_packet(packet, event_apid, count, Sclk{sclk_s}, dictionary_id);

@@ -1,0 +1,358 @@
+#include "server/archive/reader.hpp"
+#include "server/pipeline/pipeline.hpp"
+#include "tests/server/landing_fixture.hpp"
+#include "tests/support/catch.hpp"
+
+#include <csignal>
+#include <cstdio>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+using namespace aeolis;
+using namespace aeolis::test;
+using archive::Archive;
+using archive::Reader;
+using archive::Sequence;
+using pipeline::Pipeline;
+
+namespace {
+
+struct Ground {
+    TemporaryFolder folder;
+    dictionary::Dictionary dictionary = small_dictionary();
+    std::filesystem::path file = folder / "a.db";
+    Archive archive = std::move(Archive::open(file)).value();
+    Pipeline pipeline{archive, dictionary};
+    std::vector<std::shared_ptr<const pipeline::PublishedBatch>> published;
+
+    Ground() {
+        pipeline.on_publish([this](auto batch) { published.push_back(std::move(batch)); });
+        archive::RunStart start;
+        start.scenario = "test";
+        start.entry = Sclk{1000.0};
+        start.light_time_s = 10.0;
+        start.correlation = {Sclk{100.0}, Scet{0}};
+        start.tone_model = "statistical";
+        start.solution = {{"solution_id", 1.0}};
+        REQUIRE(pipeline.begin(start).ok());
+    }
+    Reader reader() { return std::move(Reader::open(file, dictionary)).value(); }
+    archive::RunId run() const { return *pipeline.run(); }
+    std::vector<v1::Item> items() const {
+        std::vector<v1::Item> all;
+        for (const auto& batch : published)
+            all.insert(all.end(), batch->items.begin(), batch->items.end());
+        return all;
+    }
+    /// A bit of everything.
+    void feed() {
+        REQUIRE(pipeline.accept({simulation::LinkId::uhf_live, false, Ert{5}, true, "nominal"}).ok());
+        REQUIRE(pipeline.accept(live(navigation_packet(0, 1000.0, 9000.0F, 5900.0F))).ok());
+        REQUIRE(pipeline.accept(live(navigation_packet(1, 1001.0, {}, 6100.0F))).ok()); // in alarm
+        REQUIRE(pipeline.accept(live(status_packet(0, 1001.0, 2))).ok());
+        REQUIRE(pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))).ok());
+        REQUIRE(pipeline.accept(live(fired_packet(0, 1002.0, 2))).ok());
+        REQUIRE(pipeline.accept(live({1, 2, 3})).ok());
+        simulation::ReceivedTone tone;
+        tone.start = Ert{20'000'000};
+        tone.end = Ert{30'000'000};
+        tone.tone = ToneId{9};
+        tone.likelihood = 0.999;
+        REQUIRE(pipeline.accept(tone).ok());
+        archive::StageRecord stage;
+        stage.command = 1;
+        stage.name = "NO_OP";
+        stage.stage = "queued";
+        stage.status = "ok";
+        stage.arguments = "a=1";
+        stage.octets = {0xAB, 0xCD};
+        REQUIRE(pipeline.accept(stage).ok());
+    }
+};
+
+std::string text_of(const std::vector<v1::Item>& items) {
+    std::string text;
+    for (const auto& item : items)
+        text += item.ShortDebugString() + "\n";
+    return text;
+}
+
+} // namespace
+
+TEST_CASE("nothing is published before it is committed", "[pipeline]") {
+    Ground ground;
+    ground.feed();
+    CHECK(ground.published.empty());
+    CHECK(ground.pipeline.last_durable() == 0);
+    REQUIRE(ground.pipeline.commit().ok());
+    REQUIRE(ground.published.size() == 1);
+    CHECK(ground.pipeline.last_durable() == ground.published.front()->last_seq);
+    CHECK(ground.pipeline.pending_items() == 0);
+}
+
+TEST_CASE("items are numbered from 1 without a gap, and read back as they were published", "[pipeline][R42][R43]") {
+    Ground ground;
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto items = ground.items();
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        CHECK(items[i].seq() == i + 1);
+        CHECK(items[i].item_case() != v1::Item::ITEM_NOT_SET);
+    }
+    auto reader = ground.reader();
+    const auto page = reader.items(ground.run(), 0, 1000);
+    REQUIRE(page.ok());
+    CHECK_FALSE(page->more);
+    CHECK(page->complete_through == items.back().seq());
+    CHECK(text_of(page->items) == text_of(items));
+}
+
+TEST_CASE("reading after any number, in pages of any size, gives every item once", "[pipeline][reader]") {
+    Ground ground;
+    for (int i = 0; i < 3; ++i)
+        ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto all = ground.items();
+    auto reader = ground.reader();
+    for (const std::size_t limit : {std::size_t{1}, std::size_t{2}, std::size_t{3}, std::size_t{7}}) {
+        for (Sequence first = 0; first <= all.back().seq(); ++first) {
+            std::vector<v1::Item> read;
+            Sequence after = first;
+            for (bool more = true; more;) {
+                auto page = reader.items(ground.run(), after, limit);
+                REQUIRE(page.ok());
+                REQUIRE(page->items.size() <= limit);
+                REQUIRE((page->complete_through > after || !page->more));
+                read.insert(read.end(), page->items.begin(), page->items.end());
+                after = page->complete_through;
+                more = page->more;
+            }
+            REQUIRE(text_of(read) == text_of({all.begin() + static_cast<std::ptrdiff_t>(first), all.end()}));
+        }
+    }
+    const auto events = reader.items(ground.run(), 0, 1000, {false, false});
+    REQUIRE(events.ok());
+    CHECK(events->complete_through == all.back().seq());
+    for (const auto& item : events->items)
+        CHECK_FALSE((item.has_unit() || item.has_samples()));
+}
+
+TEST_CASE("a unit of the recording that was seen in real time is kept as proof and not doubled", "[pipeline][R30]") {
+    Ground ground;
+    for (std::uint16_t i = 0; i < 10; ++i)
+        if (i % 2 == 0) REQUIRE(ground.pipeline.accept(live(navigation_packet(i, 1000.0 + i, 100.0F * i, 1.0F))).ok());
+    REQUIRE(ground.pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))).ok());
+    for (std::uint16_t i = 0; i < 10; ++i)
+        REQUIRE(ground.pipeline.accept(recorded(navigation_packet(i, 1000.0 + i, 100.0F * i, 1.0F))).ok());
+    REQUIRE(ground.pipeline.accept(recorded(mortar_packet(0, 1002.0, 405.0F))).ok());
+    ground.pipeline.relay_progress(0.5);
+    REQUIRE(ground.pipeline.commit().ok());
+
+    auto reader = ground.reader();
+    const auto series = reader.series(ground.run(), {{"altitude_m"}, {}, {}});
+    REQUIRE(series.ok());
+    const auto& altitude_series = series->channels(0);
+    REQUIRE(altitude_series.sclk_size() == 10);
+    for (int i = 0; i < 10; ++i) {
+        CHECK(altitude_series.sclk(i) == 1000.0 + i);
+        CHECK(altitude_series.source(i) == (i % 2 == 0 ? v1::SOURCE_REALTIME : v1::SOURCE_RECORDED));
+    }
+    const auto proof = reader.recording(ground.run());
+    REQUIRE(proof.ok());
+    CHECK(proof->recorded() == 11);
+    CHECK(proof->realtime() == 6);
+    CHECK(proof->realtime_not_recorded() == 0);
+    CHECK(proof->realtime_differs() == 0);
+    CHECK(proof->never_seen_live() == 5);
+    CHECK(proof->progress() == 0.5);
+    CHECK(reader.events(ground.run(), {})->events_size() == 1);
+    archive::EventQuery both;
+    both.duplicates = true;
+    CHECK(reader.events(ground.run(), both)->events_size() == 2);
+}
+
+TEST_CASE("a unit whose octets differ in the recording is told", "[pipeline][R30]") {
+    Ground ground;
+    REQUIRE(ground.pipeline.accept(live(status_packet(0, 1000.0, 2))).ok());
+    REQUIRE(ground.pipeline.accept(recorded(status_packet(0, 1000.0, 3))).ok());
+    CHECK(ground.pipeline.totals().realtime_differs == 1);
+}
+
+TEST_CASE("what cannot be decoded is stored and says why", "[pipeline]") {
+    Ground ground;
+    auto broken = navigation_packet(0, 1000.0, 1.0F, 1.0F);
+    broken[20] ^= 0xFFU;
+    REQUIRE(ground.pipeline.accept(live(broken)).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    REQUIRE(ground.items().size() == 1);
+    CHECK(ground.items().front().unit().name() == "not decoded: bad_crc");
+    CHECK(ground.reader().packets(ground.run(), {})->packets(0).hex().size() == 2 * broken.size());
+}
+
+TEST_CASE("alarms are raised and cleared by real-time samples only", "[pipeline]") {
+    Ground ground;
+    REQUIRE(ground.pipeline.accept(live(navigation_packet(0, 1000.0, 1.0F, 6100.0F))).ok());
+    REQUIRE(ground.pipeline.accept(live(navigation_packet(1, 1001.0, 1.0F, 5900.0F))).ok());
+    REQUIRE(ground.pipeline.accept(recorded(navigation_packet(2, 1002.0, 1.0F, 6100.0F))).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    std::vector<std::string> severities;
+    for (const auto& item : ground.items())
+        if (item.has_alarm()) severities.push_back(item.alarm().severity());
+    CHECK(severities == std::vector<std::string>{"warning", "none"});
+}
+
+TEST_CASE("the observer sees each decoded packet once a path, before it is durable", "[pipeline][R44]") {
+    Ground ground;
+    std::vector<archive::Source> seen;
+    ground.pipeline.on_decoded([&](const auto&, auto, archive::Source source, Ert) { seen.push_back(source); });
+    const auto packet = mortar_packet(0, 1000.0, 405.0F);
+    for (const auto& received : {live(packet), live(packet), recorded(packet)})
+        REQUIRE(ground.pipeline.accept(received).ok());
+    CHECK(seen == std::vector<archive::Source>{archive::Source::realtime, archive::Source::recorded});
+}
+
+TEST_CASE("the tone's vehicle time is its start less the light time", "[pipeline][R42]") {
+    Ground ground;
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto tones = ground.reader().tones(ground.run(), {});
+    REQUIRE(tones.ok());
+    REQUIRE(tones->tones_size() == 1);
+    CHECK(tones->tones(0).tone().sclk() == Approx(110.0)); // 20 s after the correlation at SCLK 100, less 10 s
+    CHECK(tones->tones(0).tone().meaning() == "parachute deployed");
+}
+
+TEST_CASE("commits come by time or by number, never empty", "[pipeline]") {
+    Ground ground;
+    const auto start = std::chrono::steady_clock::time_point{} + std::chrono::hours{1};
+    REQUIRE(ground.pipeline.commit_if_due(start).ok());
+    CHECK(ground.published.empty());
+    REQUIRE(ground.pipeline.accept(live(status_packet(0, 1000.0, 1))).ok());
+    REQUIRE(ground.pipeline.commit_if_due(start).ok());
+    CHECK(ground.published.size() == 1);
+    REQUIRE(ground.pipeline.accept(live(status_packet(1, 1001.0, 1))).ok());
+    REQUIRE(ground.pipeline.commit_if_due(start + pipeline::commit_interval / 2).ok());
+    CHECK(ground.published.size() == 1);
+    REQUIRE(ground.pipeline.commit_if_due(start + pipeline::commit_interval).ok());
+    CHECK(ground.published.size() == 2);
+    REQUIRE(ground.pipeline.commit_if_full().ok());
+    CHECK(ground.published.size() == 2);
+}
+
+TEST_CASE("items are not built while nobody wants them, but are stored", "[pipeline]") {
+    Ground ground;
+    ground.pipeline.want_items(false);
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    REQUIRE(ground.published.size() == 1);
+    CHECK_FALSE(ground.published.front()->built);
+    CHECK(ground.published.front()->items.empty());
+    CHECK(ground.reader().items(ground.run(), 0, 1000)->complete_through == ground.published.front()->last_seq);
+}
+
+TEST_CASE("while the disk is full nothing is published or lost, and it goes on when there is room", "[pipeline]") {
+    Ground ground;
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto before = ground.published.size();
+    // The kernel refuses to let files grow: as a full disk, but for this process only.
+    rlimit usual{};
+    ::getrlimit(RLIMIT_FSIZE, &usual);
+    const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
+    for (std::uint16_t i = 0; i < 3000; ++i)
+        REQUIRE(ground.pipeline.accept(live(navigation_packet(i, 2000.0 + i, 1.0F, 2.0F))).ok());
+    rlimit full = usual;
+    full.rlim_cur = std::filesystem::file_size(ground.folder / "a.db-wal") + 10'000;
+    ::setrlimit(RLIMIT_FSIZE, &full);
+    const auto pending = ground.pipeline.pending_items();
+    for (int attempt = 0; attempt < 3; ++attempt) {
+        const auto failed = ground.pipeline.commit();
+        CHECK_FALSE(failed.ok());
+        if (!failed) CHECK(failed.error().message.find("a.db") != std::string::npos);
+    }
+    CHECK(ground.published.size() == before);
+    CHECK(ground.pipeline.pending_items() == pending);
+    ::setrlimit(RLIMIT_FSIZE, &usual);
+    std::signal(SIGXFSZ, ignored);
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto page = ground.reader().items(ground.run(), 0, 10'000);
+    REQUIRE(page.ok());
+    CHECK(text_of(page->items) == text_of(ground.items()));
+    CHECK(ground.reader().series(ground.run(), {{"altitude_m"}, {2000.0, {}}, {}})->channels(0).samples() == 3000);
+}
+
+TEST_CASE("finishing seals the series and says how the run ended", "[pipeline][R43]") {
+    Ground ground;
+    ground.feed();
+    const auto run = ground.run();
+    REQUIRE(ground.pipeline.finish({"touchdown", "nominal", "d1", "2026-01-01T00:00:00Z"}).ok());
+    CHECK_FALSE(ground.pipeline.run().has_value());
+    auto reader = ground.reader();
+    const auto state = reader.run(run);
+    REQUIRE(state.ok());
+    CHECK(state->state() == "finished");
+    CHECK(state->outcome() == "touchdown");
+    CHECK(state->digest() == "d1");
+    CHECK(state->last_seq() == ground.items().back().seq());
+    CHECK(state->solution(0).name() == "solution_id");
+    CHECK(reader.series(run, {{"altitude_m", "GNC-0002"}, {}, {}})->channels(1).sclk_size() == 2);
+}
+
+TEST_CASE("kill -9 takes back nothing that was acknowledged", "[pipeline][archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    int acknowledgements[2];
+    REQUIRE(::pipe(acknowledgements) == 0);
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+        const auto dictionary = small_dictionary();
+        auto archive = Archive::open(file);
+        Pipeline pipeline(*archive, dictionary);
+        pipeline.on_publish([&](const auto& batch) {
+            const Sequence seq = batch->last_seq;
+            if (::write(acknowledgements[1], &seq, sizeof seq) != sizeof seq) ::_exit(1);
+        });
+        if (!pipeline.begin({})) ::_exit(1);
+        for (std::uint32_t i = 0; i < 10'000'000; ++i) {
+            const auto count = static_cast<std::uint16_t>(i & 0x3FFFU);
+            if (!pipeline.accept(live(navigation_packet(count, i / 64.0, 1.0F, 2.0F)))) ::_exit(1);
+            if (i % 50 == 49 && !pipeline.commit()) ::_exit(1);
+        }
+        ::_exit(0);
+    }
+    ::close(acknowledgements[1]);
+    Sequence acknowledged = 0;
+    while (acknowledged < 20'000 && ::read(acknowledgements[0], &acknowledged, sizeof acknowledged) > 0) {
+    }
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    while (::read(acknowledgements[0], &acknowledged, sizeof acknowledged) > 0) {
+    }
+    ::close(acknowledgements[0]);
+    REQUIRE(acknowledged >= 20'000);
+
+    const auto dictionary = small_dictionary();
+    const auto start = std::chrono::steady_clock::now();
+    auto archive = Archive::open(file);
+    REQUIRE(archive.ok());
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::milliseconds{1000});
+    CHECK(archive->interrupted() == std::vector<archive::RunId>{archive::RunId{1}});
+    auto reader = Reader::open(file, dictionary);
+    const auto state = reader->run(archive::RunId{1});
+    REQUIRE(state.ok());
+    CHECK(state->state() == "interrupted");
+    CHECK(state->last_seq() >= acknowledged);
+    Sequence after = 0;
+    for (bool more = true; more;) {
+        const auto page = reader->items(archive::RunId{1}, after, 10'000);
+        REQUIRE(page.ok());
+        for (const auto& item : page->items)
+            REQUIRE(item.seq() == ++after);
+        more = page->more;
+    }
+    CHECK(after == state->last_seq());
+    const auto series = reader->series(archive::RunId{1}, {{"altitude_m"}, {}, {}});
+    REQUIRE(series.ok());
+    CHECK(series->channels(0).samples() == after / 2); // sealed segments and the open tail together
+}

@@ -1,0 +1,238 @@
+#include "server/archive/reader.hpp"
+#include "server/archive/timeline_plan.hpp"
+#include "server/pipeline/pipeline.hpp"
+#include "tests/server/landing_fixture.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace aeolis;
+using namespace aeolis::test;
+using archive::Archive;
+using archive::Reader;
+using archive::RunId;
+
+namespace {
+
+constexpr std::size_t samples = 5000; // four sealed segments and an open tail
+
+double altitude_at(std::size_t i) {
+    return std::round(1000.0 * std::sin(static_cast<double>(i) / 100.0));
+}
+
+/// A run of `samples` navigation packets at 64 Hz from SCLK 1000; with `finished` all is sealed.
+struct Recorded {
+    TemporaryFolder folder;
+    dictionary::Dictionary dictionary = small_dictionary();
+    std::filesystem::path file = folder / "a.db";
+    Archive archive = std::move(Archive::open(file)).value();
+    Reader reader;
+
+    explicit Recorded(bool finished) : reader(make(finished)) {}
+    Reader make(bool finished) {
+        pipeline::Pipeline pipeline(archive, dictionary);
+        archive::RunStart start;
+        start.scenario = "nominal";
+        start.entry = Sclk{1000.0};
+        REQUIRE(pipeline.begin(start).ok());
+        for (std::size_t i = 0; i < samples; ++i) {
+            const auto sclk_s = 1000.0 + static_cast<double>(i) / 64.0;
+            const std::optional<float> value =
+                i % 10 == 9 ? std::nullopt : std::optional(static_cast<float>(altitude_at(i)));
+            REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), sclk_s, value, 3.0F))).ok());
+            if (i % 64 == 0)
+                REQUIRE(pipeline.accept(live(status_packet(static_cast<std::uint16_t>(i / 64), sclk_s, 2))).ok());
+        }
+        REQUIRE(pipeline.accept(live(fired_packet(0, 1002.0, 1))).ok());
+        REQUIRE(pipeline.accept(recorded(fired_packet(0, 1002.0, 1))).ok());
+        REQUIRE(pipeline.accept(live(mortar_packet(0, 1003.0, 405.0F))).ok());
+        if (finished)
+            REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+        else
+            REQUIRE(pipeline.commit().ok());
+        return std::move(Reader::open(file, dictionary)).value();
+    }
+};
+
+std::string refusal(const Error& error) {
+    return error.message;
+}
+
+} // namespace
+
+TEST_CASE("a series is exact, with undefined values left out, whether sealed or still open", "[reader][R43]") {
+    const bool finished = GENERATE(false, true);
+    Recorded recorded_run(finished);
+    const auto list = recorded_run.reader.series(RunId{1}, {{"altitude_m"}, {}, {}});
+    REQUIRE(list.ok());
+    const auto& series = list->channels(0);
+    CHECK(series.samples() == samples * 9 / 10);
+    CHECK_FALSE(series.thinned());
+    CHECK(series.unit() == "m");
+    int point = 0;
+    for (std::size_t i = 0; i < samples; ++i) {
+        if (i % 10 == 9) continue;
+        REQUIRE(series.sclk(point) == 1000.0 + static_cast<double>(i) / 64.0);
+        REQUIRE(series.value(point) == altitude_at(i));
+        ++point;
+    }
+}
+
+TEST_CASE("a range includes both its ends", "[reader]") {
+    const bool finished = GENERATE(false, true);
+    Recorded run(finished);
+    const auto list = run.reader.series(RunId{1}, {{"speed_mps"}, {1001.0, 1002.0}, {}});
+    REQUIRE(list.ok());
+    CHECK(list->channels(0).sclk_size() == 65);
+    CHECK(list->channels(0).sclk(0) == 1001.0);
+    CHECK(list->channels(0).sclk(64) == 1002.0);
+}
+
+TEST_CASE("a thinned series keeps the least and the largest sample of every interval", "[reader]") {
+    const bool finished = GENERATE(false, true);
+    Recorded run(finished);
+    const auto points = static_cast<std::size_t>(GENERATE(2, 3, 10, 100, 1999));
+    const auto exact = run.reader.series(RunId{1}, {{"altitude_m"}, {}, {}});
+    const auto list = run.reader.series(RunId{1}, {{"altitude_m"}, {}, points});
+    REQUIRE(list.ok());
+    const auto& all = exact->channels(0);
+    const auto& thin = list->channels(0);
+    CHECK(thin.thinned());
+    CHECK(thin.samples() == all.samples());
+    CHECK(thin.sclk_size() <= static_cast<int>(points));
+    CHECK(std::is_sorted(thin.sclk().begin(), thin.sclk().end()));
+    CHECK(*std::max_element(thin.value().begin(), thin.value().end()) ==
+          *std::max_element(all.value().begin(), all.value().end()));
+    CHECK(*std::min_element(thin.value().begin(), thin.value().end()) ==
+          *std::min_element(all.value().begin(), all.value().end()));
+    // Each point is a sample at its own time.
+    for (int i = 0; i < thin.sclk_size(); ++i) {
+        const auto found = std::lower_bound(all.sclk().begin(), all.sclk().end(), thin.sclk(i));
+        REQUIRE(found != all.sclk().end());
+        REQUIRE(*found == thin.sclk(i));
+        REQUIRE(all.value(static_cast<int>(found - all.sclk().begin())) == thin.value(i));
+    }
+}
+
+TEST_CASE("fewer samples than points are given exactly", "[reader]") {
+    Recorded run(true);
+    const auto list = run.reader.series(RunId{1}, {{"edl_phase"}, {}, 2000});
+    REQUIRE(list.ok());
+    CHECK_FALSE(list->channels(0).thinned());
+    CHECK(list->channels(0).sclk_size() == static_cast<int>(list->channels(0).samples()));
+}
+
+TEST_CASE("the state at a time is each channel's newest value up to then", "[reader]") {
+    Recorded run(GENERATE(false, true));
+    const auto values = run.reader.latest(RunId{1}, Sclk{1000.0 + 100.5 / 64.0});
+    REQUIRE(values.ok());
+    REQUIRE(values->size() == 3);
+    CHECK((*values)[0].value == altitude_at(100));
+    CHECK((*values)[0].sclk == Sclk{1000.0 + 100.0 / 64.0});
+    CHECK((*values)[2].sclk == Sclk{1001.0});
+    CHECK(run.reader.latest(RunId{1}, Sclk{10.0})->empty());
+    // The newest altitude of all is undefined (the 5000th): a gap, not the value before.
+    CHECK(run.reader.latest(RunId{1}, {})->size() == 2);
+}
+
+TEST_CASE("what a client asks wrongly is answered in words", "[reader]") {
+    Recorded run(true);
+    auto& reader = run.reader;
+    CHECK(refusal(reader.run(RunId{7}).error()) == "no run 7");
+    CHECK(refusal(reader.series(RunId{7}, {{"altitude_m"}, {}, {}}).error()) == "no run 7");
+    CHECK(refusal(reader.series(RunId{1}, {{"altitud"}, {}, {}}).error()) == "no channel 'altitud'");
+    CHECK(refusal(reader.series(RunId{1}, {{}, {}, {}}).error()) == "no channel is named");
+    CHECK(refusal(reader.series(RunId{1}, {{"altitude_m"}, {2.0, 1.0}, {}}).error()).find("upside down") !=
+          std::string::npos);
+    CHECK_FALSE(reader.series(RunId{1}, {{"altitude_m"}, {std::nan(""), 1.0}, {}}).ok());
+    CHECK_FALSE(reader.series(RunId{1}, {{"altitude_m"}, {}, std::size_t{1}}).ok());
+    CHECK_FALSE(reader.series(RunId{1}, {std::vector<std::string>(65, "altitude_m"), {}, {}}).ok());
+    CHECK_FALSE(reader.items(RunId{1}, 0, 0).ok());
+    CHECK_FALSE(reader.items(RunId{1}, 0, archive::items_page_max + 1).ok());
+    CHECK(reader.items(RunId{1}, ~archive::Sequence{0}, 10)->items.empty());
+    archive::PacketQuery unknown;
+    unknown.name = "Navigatio";
+    CHECK(refusal(reader.packets(RunId{1}, unknown).error()) == "no packet 'Navigatio'");
+    archive::PacketQuery beyond;
+    beyond.after = ~archive::Sequence{0};
+    CHECK(reader.packets(RunId{1}, beyond)->packets_size() == 0);
+    CHECK_FALSE(Reader::open(run.folder / "none.db", run.dictionary).ok());
+}
+
+TEST_CASE("packets come in pages with octets and fields in words", "[reader][R43]") {
+    Recorded run(true);
+    archive::PacketQuery query;
+    query.name = "Status";
+    query.limit = 30;
+    std::size_t count = 0;
+    for (;;) {
+        const auto page = run.reader.packets(RunId{1}, query);
+        REQUIRE(page.ok());
+        for (const auto& packet : page->packets()) {
+            ++count;
+            CHECK(packet.unit().name() == "Status");
+            CHECK(packet.hex().size() == 2 * packet.unit().octets());
+            REQUIRE(packet.fields_size() == 1);
+            CHECK(packet.fields(0).name() == "edl_phase");
+            CHECK(packet.fields(0).text() == "2");
+        }
+        if (page->next_after() == 0) break;
+        query.after = page->next_after();
+    }
+    CHECK(count == 79); // 5000 / 64, begun ones too
+}
+
+TEST_CASE("events are found by level and by text of any case", "[reader]") {
+    Recorded run(true);
+    archive::EventQuery query;
+    query.text = "MORTAR";
+    CHECK(run.reader.events(RunId{1}, query)->events_size() == 1);
+    query.levels = {"FATAL"};
+    CHECK(run.reader.events(RunId{1}, query)->events_size() == 0);
+    query.levels = {"ACTIVITY_HI"};
+    const auto found = run.reader.events(RunId{1}, query);
+    REQUIRE(found->events_size() == 1);
+    CHECK(found->events(0).event().text() == "mortar fired at 405.0 m/s");
+}
+
+TEST_CASE("the timeline tells plan, real time and recording of each timepoint", "[reader][R14]") {
+    Recorded run(true);
+    const auto list = run.reader.timepoints(RunId{1});
+    REQUIRE(list.ok());
+    CHECK(list->timeline_version() == 3);
+    REQUIRE(list->timepoints_size() == 3);
+    CHECK(list->timepoints(0).planned_e_s() == -826.0);
+    CHECK(list->timepoints(0).verdict() == "pending");
+    CHECK(list->timepoints(1).planned_e_s() == -816.0);
+    CHECK(list->timepoints(1).realtime_sclk() == 1002.0);
+    CHECK(list->timepoints(1).recorded_sclk() == 1002.0);
+    CHECK(list->timepoints(1).verdict() == "completed");
+    CHECK_FALSE(list->timepoints(2).has_planned_e_s());
+}
+
+TEST_CASE("a run of another dictionary shows its packets, and says why it shows no series", "[reader]") {
+    Recorded run(true);
+    auto other = small_dictionary();
+    other.id = 815;
+    auto reader = Reader::open(run.file, other);
+    REQUIRE(reader.ok());
+    CHECK(refusal(reader->series(RunId{1}, {{"altitude_m"}, {}, {}}).error()).find("dictionary 4711") !=
+          std::string::npos);
+    CHECK(reader->packets(RunId{1}, {})->packets_size() == 100);
+    const auto page = reader->items(RunId{1}, 0, 10);
+    REQUIRE(page.ok());
+    CHECK(page->items.size() == 10);
+}
+
+TEST_CASE("an archive that no program has open can be read", "[reader]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    const auto dictionary = small_dictionary();
+    {
+        auto archive = Archive::open(file);
+        REQUIRE(archive->begin_run({}, dictionary).ok());
+    }
+    auto reader = Reader::open(file, dictionary);
+    REQUIRE(reader.ok());
+    CHECK(reader->runs()->runs_size() == 1);
+}
