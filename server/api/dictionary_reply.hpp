@@ -1,0 +1,11 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "dictionaries/dictionary.hpp"
+
+namespace aeolis::server {
+
+/// What the console is told of the mission's words.
+v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary);
+
+} // namespace aeolis::server

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "common/result.hpp"
+
+#include <cstdint>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aeolis::server {
+
+/// The part of a request's target after '?': names and values, decoded.
+class QueryText {
+  public:
+    /// Fails on bad percent-encoding, a name given twice, or a name that is not among `known`.
+    static Result<QueryText> parse(std::string_view encoded, std::initializer_list<std::string_view> known);
+
+    std::optional<std::string> text(std::string_view name) const;
+    /// Finite; none when not given or empty.
+    Result<std::optional<double>> number(std::string_view name) const;
+    /// A whole number from 0, decimal or 0x hexadecimal, `max` at most.
+    Result<std::optional<std::uint64_t>> count(std::string_view name, std::uint64_t max) const;
+    /// Separated by commas, empty ones left out.
+    std::vector<std::string> list(std::string_view name) const;
+
+  private:
+    std::vector<std::pair<std::string, std::string>> values_;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "server/archive/reader.hpp"
+#include "server/rehearsal/bounded_queue.hpp"
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <thread>
+#include <vector>
+
+namespace aeolis::server {
+
+/// Two threads that read: each has its own read-only connection to the archive. So a long query never holds up the
+/// network, the writer, or the other query.
+class QueryThreads {
+  public:
+    static constexpr std::size_t threads = 2;
+    static constexpr std::size_t waiting_max = 256; ///< ours: more is refused, "busy"
+
+    using Job = std::function<void(archive::Reader&)>;
+
+    /// The archive has been made. The dictionary must outlive this.
+    static Result<std::unique_ptr<QueryThreads>> open(const std::filesystem::path& archive,
+                                                      const dictionary::Dictionary& dictionary);
+    ~QueryThreads(); ///< does what waits, then ends
+
+    /// False, and nothing done, when too much waits.
+    bool ask(Job job);
+    std::uint64_t asked() const { return asked_; }
+    std::size_t waiting() const { return jobs_.size(); }
+
+  private:
+    explicit QueryThreads(std::vector<archive::Reader> readers);
+    BoundedQueue<Job> jobs_{waiting_max};
+    std::vector<archive::Reader> readers_;
+    std::atomic<std::uint64_t> asked_{0};
+    std::vector<std::thread> threads_;
+};
+
+} // namespace aeolis::server

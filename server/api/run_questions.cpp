@@ -1,0 +1,228 @@
+#include "server/api/run_questions.hpp"
+
+#include "server/api/json.hpp"
+#include "server/api/query_text.hpp"
+#include "telemetry/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::uint64_t seq_max = UINT64_MAX >> 1; // SQLite's integers are signed
+
+template <typename Message>
+HttpResponse answer(const Result<Message>& result) {
+    if (!result) return error_response(400, result.error().message);
+    HttpResponse response;
+    response.body = to_json(*result);
+    return response;
+}
+
+Result<archive::SclkRange> range_of(const QueryText& query) {
+    const auto from = query.number("from");
+    if (!from) return from.error();
+    const auto to = query.number("to");
+    if (!to) return to.error();
+    if (*from && *to && **from > **to)
+        return Error{fmt::format("from {} is after to {}: the range is upside down", **from, **to)};
+    return archive::SclkRange{*from, *to};
+}
+
+struct Page {
+    archive::Sequence after = 0;
+    std::size_t limit = 0;
+};
+Result<Page> page_of(const QueryText& query, std::size_t usual, std::size_t max) {
+    const auto after = query.count("after", seq_max);
+    if (!after) return after.error();
+    const auto limit = query.count("limit", max);
+    if (!limit) return limit.error();
+    if (*limit && **limit == 0) return Error{"limit: 0 asks for nothing"};
+    return Page{after->value_or(0), static_cast<std::size_t>(limit->value_or(usual))};
+}
+
+Result<bool> flag_of(const QueryText& query, std::string_view name) {
+    const auto text = query.text(name).value_or("false");
+    if (text == "true" || text == "1") return true;
+    if (text == "false" || text == "0") return false;
+    return Error{fmt::format("{}: '{}' is neither true nor false", name, text)};
+}
+
+HttpResponse run_itself(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.run(run));
+}
+
+/// A row a sample; the reader of a spreadsheet or of a script wants no JSON.
+std::string csv_of(const v1::ChannelSeriesList& list) {
+    std::string csv = "channel,unit,sclk_s,value,source\n";
+    for (const auto& series : list.channels())
+        for (int i = 0; i < series.sclk_size(); ++i)
+            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", series.name(), series.unit(), series.sclk(i),
+                           series.value(i), series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
+    return csv;
+}
+
+HttpResponse channels(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+                      const QueryText& query) {
+    archive::SeriesQuery series;
+    series.channels = query.list("names");
+    if (series.channels.empty()) return error_response(400, "names: which channels? names=altitude_m,speed_mps");
+    if (series.channels.size() > archive::channels_max)
+        return error_response(400, fmt::format("names: {} channels, at most {} at once", series.channels.size(),
+                                               archive::channels_max));
+    const auto range = range_of(query);
+    if (!range) return error_response(400, range.error().message);
+    series.range = *range;
+    const auto points = query.count("points", archive::thinned_points_max);
+    if (!points) return error_response(400, points.error().message);
+    if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
+    if (*points) series.points = static_cast<std::size_t>(**points);
+    const auto format = query.text("format").value_or("json");
+    const auto result = reader.series(run, series);
+    if (format == "json" || !result) return answer(result);
+    if (format != "csv") return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
+    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
+}
+
+HttpResponse packets(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
+                     const QueryText& query) {
+    archive::PacketQuery packets;
+    packets.name = query.text("name");
+    const auto apid = query.count("apid", 0x7FF);
+    if (!apid) return error_response(400, apid.error().message);
+    if (*apid) {
+        if (packets.name) return error_response(400, "apid and name: one of them, not both");
+        std::vector<std::string> names;
+        for (const auto& packet : dictionary.packets)
+            if (packet.apid.value == **apid) names.push_back(packet.name);
+        if (names.empty()) return error_response(400, fmt::format("apid: no packet has APID {}", **apid));
+        if (names.size() > 1)
+            return error_response(400, fmt::format("apid: {} packets share APID {}: use name=, as in name={}",
+                                                   names.size(), **apid, names.front()));
+        packets.name = names.front();
+    }
+    const auto range = range_of(query);
+    if (!range) return error_response(400, range.error().message);
+    const auto page = page_of(query, 100, archive::packets_page_max);
+    if (!page) return error_response(400, page.error().message);
+    packets.range = *range;
+    packets.after = page->after;
+    packets.limit = page->limit;
+    return answer(reader.packets(run, packets));
+}
+
+HttpResponse events(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+                    const QueryText& query) {
+    archive::EventQuery events;
+    events.levels = query.list("level");
+    using dictionary::EventLevel;
+    constexpr std::array levels{EventLevel::fatal,       EventLevel::warning_hi,  EventLevel::warning_lo,
+                                EventLevel::command,     EventLevel::activity_hi, EventLevel::activity_lo,
+                                EventLevel::diagnostic};
+    for (const auto& level : events.levels)
+        if (std::ranges::none_of(levels, [&](EventLevel each) { return telemetry::name_of(each) == level; }))
+            return error_response(400, fmt::format("level: there is no '{}'; levels are FATAL … DIAGNOSTIC", level));
+    events.text = query.text("text").value_or("");
+    const auto range = range_of(query);
+    if (!range) return error_response(400, range.error().message);
+    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    if (!page) return error_response(400, page.error().message);
+    const auto duplicates = flag_of(query, "duplicates");
+    if (!duplicates) return error_response(400, duplicates.error().message);
+    events.range = *range;
+    events.after = page->after;
+    events.limit = page->limit;
+    events.duplicates = *duplicates;
+    return answer(reader.events(run, events));
+}
+
+HttpResponse explanations(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+                          const QueryText& query) {
+    archive::ExplanationQuery explanations;
+    explanations.decision = query.text("decision").value_or("");
+    const auto range = range_of(query);
+    if (!range) return error_response(400, range.error().message);
+    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    if (!page) return error_response(400, page.error().message);
+    const auto duplicates = flag_of(query, "duplicates");
+    if (!duplicates) return error_response(400, duplicates.error().message);
+    explanations.range = *range;
+    explanations.after = page->after;
+    explanations.limit = page->limit;
+    explanations.duplicates = *duplicates;
+    return answer(reader.explanations(run, explanations));
+}
+
+HttpResponse tones(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto range = range_of(query);
+    if (!range) return error_response(400, range.error().message);
+    return answer(reader.tones(run, *range));
+}
+
+HttpResponse commands(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.commands(run));
+}
+
+HttpResponse timepoints(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.timepoints(run));
+}
+
+HttpResponse recording(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.recording(run));
+}
+
+/// The newest value of every channel at an instant: a series of one sample each.
+HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
+                   const QueryText& query) {
+    const auto at = query.number("at");
+    if (!at) return error_response(400, at.error().message);
+    const auto values = reader.latest(run, *at ? std::optional{Sclk{**at}} : std::nullopt);
+    if (!values) return error_response(400, values.error().message);
+    v1::ChannelSeriesList list;
+    for (const auto& value : *values) {
+        const auto& channel = dictionary.channels[value.channel.value];
+        auto& series = *list.add_channels();
+        series.set_id(channel.id.value);
+        series.set_name(channel.name);
+        series.set_unit(channel.type.unit);
+        series.set_samples(1);
+        series.add_sclk(value.sclk.seconds);
+        series.add_value(value.value);
+        series.add_source(static_cast<v1::Source>(value.source));
+    }
+    HttpResponse response;
+    response.body = to_json(list);
+    return response;
+}
+
+const std::array questions{
+    RunQuestionEntry{"", {}, run_itself},
+    RunQuestionEntry{"channels", {"names", "from", "to", "points", "format"}, channels},
+    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "after", "limit"}, packets},
+    RunQuestionEntry{"tones", {"from", "to"}, tones},
+    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates"}, events},
+    RunQuestionEntry{"commands", {}, commands},
+    RunQuestionEntry{"timepoints", {}, timepoints},
+    RunQuestionEntry{"explanations", {"decision", "from", "to", "after", "limit", "duplicates"}, explanations},
+    RunQuestionEntry{"recording", {}, recording},
+    RunQuestionEntry{"state", {"at"}, state},
+};
+
+} // namespace
+
+const RunQuestionEntry* run_question(std::string_view name) {
+    const auto* const found = std::ranges::find(questions, name, &RunQuestionEntry::name);
+    return found == questions.end() ? nullptr : found;
+}
+
+std::string run_question_names() {
+    std::string names;
+    for (const auto& question : questions)
+        if (!question.name.empty()) names += (names.empty() ? "" : ", ") + std::string{question.name};
+    return names;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "server/api/api.hpp"
+
+#include <initializer_list>
+#include <string_view>
+
+namespace aeolis::server {
+
+/// A question to one run: the last part of its path, the parameters it knows, and how it is answered.
+struct RunQuestionEntry {
+    std::string_view name; ///< "events" of /api/v1/runs/{run}/events; "" for the run itself
+    std::initializer_list<std::string_view> parameters;
+    HttpResponse (*answer)(const dictionary::Dictionary&, archive::Reader&, archive::RunId, const QueryText&);
+};
+
+/// Null when there is no such question.
+const RunQuestionEntry* run_question(std::string_view name);
+std::string run_question_names();
+
+} // namespace aeolis::server

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+// The subcommands of `aeolis`: each takes what was given and returns the exit code: 0 done, 1 failed or found
+// something, 2 bad use.
+namespace aeolis::server {
+
+struct SharedOptions {
+    std::filesystem::path dictionary, scenarios;
+};
+
+struct ServeOptions {
+    SharedOptions shared;
+    std::string listen = "127.0.0.1:8080";
+    std::filesystem::path archive = "run-data/aeolis.db";
+    std::filesystem::path web;
+    std::string scenario; ///< empty: none is started
+    std::uint64_t seed = 1;
+    double pace = 1.0;
+};
+int serve(const ServeOptions& options);
+
+struct RehearseOptions {
+    SharedOptions shared;
+    std::string scenario;
+    std::uint64_t seed = 1, case_number = 0;
+    std::optional<std::filesystem::path> archive;
+    bool json = false;
+};
+int rehearse(const RehearseOptions& options);
+
+int dictionary_check(const std::filesystem::path& directory);
+
+} // namespace aeolis::server

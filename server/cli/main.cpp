@@ -1,0 +1,108 @@
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/version.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace {
+
+using namespace aeolis::server;
+
+struct Later {
+    const char* name;
+    const char* text;
+};
+constexpr std::array later_commands{
+    Later{"campaign", "dispersed landings, statistics, ellipse"},
+    Later{"timeline", "analyse, diff: constraints proven or refuted; two versions compared"},
+    Later{"entry", "reference: guidance tables for a scenario"},
+    Later{"decode", "any mission's packets by its XTCE"},
+    Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
+    Later{"export", "recorded data out"},
+    Later{"archive", "verify, rebuild, prune, vacuum, backup"},
+};
+
+void add_shared(CLI::App& command, SharedOptions& shared) {
+    command.add_option("--dictionary", shared.dictionary, "the mission's words")->capture_default_str();
+    command.add_option("--scenarios", shared.scenarios, "directory of the scenarios that ship")->capture_default_str();
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    spdlog::set_default_logger(spdlog::stderr_color_mt("aeolis"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+
+    CLI::App app{"Aeolis lands a spacecraft on Mars and lets you control it from a browser.\n"
+                 "Exit codes: 0 done, 1 failed or found something, 2 bad use."};
+    app.name("aeolis");
+    app.set_version_flag("--version", version);
+    app.require_subcommand(1);
+    int exit_code = 0;
+
+    ServeOptions serving;
+    serving.shared = {shipped("dictionaries/msl"), shipped("simulation/scenarios")};
+    serving.web = shipped("web/dist");
+    auto* serve_command = app.add_subcommand("serve", "the console backend: open the address it prints in a browser");
+    serve_command->add_option("--listen", serving.listen, "loopback ADDRESS:PORT; port 0 takes a free one")
+        ->capture_default_str();
+    serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
+        ->capture_default_str();
+    serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
+    serve_command->add_option("--scenario", serving.scenario, "start this rehearsal at once: a file, or a name that ships");
+    serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->capture_default_str();
+    serve_command->add_option("--pace", serving.pace, "of that rehearsal: 1 … 1000, 0 as fast as it goes")
+        ->check(CLI::Validator{[](std::string& text) {
+                                   const double pace = std::strtod(text.c_str(), nullptr);
+                                   return pace == 0.0 || (pace >= 1.0 && pace <= 1000.0)
+                                              ? std::string{}
+                                              : "neither 0 nor within 1 … 1000: " + text;
+                               },
+                               "PACE"})
+        ->capture_default_str();
+    add_shared(*serve_command, serving.shared);
+    serve_command->callback([&] { exit_code = serve(serving); });
+
+    RehearseOptions rehearsing;
+    rehearsing.shared = serving.shared;
+    auto* rehearse_command = app.add_subcommand("rehearse", "one landing, without a console, as fast as it goes");
+    rehearse_command->add_option("--scenario", rehearsing.scenario, "a file, or the name of one that ships")->required();
+    rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")->capture_default_str();
+    rehearse_command->add_option("--case", rehearsing.case_number, "another draw of the errors under the same seed")
+        ->capture_default_str();
+    rehearse_command->add_option("--archive", rehearsing.archive, "store everything in this SQLite file");
+    rehearse_command->add_flag("--json", rehearsing.json, "print one JSON object");
+    add_shared(*rehearse_command, rehearsing.shared);
+    rehearse_command->callback([&] { exit_code = rehearse(rehearsing); });
+
+    auto* dictionary_command = app.add_subcommand("dictionary", "the mission's words")->require_subcommand(1);
+    auto checked = serving.shared.dictionary;
+    auto* check = dictionary_command->add_subcommand("check", "every rule, every error with file and line");
+    check->add_option("DIR", checked, "the dictionary's directory")->capture_default_str();
+    check->callback([&] { exit_code = dictionary_check(checked); });
+    auto* exported = dictionary_command->add_subcommand("export", "(comes with a later issue)");
+    exported->allow_extras();
+    exported->callback([&] { exit_code = failed("dictionary export comes with a later issue", 2); });
+
+    for (const auto& later : later_commands) {
+        auto* command = app.add_subcommand(later.name, fmt::format("(comes with a later issue) {}", later.text));
+        command->allow_extras();
+        command->callback([&exit_code, name = later.name] {
+            exit_code = failed(fmt::format("{} comes with a later issue", name), 2);
+        });
+    }
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
+        return failed(fmt::format("{} (aeolis --help)", error.what()), 2);
+    } catch (const std::exception& error) {
+        return failed(error.what());
+    }
+    return exit_code;
+}

@@ -1,0 +1,76 @@
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/net/console_backend.hpp"
+
+#include <charconv>
+#include <csignal>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <thread>
+
+namespace aeolis::server {
+namespace {
+
+struct Listen {
+    std::string address;
+    std::uint16_t port = 0;
+};
+
+/// "127.0.0.1:8080", "[::1]:8080", "localhost:8080".
+std::optional<Listen> listen_of(const std::string& text) {
+    const auto colon = text.rfind(':');
+    if (colon == std::string::npos || colon == 0) return std::nullopt;
+    Listen listen{text.substr(0, colon), 0};
+    if (listen.address.starts_with('[') && listen.address.ends_with(']'))
+        listen.address = listen.address.substr(1, listen.address.size() - 2);
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data() + colon + 1, end, listen.port);
+    if (error != std::errc{} || stopped != end) return std::nullopt;
+    return listen;
+}
+
+} // namespace
+
+int serve(const ServeOptions& options) {
+    const auto listen = listen_of(options.listen);
+    if (!listen) return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
+    const auto dictionary = loaded_dictionary(options.shared.dictionary);
+    if (!dictionary) return failed(options.shared.dictionary.string() + ": the dictionary breaks the rules above");
+    std::optional<simulation::Scenario> scenario;
+    if (!options.scenario.empty()) {
+        auto given = scenario_given(options.scenario, options.shared.scenarios);
+        if (!given) return failed(given.error().message);
+        scenario = std::move(*given);
+    }
+
+    // Before any thread is made: all of them inherit it, and only the one below takes the signals.
+    sigset_t ending;
+    sigemptyset(&ending);
+    sigaddset(&ending, SIGINT);
+    sigaddset(&ending, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &ending, nullptr);
+
+    auto backend = ConsoleBackend::open(
+        {listen->address, listen->port, options.archive, options.shared.scenarios, options.web}, *dictionary);
+    if (!backend) return failed(backend.error().message);
+    if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
+
+    fmt::print("Aeolis is at http://{}:{}/\n  {}\n  archive {}; end with Ctrl-C\n", listen->address, (*backend)->port(),
+               scenario ? "Open it in a browser: the rehearsal '" + scenario->name +
+                              "' goes on and waits for \"set edl parameters\" and \"do edl\"."
+                        : std::string{"Open it in a browser and start a rehearsal."},
+               std::filesystem::absolute(options.archive).lexically_normal().string());
+    std::fflush(stdout);
+
+    std::thread waiter{[&] {
+        int signal = 0;
+        sigwait(&ending, &signal);
+        spdlog::info("{}: ending", signal == SIGINT ? "interrupted" : "asked to end");
+        (*backend)->stop();
+    }};
+    (*backend)->run();
+    waiter.join();
+    return 0;
+}
+
+} // namespace aeolis::server

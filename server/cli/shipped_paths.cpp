@@ -1,0 +1,35 @@
+#include "server/cli/shipped_paths.hpp"
+
+#include "server/scenario/scenario_library.hpp"
+#include "server/scenario/scenario_text.hpp"
+
+#include <fmt/format.h>
+
+namespace aeolis::server {
+
+std::filesystem::path shipped(const std::string& folder) {
+    std::error_code error;
+    const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (const auto& root : {program, program / "../..", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
+        if (std::filesystem::is_directory(root / folder, error)) return (root / folder).lexically_normal();
+    return std::filesystem::path{AEOLIS_SOURCE_DIRECTORY} / folder;
+}
+
+std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory) {
+    auto loaded = dictionary::load(directory);
+    for (const auto& finding : loaded.findings) fmt::print(stderr, "{}\n", finding.text());
+    return std::move(loaded.dictionary);
+}
+
+Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios) {
+    std::error_code error;
+    const bool is_name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, error);
+    return is_name ? ScenarioLibrary{scenarios}.scenario(given) : scenario_from_file(given);
+}
+
+int failed(const std::string& message, int exit_code) {
+    fmt::print(stderr, "aeolis: {}\n", message);
+    return exit_code;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "simulation/scenario.hpp"
+
+#include <filesystem>
+#include <string>
+
+namespace aeolis::server {
+
+/// A folder that ships ("dictionaries/msl"): beside the program, two folders above it (build/release/aeolis in a
+/// checkout), or where the program was built from; the first that exists.
+std::filesystem::path shipped(const std::string& folder);
+
+/// Prints every broken rule, a line each, to stderr and gives none when there are any.
+std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory);
+
+/// `given` is a file, or the name of a scenario that ships.
+Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios);
+
+/// One line to stderr, "aeolis: …"; returns the exit code.
+int failed(const std::string& message, int exit_code = 1);
+
+} // namespace aeolis::server

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "commands/encoder.hpp"
+#include "commands/lifecycle.hpp"
+#include "commands/preconditions.hpp"
+#include "common/time.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+#include "simulation/landing.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <cstdint>
+#include <list>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// Ground's navigation solution as arguments of "set edl parameters", by argument name.
+std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution);
+
+/// The command path of one run: the only one. WebSocket, POST and the scenario's own script all come through here.
+///
+/// In       requests; packets as they reach Earth; Earth's clock     Out   telecommand packets, replies, stages
+/// Order    look up → arguments → encode → preconditions → arming and typed confirmation → queued → authorised →
+///          released → radiated; then what telemetry shows, by commands/lifecycle
+/// Memory   at most `commands_max` commands a run, a few kilooctets each; the latest value of each channel
+/// Faults   a refused request has no number, changes nothing, and the reply names the check and its values
+/// One thread owns it. It decodes what it needs by itself, so that a decision depends on what has arrived on Earth by
+/// this cycle and never on how far another thread has come: the digest of a run does not change with its pace.
+class CommandGateway {
+  public:
+    static constexpr std::size_t commands_max = 4096; ///< ours: a landing needs two
+
+    CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
+                   std::vector<commands::NamedValue> solution);
+
+    struct Submitted {
+        v1::CommandReply reply;
+        std::vector<std::uint8_t> packet; ///< to radiate now; empty when refused
+    };
+    /// The first stage carries the arguments and the octets.
+    Submitted submit(const v1::CommandRequest& request, Ert now, std::vector<archive::StageRecord>& stages);
+
+    /// A packet reached Earth, in real time or with the recording.
+    void receive(std::span<const std::uint8_t> packet, bool realtime, Ert ert, std::vector<archive::StageRecord>& stages);
+
+    /// Windows run out by Earth's clock.
+    void pass(Ert now, std::vector<archive::StageRecord>& stages);
+
+  private:
+    struct Underway {
+        std::uint64_t number = 0;
+        std::vector<std::uint8_t> packet;
+        std::string arguments;
+        const dictionary::Packet* report = nullptr; ///< in which flight reports what it holds after this command
+        commands::CommandLifecycle lifecycle;
+    };
+    struct Heard {
+        std::optional<double> value;
+        std::optional<Ert> at;
+    };
+
+    std::vector<commands::LatestValue> latest(Ert now) const;
+    void note_channels(const dictionary::Packet& packet, Ert ert);
+    void note_answer(Ert ert, std::vector<archive::StageRecord>& stages);
+    void note_report(const dictionary::Packet& packet, std::span<const std::uint8_t> octets, Ert ert,
+                     std::vector<archive::StageRecord>& stages);
+    static void append(const Underway& underway, const std::vector<commands::StageChange>& changes,
+                       std::vector<archive::StageRecord>& stages);
+
+    const dictionary::Dictionary& dictionary_;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
+    double light_time_s_;
+    std::vector<commands::NamedValue> solution_;
+    std::vector<Heard> heard_; ///< by ChannelId
+    std::list<Underway> underway_;
+    std::vector<commands::StageChange> changes_;
+    std::uint64_t commands_ = 0;
+    std::uint16_t count_ = 0; ///< packet count of the uplink
+};
+
+} // namespace aeolis::server

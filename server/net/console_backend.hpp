@@ -1,0 +1,52 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "server/api/api.hpp"
+#include "server/net/web_server.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace aeolis::server {
+
+/// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
+///
+/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, two queries, one a rehearsal
+class ConsoleBackend {
+  public:
+    struct Settings {
+        std::string address = "127.0.0.1";
+        std::uint16_t port = 8080; ///< 0: a free one
+        std::filesystem::path archive, scenarios, web;
+    };
+    /// Fails with one line that names the archive or the address. The dictionary must outlive this.
+    static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
+    ~ConsoleBackend(); ///< a run that goes on is stopped, and its end is in the archive
+
+    /// Before run(): a rehearsal to start with.
+    void start(simulation::Scenario scenario, std::uint64_t seed, double pace);
+    void run();
+    void stop(); ///< from any thread
+    std::uint16_t port() const { return server_->port(); }
+
+  private:
+    ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary);
+    StreamHub::Services stream_services();
+    void adopt_newest_run();
+
+    // In the order in which they must end, the last one first: who calls into another comes below it.
+    Settings settings_;
+    const dictionary::Dictionary& dictionary_;
+    ScenarioLibrary scenarios_;
+    StaticFiles console_;
+    std::unique_ptr<StreamHub> hub_;
+    std::unique_ptr<WebServer> server_;
+    std::unique_ptr<QueryThreads> queries_;
+    std::unique_ptr<PipelineThread> pipeline_;
+    std::unique_ptr<RehearsalDesk> desk_;
+    std::unique_ptr<Api> api_;
+};
+
+} // namespace aeolis::server

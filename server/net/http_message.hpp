@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace aeolis::server {
+
+struct HttpRequest {
+    std::string method;
+    std::string path;  ///< decoded, without the query
+    std::string query; ///< as it stands after '?', still percent-encoded
+    std::string body;
+};
+
+struct HttpResponse {
+    unsigned status = 200;
+    std::string content_type = "application/json";
+    std::string cache_control = "no-store";
+    std::string body;
+};
+
+/// To be called once, from any thread.
+using Respond = std::function<void(HttpResponse)>;
+
+} // namespace aeolis::server

@@ -1,0 +1,183 @@
+#include "server/net/stream_hub.hpp"
+
+#include "server/api/json.hpp"
+#include "server/net/stream_session.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace aeolis::server {
+namespace {
+
+// Above this pace a client's rate counts against the wall clock too: at 100 × it would else get 100 times as much. Ours.
+constexpr double pace_without_further_thinning = 8.0;
+
+double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
+    if (shape.max_rate_hz <= 0.0) return 0.0;
+    return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / shape.max_rate_hz;
+}
+
+/// Whether a sample at `sclk` begins a new interval since the one before.
+bool begins_interval(double sclk, std::optional<double> previous, double interval_s) {
+    return !previous || std::floor(sclk / interval_s) != std::floor(*previous / interval_s);
+}
+
+} // namespace
+
+Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
+    return std::make_shared<const std::string>(format == StreamFormat::json ? to_json(message)
+                                                                           : message.SerializeAsString());
+}
+
+void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
+    for (const auto& [item, previous_sclk] : items) {
+        if (item->has_unit() && item->unit().source() == v1::SOURCE_RECORDED) continue;
+        if (!item->has_samples()) {
+            *batch.add_items() = *item;
+            continue;
+        }
+        const auto& samples = item->samples();
+        if (interval_s > 0.0 && !begins_interval(samples.sclk(), previous_sclk, interval_s)) continue;
+        const bool thinned = interval_s > 0.0 && previous_sclk && samples.sclk() - *previous_sclk < interval_s;
+        if (shape.all_channels) {
+            *batch.add_items() = *item;
+        } else {
+            v1::Samples chosen;
+            for (int i = 0; i < samples.ids_size(); ++i) {
+                if (!std::ranges::binary_search(shape.channels, samples.ids(i))) continue;
+                chosen.add_ids(samples.ids(i));
+                chosen.add_values(samples.values(i));
+            }
+            if (chosen.ids_size() == 0) continue;
+            chosen.set_sclk(samples.sclk());
+            chosen.set_source(samples.source());
+            auto& added = *batch.add_items();
+            added.set_seq(item->seq());
+            *added.mutable_samples() = std::move(chosen);
+        }
+        batch.mutable_items()->rbegin()->mutable_samples()->set_thinned(thinned);
+    }
+}
+
+std::optional<double> SampleSpacing::next(const v1::Item& item) {
+    if (!item.has_samples() || item.samples().ids_size() == 0) return std::nullopt;
+    const auto& samples = item.samples();
+    const std::uint64_t packet = (std::uint64_t{samples.ids(0)} << 8) | static_cast<std::uint64_t>(samples.source());
+    for (auto& [known, sclk] : last_)
+        if (known == packet) return std::exchange(sclk, samples.sclk());
+    last_.emplace_back(packet, samples.sclk());
+    return std::nullopt;
+}
+
+StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
+    : dictionary_id_(dictionary_id), services_(std::move(services)) {}
+
+void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch) {
+    if (batch->run.value != state_.run()) return; // a run's state comes before its first batch
+    figures.items += batch->last_seq - batch->first_seq + 1;
+    last_seq_ = batch->last_seq;
+    if (!batch->built) {
+        held_.clear();
+        held_items_ = 0;
+        spacing_ = {};
+    } else {
+        Held held{std::move(batch), {}};
+        held.previous_sclk.reserve(held.batch->items.size());
+        for (const auto& item : held.batch->items) held.previous_sclk.push_back(spacing_.next(item));
+        held_items_ += held.batch->items.size();
+        held_.push_back(std::move(held));
+        while (held_items_ > items_max) {
+            held_items_ -= held_.front().batch->items.size();
+            held_.pop_front();
+        }
+    }
+    wake_all();
+}
+
+void StreamHub::run_state(v1::RunState state) {
+    if (state.run() != state_.run()) {
+        last_seq_ = state.last_seq(); // of a run that is over, as the archive has it; of a new one 0
+        held_.clear();
+        held_items_ = 0;
+        spacing_ = {};
+        cache_.clear();
+    }
+    state_ = std::move(state);
+    state_.set_last_seq(last_seq_);
+    ++state_version_;
+    wake_all();
+}
+
+void StreamHub::clocks(v1::Clocks clocks) {
+    clocks_ = std::move(clocks);
+    ++clocks_version_;
+    wake_all();
+}
+
+void StreamHub::add(StreamSession& session) {
+    sessions_.push_back(&session);
+    services_.want_items(true);
+}
+
+void StreamHub::remove(StreamSession& session) {
+    std::erase(sessions_, &session);
+    if (sessions_.empty()) services_.want_items(false);
+}
+
+void StreamHub::wake_all() {
+    for (auto* session : sessions_) session->wake();
+}
+
+bool StreamHub::holds(archive::Sequence after) const {
+    if (after >= last_seq_) return true;
+    return !held_.empty() && held_.front().batch->first_seq <= after + 1;
+}
+
+StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
+    for (const auto& cached : cache_) {
+        if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
+            cached.clocks_version == clocks_version_ && cached.shape == shape) {
+            ++figures.shared;
+            return cached.fresh;
+        }
+    }
+    std::vector<ItemBefore> items;
+    for (const auto& held : held_) {
+        if (held.batch->last_seq <= after) continue;
+        for (std::size_t i = 0; i < held.batch->items.size() && items.size() < message_items_max; ++i)
+            if (held.batch->items[i].seq() > after) items.push_back({&held.batch->items[i], held.previous_sclk[i]});
+    }
+    Fresh fresh;
+    fresh.through = items.empty() ? last_seq_ : items.back().item->seq();
+    v1::ServerMessage message;
+    auto& batch = *message.mutable_batch();
+    select_items(shape, thinning_interval_s(shape, state_), items, batch);
+    if (batch.items_size() > 0) {
+        batch.set_run(state_.run());
+        batch.set_after_seq(sent_through);
+        batch.set_complete_through(fresh.through);
+        *batch.mutable_clocks() = clocks_;
+        fresh.message = encode(message, shape.format);
+    }
+    ++figures.encodings;
+    cache_.push_back({shape, after, sent_through, last_seq_, clocks_version_, fresh});
+    if (cache_.size() > shared_encodings) cache_.pop_front();
+    return fresh;
+}
+
+Encoded StreamHub::encoded_state(StreamFormat format) {
+    if (state_encoded_version_ != state_version_) {
+        state_encoded_ = {};
+        state_encoded_version_ = state_version_;
+    }
+    auto& encoded = state_encoded_[static_cast<std::size_t>(format)];
+    if (!encoded) {
+        v1::ServerMessage message;
+        *message.mutable_run_state() = state_;
+        encoded = encode(message, format);
+    }
+    return encoded;
+}
+
+} // namespace aeolis::server

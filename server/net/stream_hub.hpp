@@ -1,0 +1,140 @@
+#pragma once
+
+#include "aeolis/v1/stream.pb.h"
+#include "server/archive/reader.hpp"
+#include "server/pipeline/pipeline.hpp"
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+class StreamSession;
+
+enum class StreamFormat : std::uint8_t { protobuf, json };
+
+/// A message as it goes over the wire, shared by all clients that get the same.
+using Encoded = std::shared_ptr<const std::string>;
+Encoded encode(const v1::ServerMessage& message, StreamFormat format);
+
+/// What a subscription wants of the items. Two clients with the same shape get the same octets.
+struct StreamShape {
+    StreamFormat format{};
+    bool all_channels = false;
+    std::vector<std::uint32_t> channels; ///< ascending
+    double max_rate_hz = 0.0;
+    bool operator==(const StreamShape&) const = default;
+};
+
+/// A published item, and when (SCLK) the same packet's samples came before it: so that thinning needs no memory of
+/// what one client got, and clients share their encoding.
+struct ItemBefore {
+    const v1::Item* item = nullptr;
+    std::optional<double> previous_sclk;
+};
+
+/// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
+/// Samples: the subscribed channels; `interval_s` (vehicle time) at least apart when > 0, and then marked thinned.
+/// Units: those received live; the recording's are at /packets.
+void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
+
+/// Tells previous_sclk for items in their order.
+class SampleSpacing {
+  public:
+    std::optional<double> next(const v1::Item& item);
+
+  private:
+    std::vector<std::pair<std::uint64_t, double>> last_; ///< by packet (its first channel) and source
+};
+
+/// What the clients of the stream follow: the run that is going on, its newest items, its clocks.
+///
+/// In       published batches, run states, clocks             Out   wakes its sessions; encodes for them
+/// Thread   the network thread only
+/// Memory   the newest `items_max` items; older ones a session reads from the archive: a slow client costs no memory
+class StreamHub {
+  public:
+    static constexpr std::size_t items_max = 16'384;        ///< ours: some 4 MB; a minute of live data at 1 ×
+    static constexpr std::size_t message_items_max = 2'048; ///< in one Batch: some 300 KiB
+    static constexpr std::size_t shared_encodings = 32;
+
+    /// What a session asks of the rest of the server. Answers come back on the network thread.
+    struct Services {
+        std::function<void(archive::RunId, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds,
+                           std::function<void(Result<archive::ItemPage>)>)>
+            read_items;
+        std::function<void(std::uint64_t run, std::function<void(Result<v1::RunState>)>)> read_run;
+        std::function<void(v1::CommandRequest, std::function<void(v1::CommandReply)>)> command;
+        std::function<void(v1::RehearsalControl, std::function<void(Result<void>)>)> control;
+        std::function<void(bool wanted)> want_items;
+    };
+    StreamHub(std::uint16_t dictionary_id, Services services);
+
+    void published(std::shared_ptr<const pipeline::PublishedBatch> batch);
+    void run_state(v1::RunState state);
+    void clocks(v1::Clocks clocks);
+
+    void add(StreamSession& session);
+    void remove(StreamSession& session);
+    std::size_t sessions() const { return sessions_.size(); }
+
+    // ---- for sessions ------------------------------------------------------------------------------------------
+    const Services& services() const { return services_; }
+    std::uint16_t dictionary_id() const { return dictionary_id_; }
+    std::uint64_t current_run() const { return state_.run(); } ///< 0: none yet
+    const v1::RunState& state() const { return state_; }
+    std::uint64_t state_version() const { return state_version_; }
+    const v1::Clocks& latest_clocks() const { return clocks_; }
+    std::uint64_t clocks_version() const { return clocks_version_; }
+    archive::Sequence last_seq() const { return last_seq_; } ///< published, of the current run
+    bool holds(archive::Sequence after) const;               ///< every item with a larger number is still here
+
+    struct Fresh {
+        Encoded message; ///< null: nothing of this range is for this shape
+        archive::Sequence through = 0;
+    };
+    /// The items after `after`, message_items_max at most. Needs holds(after).
+    Fresh fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through);
+    Encoded encoded_state(StreamFormat format);
+
+    struct Figures {
+        std::uint64_t items = 0, encodings = 0, shared = 0, archive_pages = 0, refusals = 0;
+    };
+    Figures figures;
+
+  private:
+    struct Held {
+        std::shared_ptr<const pipeline::PublishedBatch> batch;
+        std::vector<std::optional<double>> previous_sclk; ///< an item each
+    };
+    struct Cached {
+        StreamShape shape;
+        archive::Sequence after = 0, sent_through = 0, last_seq = 0;
+        std::uint64_t clocks_version = 0;
+        Fresh fresh;
+    };
+    void wake_all();
+
+    std::uint16_t dictionary_id_;
+    Services services_;
+    std::vector<StreamSession*> sessions_;
+    v1::RunState state_;
+    v1::Clocks clocks_;
+    std::uint64_t state_version_ = 0, clocks_version_ = 0;
+    archive::Sequence last_seq_ = 0;
+    std::deque<Held> held_; ///< without a gap, up to last_seq_
+    std::size_t held_items_ = 0;
+    SampleSpacing spacing_;
+    std::deque<Cached> cache_;
+    std::array<Encoded, 2> state_encoded_;
+    std::uint64_t state_encoded_version_ = 0;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,231 @@
+#include "server/net/stream_session.hpp"
+
+#include "server/api/json.hpp"
+#include "server/version.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+
+StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake)
+    : hub_(hub), wake_(std::move(wake)) {
+    shape_.format = format;
+    hub_.add(*this);
+}
+
+StreamSession::~StreamSession() { hub_.remove(*this); }
+
+void StreamSession::on_message(std::string_view payload) {
+    v1::ClientMessage message;
+    if (shape_.format == StreamFormat::json) {
+        if (const auto parsed = from_json(payload, message); !parsed) return refuse(parsed.error().message);
+    } else if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
+        return refuse(fmt::format("these {} octets are not a ClientMessage of aeolis.v1", payload.size()));
+    }
+    const auto self = weak_from_this();
+    switch (message.message_case()) {
+    case v1::ClientMessage::kSubscribe: return subscribe(message.subscribe());
+    case v1::ClientMessage::kCommand:
+        return hub_.services().command(message.command(), [self](v1::CommandReply answer) {
+            const auto session = self.lock();
+            if (!session) return;
+            v1::ServerMessage out;
+            *out.mutable_command_reply() = std::move(answer);
+            session->reply(std::move(out));
+        });
+    case v1::ClientMessage::kControl:
+        return hub_.services().control(message.control(), [self](const Result<void>& done) {
+            const auto session = self.lock();
+            if (session && !done) session->refuse(done.error().message);
+        });
+    case v1::ClientMessage::MESSAGE_NOT_SET: break;
+    }
+    refuse("the message says nothing: subscribe, command or control is wanted");
+}
+
+void StreamSession::refuse(std::string reason) {
+    ++hub_.figures.refusals;
+    v1::ServerMessage message;
+    message.mutable_refusal()->set_reason(std::move(reason));
+    reply(std::move(message));
+}
+
+void StreamSession::reply(v1::ServerMessage message) {
+    replies_.push_back(encode(message, shape_.format));
+    wake_();
+}
+
+void StreamSession::subscribe(const v1::Subscribe& subscribe) {
+    if (!std::isfinite(subscribe.max_rate_hz()) || subscribe.max_rate_hz() < 0.0)
+        return refuse(fmt::format("max_rate_hz: {} is not a rate", subscribe.max_rate_hz()));
+    if (subscribe.run() > UINT32_MAX) return refuse(fmt::format("run {}: there is none", subscribe.run()));
+    ++subscription_;
+    shape_.all_channels = subscribe.all_channels();
+    shape_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
+    std::ranges::sort(shape_.channels);
+    shape_.max_rate_hz = subscribe.max_rate_hz();
+    newest_run_ = subscribe.run() == 0;
+    const std::uint64_t run = newest_run_ ? hub_.current_run() : subscribe.run();
+    if (run == 0 || run == hub_.current_run()) {
+        subscribed_ = true;
+        follow(run, subscribe.after_seq());
+        wake_();
+        return;
+    }
+    waiting_for_run_ = true;
+    hub_.services().read_run(
+        run, [self = weak_from_this(), run, after = subscribe.after_seq(),
+              subscription = subscription_](Result<v1::RunState> state) {
+            const auto session = self.lock();
+            if (!session || session->subscription_ != subscription) return;
+            session->waiting_for_run_ = false;
+            if (!state) return session->refuse(state.error().message);
+            session->subscribed_ = true;
+            session->older_run_ = std::move(*state);
+            session->follow(run, after);
+            session->wake_();
+        });
+}
+
+void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
+    run_ = run;
+    // Beyond the end lies nothing yet: a client that asks for more has another run in mind.
+    const auto last = run == hub_.current_run() ? hub_.last_seq() : older_run_.last_seq();
+    cursor_ = sent_through_ = std::min(after, last);
+    page_.reset();
+    page_spacing_ = {};
+    reading_ = exhausted_ = was_live_ = stalled_ = false;
+    welcome_due_ = true;
+}
+
+Encoded StreamSession::welcome() {
+    welcome_due_ = false;
+    v1::ServerMessage message;
+    auto& welcome = *message.mutable_welcome();
+    welcome.set_server_version(version);
+    welcome.set_dictionary_id(hub_.dictionary_id());
+    if (run_ != 0) {
+        auto& state = *welcome.mutable_run_state();
+        state = follows_current() ? hub_.state() : older_run_;
+        const auto last = follows_current() ? hub_.last_seq() : older_run_.last_seq();
+        state.set_last_seq(last);
+        welcome.set_first_seq(last == 0 ? 0 : 1);
+        welcome.set_last_seq(last);
+    }
+    if (follows_current()) state_sent_ = hub_.state_version();
+    return encode(message, shape_.format);
+}
+
+Encoded StreamSession::next_message() {
+    if (!replies_.empty()) {
+        auto message = replies_.front();
+        replies_.pop_front();
+        return message;
+    }
+    if (!subscribed_ || waiting_for_run_) return nullptr;
+    if (newest_run_ && run_ != hub_.current_run()) {
+        ++subscription_;
+        follow(hub_.current_run(), 0);
+    }
+    if (welcome_due_) return welcome();
+    if (run_ == 0) return nullptr;
+    if (follows_current() && state_sent_ != hub_.state_version()) {
+        state_sent_ = hub_.state_version();
+        return hub_.encoded_state(shape_.format);
+    }
+    if (auto message = next_items()) return message;
+    if (follows_current() && clocks_sent_ != hub_.clocks_version() && !reading_) {
+        clocks_sent_ = hub_.clocks_version();
+        v1::ServerMessage message;
+        auto& batch = *message.mutable_batch();
+        batch.set_run(run_);
+        batch.set_after_seq(sent_through_);
+        batch.set_complete_through(cursor_);
+        *batch.mutable_clocks() = hub_.latest_clocks();
+        sent_through_ = cursor_;
+        return encode(message, shape_.format);
+    }
+    return nullptr;
+}
+
+Encoded StreamSession::next_items() {
+    for (;;) {
+        if (page_) {
+            if (auto message = from_page()) return message;
+            continue;
+        }
+        if (reading_ || stalled_) return nullptr;
+        if (!follows_current()) {
+            if (!exhausted_) ask_archive();
+            return nullptr;
+        }
+        if (cursor_ >= hub_.last_seq()) {
+            was_live_ = true;
+            return nullptr;
+        }
+        if (!hub_.holds(cursor_)) {
+            ask_archive();
+            return nullptr;
+        }
+        auto fresh = hub_.fresh(shape_, cursor_, sent_through_);
+        cursor_ = fresh.through;
+        if (!fresh.message) continue;
+        sent_through_ = fresh.through;
+        clocks_sent_ = hub_.clocks_version();
+        return fresh.message;
+    }
+}
+
+Encoded StreamSession::from_page() {
+    const auto page = std::move(*page_);
+    page_.reset();
+    std::vector<ItemBefore> items;
+    items.reserve(page.items.size());
+    for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item)});
+    double interval_s = shape_.max_rate_hz > 0.0 ? 1.0 / shape_.max_rate_hz : 0.0;
+    if (was_live_ && follows_current()) interval_s = std::max(interval_s, catching_up_interval_s);
+    v1::ServerMessage message;
+    auto& batch = *message.mutable_batch();
+    select_items(shape_, interval_s, items, batch);
+    cursor_ = std::max(cursor_, page.complete_through);
+    exhausted_ = !page.more;
+    const bool last = exhausted_ || (follows_current() && cursor_ >= hub_.last_seq());
+    // A page of which nothing is wanted is not worth a message, but the last one says that the past is complete.
+    if (batch.items_size() == 0 && !last) return nullptr;
+    batch.set_run(run_);
+    batch.set_history(true);
+    batch.set_after_seq(sent_through_);
+    batch.set_complete_through(cursor_);
+    if (follows_current()) *batch.mutable_clocks() = hub_.latest_clocks();
+    sent_through_ = cursor_;
+    return encode(message, shape_.format);
+}
+
+void StreamSession::ask_archive() {
+    reading_ = true;
+    ++hub_.figures.archive_pages;
+    archive::Reader::ItemKinds kinds;
+    kinds.samples = shape_.all_channels || !shape_.channels.empty();
+    hub_.services().read_items(
+        archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
+        [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
+            const auto session = self.lock();
+            if (!session || session->subscription_ != subscription) return;
+            session->reading_ = false;
+            if (!page) {
+                session->stalled_ = true;
+                return session->refuse("the archive could not be read, subscribe again: " + page.error().message);
+            }
+            if (page->complete_through <= session->cursor_ && session->follows_current()) {
+                session->stalled_ = true;
+                return session->refuse(fmt::format("the archive holds nothing after {}, subscribe again",
+                                                   session->cursor_));
+            }
+            session->page_ = std::move(*page);
+            session->wake_();
+        });
+}
+
+} // namespace aeolis::server

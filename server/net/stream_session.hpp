@@ -1,0 +1,70 @@
+#pragma once
+
+#include "aeolis/v1/stream.pb.h"
+#include "server/net/stream_hub.hpp"
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+namespace aeolis::server {
+
+/// One client of the stream: what it asked for and how far it has been served. Knows no socket.
+///
+/// In       the client's messages                        Out   next_message(), when the connection can write
+/// Rule     items go out in order, each once. What the hub still holds comes from there; older items from the
+///          archive, page by page. So a client that is slow, or came late, reads the archive and catches up.
+/// Thread   the network thread only
+/// Memory   replies_max short replies and one page of the archive
+class StreamSession : public std::enable_shared_from_this<StreamSession> {
+  public:
+    static constexpr std::size_t replies_max = 64;        ///< ours: a client that sends and never reads is closed
+    static constexpr std::size_t page_items = 2'048;      ///< read from the archive at once
+    static constexpr double catching_up_interval_s = 1.0; ///< ours: samples of one who fell behind are thinned to 1 Hz
+
+    StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake);
+    ~StreamSession();
+    StreamSession(const StreamSession&) = delete;
+    StreamSession& operator=(const StreamSession&) = delete;
+
+    StreamFormat format() const { return shape_.format; }
+    /// One message from the client. What cannot be done is answered with a Refusal.
+    void on_message(std::string_view payload);
+    /// What to write next; null when there is nothing now: wake() comes when that changes.
+    Encoded next_message();
+    /// Too many replies wait: the connection should close.
+    bool flooded() const { return replies_.size() > replies_max; }
+    void wake() { wake_(); }
+
+  private:
+    void subscribe(const v1::Subscribe& subscribe);
+    void refuse(std::string reason);
+    void reply(v1::ServerMessage message);
+    void follow(std::uint64_t run, archive::Sequence after);
+    Encoded welcome();
+    Encoded next_items();
+    Encoded from_page();
+    void ask_archive();
+    bool follows_current() const { return run_ != 0 && run_ == hub_.current_run(); }
+
+    StreamHub& hub_;
+    std::function<void()> wake_;
+    StreamShape shape_;
+    std::deque<Encoded> replies_;
+
+    bool subscribed_ = false, newest_run_ = false; ///< newest_run_: asked for run 0
+    bool welcome_due_ = false, waiting_for_run_ = false;
+    std::uint64_t run_ = 0;
+    std::uint64_t subscription_ = 0; ///< answers to an older one are dropped
+    v1::RunState older_run_;         ///< of a run that is not the current one
+    archive::Sequence cursor_ = 0;   ///< served up to here
+    archive::Sequence sent_through_ = 0; ///< what the client was told
+    bool reading_ = false, exhausted_ = false, was_live_ = false;
+    bool stalled_ = false; ///< the archive failed: nothing more until the client subscribes again
+    std::optional<archive::ItemPage> page_;
+    SampleSpacing page_spacing_;
+    std::uint64_t state_sent_ = 0, clocks_sent_ = 0;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,352 @@
+#include "server/net/web_server.hpp"
+
+#include "server/api/json.hpp"
+#include "aeolis/v1/run.pb.h"
+
+#include <array>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <boost/url/parse.hpp>
+#include <deque>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using tcp = asio::ip::tcp;
+using error_code = boost::system::error_code;
+
+// One kind of executor by type: the sources stay small and no call goes through a type-erased one.
+using Executor = asio::io_context::executor_type;
+using Socket = asio::basic_stream_socket<tcp, Executor>;
+using Stream = beast::basic_stream<tcp, Executor>;
+using Acceptor = asio::basic_socket_acceptor<tcp, Executor>;
+using Timer = asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>, Executor>;
+template <typename T = void>
+using Task = asio::awaitable<T, Executor>;
+constexpr asio::use_awaitable_t<Executor> awaiting{};
+
+using Request = http::request<http::string_body>;
+using Response = http::response<http::string_body>;
+
+constexpr const char* stream_path = "/api/v1/stream";
+struct Subprotocol {
+    std::string_view name;
+    StreamFormat format;
+};
+constexpr std::array subprotocols{Subprotocol{"aeolis.v1.protobuf", StreamFormat::protobuf},
+                                  Subprotocol{"aeolis.v1.json", StreamFormat::json}};
+
+std::string_view plain(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// "localhost", "127.0.0.1", "[::1]", each with or without a port.
+bool is_loopback_authority(std::string_view authority) {
+    const auto bracket = authority.rfind(']');
+    const auto colon = authority.rfind(':');
+    if (colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket))
+        authority = authority.substr(0, colon);
+    return authority == "localhost" || authority == "127.0.0.1" || authority == "[::1]";
+}
+
+/// A page's own address; a program that is no browser sends none.
+bool is_loopback_origin(std::string_view origin) {
+    for (const std::string_view scheme : {"http://", "https://"})
+        if (origin.starts_with(scheme)) return is_loopback_authority(origin.substr(scheme.size()));
+    return false;
+}
+
+/// Empty when the request may go on.
+std::string refusal_of(const Request& request) {
+    const auto host = plain(request[http::field::host]);
+    if (!is_loopback_authority(host))
+        return fmt::format("Host '{}' is not a loopback name: this server answers on this machine only", host);
+    const auto origin = request.find(http::field::origin);
+    if (origin != request.end() && !is_loopback_origin(plain(origin->value())))
+        return fmt::format("Origin '{}' is not a page of this machine", plain(origin->value()));
+    return {};
+}
+
+/// The first of ours that the client offers.
+const Subprotocol* chosen_subprotocol(const Request& request) {
+    for (const auto token : http::token_list{request[http::field::sec_websocket_protocol]})
+        for (const auto& ours : subprotocols)
+            if (plain(token) == ours.name) return &ours;
+    return nullptr;
+}
+
+Response error_reply(const Request& request, http::status status, const std::string& error) {
+    v1::ErrorReply reply;
+    reply.set_error(error);
+    Response response{status, request.version() == 10 ? 10U : 11U};
+    response.set(http::field::content_type, "application/json");
+    response.set(http::field::cache_control, "no-store");
+    response.body() = to_json(reply);
+    response.prepare_payload();
+    return response;
+}
+
+} // namespace
+
+struct WebServer::State {
+    asio::io_context io{1};
+    Acceptor acceptor{io.get_executor()};
+    Handlers handlers;
+    std::size_t connections = 0;
+    std::deque<Timer> timers; ///< of every()
+
+    Task<> accept();
+    Task<> repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action);
+    Task<> serve(Socket socket);
+    Task<> serve_requests(Stream& stream);
+    Task<> serve_stream(Stream stream, Request request, StreamFormat format, std::string_view subprotocol);
+    Task<HttpResponse> answer(HttpRequest request);
+};
+
+namespace {
+
+/// A WebSocket client's connection: one message is written at a time, whatever else is due waits in the session.
+struct StreamConnection {
+    StreamConnection(Stream stream) : socket(std::move(stream)), due(socket.get_executor()) {}
+    websocket::stream<Stream> socket;
+    Timer due; ///< cancelled when the session has something to write
+    bool open = true;
+};
+
+Task<> write_messages(std::shared_ptr<StreamConnection> connection, std::shared_ptr<StreamSession> session) {
+    error_code error;
+    while (connection->open) {
+        const auto message = session->next_message();
+        if (session->flooded()) {
+            co_await connection->socket.async_close(
+                {websocket::close_code::policy_error, "too many requests without reading the answers"},
+                asio::redirect_error(awaiting, error));
+            break;
+        }
+        if (!message) {
+            connection->due.expires_at(std::chrono::steady_clock::time_point::max());
+            co_await connection->due.async_wait(asio::redirect_error(awaiting, error));
+            continue;
+        }
+        connection->socket.binary(session->format() == StreamFormat::protobuf);
+        co_await connection->socket.async_write(asio::buffer(*message), asio::redirect_error(awaiting, error));
+        if (error) break;
+    }
+    connection->open = false;
+}
+
+} // namespace
+
+Task<HttpResponse> WebServer::State::answer(HttpRequest request) {
+    return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(HttpResponse)>(
+        [this](auto done, HttpRequest asked) {
+            auto shared = std::make_shared<decltype(done)>(std::move(done));
+            handlers.request(std::move(asked), [this, shared](HttpResponse response) {
+                asio::post(io, [shared, response = std::move(response)]() mutable {
+                    std::move (*shared)(std::move(response));
+                });
+            });
+        },
+        awaiting, std::move(request));
+}
+
+Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamFormat format,
+                                      std::string_view subprotocol) {
+    stream.expires_never(); // the WebSocket has time-outs of its own
+    auto connection = std::make_shared<StreamConnection>(std::move(stream));
+    auto& socket = connection->socket;
+    auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+    timeout.idle_timeout = std::chrono::seconds{silence_seconds_max};
+    timeout.keep_alive_pings = true;
+    socket.set_option(timeout);
+    socket.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
+        response.set(http::field::sec_websocket_protocol, beast::string_view{subprotocol.data(), subprotocol.size()});
+    }));
+    socket.read_message_max(message_octets_max);
+    error_code error;
+    co_await socket.async_accept(request, asio::redirect_error(awaiting, error));
+    if (error) co_return;
+
+    auto session = handlers.open_stream(format, [weak = std::weak_ptr{connection}] {
+        if (const auto alive = weak.lock()) alive->due.cancel();
+    });
+    asio::co_spawn(io, write_messages(connection, session), asio::detached);
+    beast::flat_buffer buffer;
+    while (connection->open) {
+        co_await socket.async_read(buffer, asio::redirect_error(awaiting, error));
+        if (error) break;
+        session->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
+        buffer.consume(buffer.size());
+    }
+    if (error == websocket::error::message_too_big)
+        spdlog::warn("stream: a client sent more than {} octets in one message and was closed", message_octets_max);
+    connection->open = false;
+    connection->due.cancel();
+    error_code ignored;
+    beast::get_lowest_layer(socket).socket().close(ignored);
+}
+
+Task<> WebServer::State::serve_requests(Stream& stream) {
+    beast::flat_buffer buffer;
+    for (;;) {
+        error_code error;
+        http::request_parser<http::string_body> parser;
+        parser.body_limit(body_octets_max);
+        parser.header_limit(header_octets_max);
+        stream.expires_after(std::chrono::seconds{request_seconds_max});
+        co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
+        if (error == http::error::end_of_stream || error == beast::error::timeout) co_return;
+        if (error) {
+            // Only what the peer could have meant gets an answer; a broken connection gets none.
+            if (error.category() != http::make_error_code(http::error::bad_method).category()) co_return;
+            const bool too_long = error == http::error::body_limit || error == http::error::header_limit;
+            auto reply = error_reply(
+                parser.get(), too_long ? http::status::payload_too_large : http::status::bad_request,
+                error == http::error::body_limit     ? fmt::format("the body is longer than {} octets", body_octets_max)
+                : error == http::error::header_limit ? fmt::format("the header is longer than {} octets", header_octets_max)
+                                                     : "this is not HTTP: " + error.message());
+            reply.keep_alive(false);
+            co_await http::async_write(stream, reply, asio::redirect_error(awaiting, error));
+            co_return;
+        }
+        auto request = parser.release();
+        Response response;
+        const auto target = boost::urls::parse_origin_form(
+            boost::urls::string_view{request.target().data(), request.target().size()});
+        if (const auto refusal = refusal_of(request); !refusal.empty()) {
+            response = error_reply(request, http::status::forbidden, refusal);
+        } else if (!target) {
+            response = error_reply(request, http::status::bad_request, "the request's target is not a path");
+        } else if (websocket::is_upgrade(request) && target->path() == stream_path) {
+            if (const auto* subprotocol = chosen_subprotocol(request)) {
+                co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name);
+                co_return;
+            }
+            response = error_reply(request, http::status::bad_request,
+                                   "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
+        } else {
+            stream.expires_never();
+            auto answered = co_await answer({std::string{plain(request.method_string())}, target->path(),
+                                             std::string{target->encoded_query()}, std::move(request.body())});
+            response = Response{static_cast<http::status>(answered.status), request.version()};
+            response.set(http::field::content_type, answered.content_type);
+            response.set(http::field::cache_control, answered.cache_control);
+            response.body() = std::move(answered.body);
+        }
+        response.set(http::field::server, "aeolis");
+        response.set("X-Content-Type-Options", "nosniff");
+        response.keep_alive(request.keep_alive());
+        response.prepare_payload();
+        if (request.method() == http::verb::head) response.body().clear();
+        stream.expires_after(std::chrono::seconds{request_seconds_max});
+        co_await http::async_write(stream, response, asio::redirect_error(awaiting, error));
+        if (error || !response.keep_alive()) co_return;
+    }
+}
+
+Task<> WebServer::State::serve(Socket socket) {
+    struct Counted {
+        explicit Counted(std::size_t& open) : count(open) { ++count; }
+        ~Counted() { --count; }
+        std::size_t& count;
+    } counted{connections};
+    error_code ignored;
+    socket.set_option(tcp::no_delay{true}, ignored);
+    Stream stream{std::move(socket)};
+    if (connections > connections_max) {
+        auto reply = error_reply({}, http::status::service_unavailable,
+                                 fmt::format("{} connections are open already", connections_max));
+        reply.keep_alive(false);
+        stream.expires_after(std::chrono::seconds{1});
+        co_await http::async_write(stream, reply, asio::redirect_error(awaiting, ignored));
+        co_return;
+    }
+    co_await serve_requests(stream);
+    if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+}
+
+Task<> WebServer::State::accept() {
+    while (acceptor.is_open()) {
+        error_code error;
+        auto socket = co_await acceptor.async_accept(asio::redirect_error(awaiting, error));
+        if (!error) {
+            asio::co_spawn(io, serve(std::move(socket)), [](std::exception_ptr broken) {
+                // A bug in one request: that connection ends, the server goes on.
+                try {
+                    if (broken) std::rethrow_exception(broken);
+                } catch (const std::exception& bug) {
+                    spdlog::error("connection closed: {}", bug.what());
+                }
+            });
+            continue;
+        }
+        if (error == asio::error::operation_aborted) co_return;
+        spdlog::warn("a connection could not be accepted: {}", error.message());
+        Timer pause{io, std::chrono::milliseconds{100}}; // out of file numbers: do not spin
+        co_await pause.async_wait(asio::redirect_error(awaiting, error));
+    }
+}
+
+Task<> WebServer::State::repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action) {
+    error_code error;
+    while (!error) {
+        timer.expires_after(interval);
+        co_await timer.async_wait(asio::redirect_error(awaiting, error));
+        if (!error) action();
+    }
+}
+
+Result<std::unique_ptr<WebServer>> WebServer::open(const std::string& address, std::uint16_t port, Handlers handlers) {
+    error_code error;
+    const auto ip = asio::ip::make_address(address == "localhost" ? "127.0.0.1" : address, error);
+    if (error) return Error{fmt::format("--listen {}: not an IP address", address)};
+    if (!ip.is_loopback())
+        return Error{fmt::format("--listen {}: only loopback addresses as yet; access control comes with a later issue",
+                                 address)};
+    auto state = std::make_unique<State>();
+    state->handlers = std::move(handlers);
+    const tcp::endpoint endpoint{ip, port};
+    auto& acceptor = state->acceptor;
+    acceptor.open(endpoint.protocol(), error);
+    if (!error) acceptor.set_option(asio::socket_base::reuse_address{true}, error);
+    if (!error) acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+    if (error == asio::error::address_in_use)
+        return Error{fmt::format("--listen {}:{}: the port is in use; choose another, or end the program that has it",
+                                 address, port)};
+    if (error) return Error{fmt::format("--listen {}:{}: {}", address, port, error.message())};
+    asio::co_spawn(state->io, state->accept(), asio::detached);
+    return std::unique_ptr<WebServer>{new WebServer{std::move(state)}};
+}
+
+WebServer::WebServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+WebServer::~WebServer() = default;
+
+std::uint16_t WebServer::port() const { return state_->acceptor.local_endpoint().port(); }
+void WebServer::run() { state_->io.run(); }
+void WebServer::stop() { state_->io.stop(); }
+void WebServer::post(std::function<void()> action) { asio::post(state_->io, std::move(action)); }
+std::size_t WebServer::connections() const { return state_->connections; }
+
+void WebServer::every(unsigned milliseconds, std::function<void()> action) {
+    auto& timer = state_->timers.emplace_back(state_->io.get_executor());
+    asio::co_spawn(state_->io, state_->repeat(timer, std::chrono::milliseconds{milliseconds}, std::move(action)),
+                   asio::detached);
+}
+
+} // namespace aeolis::server

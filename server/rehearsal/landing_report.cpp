@@ -1,0 +1,141 @@
+#include "server/rehearsal/landing_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+std::string json_text(std::string_view text) {
+    std::string quoted = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            quoted += {'\\', c};
+        else if (static_cast<unsigned char>(c) < 0x20)
+            fmt::format_to(std::back_inserter(quoted), "\\u{:04x}", static_cast<unsigned>(c));
+        else
+            quoted += c;
+    }
+    return quoted + '"';
+}
+
+std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+
+/// One object, its members in the order in which they are added.
+class JsonObject {
+  public:
+    JsonObject& raw(std::string_view name, std::string_view json) {
+        text_ += (text_.empty() ? "" : ",") + json_text(name) + ":" + std::string{json};
+        return *this;
+    }
+    JsonObject& text(std::string_view name, std::string_view value) { return raw(name, json_text(value)); }
+    JsonObject& number(std::string_view name, double value) { return raw(name, json_number(value)); }
+    JsonObject& count(std::string_view name, std::uint64_t value) { return raw(name, fmt::format("{}", value)); }
+    std::string str() const { return "{" + text_ + "}"; }
+
+  private:
+    std::string text_;
+};
+
+template <typename Rows, typename ToJson>
+std::string json_array(const Rows& rows, ToJson to_json) {
+    std::string text;
+    for (const auto& row : rows) text += (text.empty() ? "" : ",") + to_json(row);
+    return "[" + text + "]";
+}
+
+std::vector<simulation::TruthEvent> sorted_events(const Rehearsal& rehearsal) {
+    auto events = rehearsal.events();
+    std::ranges::stable_sort(events, {}, &simulation::TruthEvent::e_s);
+    return events;
+}
+
+double real_time_factor(const Rehearsal& rehearsal, double wall_s) {
+    return wall_s > 0.0 ? static_cast<double>(rehearsal.cycles()) * seconds_per_tick / wall_s : 0.0;
+}
+
+} // namespace
+
+std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
+    const auto& landing = rehearsal.landing();
+    const auto touchdown = landing.touchdown();
+    const auto proof = rehearsal.proof();
+    const auto& tones = rehearsal.tones();
+    const auto event_json = [](const simulation::TruthEvent& event) {
+        return JsonObject{}
+            .text("name", event.name)
+            .number("e_s", event.e_s)
+            .number("sclk", event.sclk.seconds)
+            .number("altitude_m", event.altitude_m)
+            .number("speed_mps", event.speed_mps)
+            .str();
+    };
+    const auto firing_json = [](const RecordedFiring& firing) {
+        return JsonObject{}
+            .text("name", firing.name)
+            .number("fired_sclk", firing.fired_sclk)
+            .text("verdict", firing.verdict)
+            .str();
+    };
+    const auto touchdown_json = !touchdown ? std::string{"null"}
+                                           : JsonObject{}
+                                                 .number("vertical_mps", touchdown->vertical_mps)
+                                                 .number("horizontal_mps", touchdown->horizontal_mps)
+                                                 .number("miss_m", touchdown->miss_m)
+                                                 .number("latitude_deg", touchdown->latitude_deg)
+                                                 .number("longitude_deg", touchdown->longitude_deg)
+                                                 .str();
+    return JsonObject{}
+        .text("scenario", rehearsal.scenario().name)
+        .count("seed", rehearsal.seed())
+        .text("outcome", rehearsal.outcome())
+        .text("digest", rehearsal.digest())
+        .raw("events", json_array(sorted_events(rehearsal), event_json))
+        .number("peak_deceleration_mps2", landing.peak_deceleration_mps2())
+        .raw("touchdown", touchdown_json)
+        .raw("timepoints", json_array(rehearsal.firings(), firing_json))
+        .raw("tones", JsonObject{}
+                          .count("sent", tones.sent)
+                          .count("decoded", tones.decoded)
+                          .count("wrong", tones.wrong)
+                          .count("missed", tones.missed)
+                          .str())
+        .raw("packets", JsonObject{}
+                            .count("recorded", proof.recorded)
+                            .count("realtime", proof.realtime)
+                            .count("realtime_not_recorded", proof.realtime_not_recorded)
+                            .count("realtime_differs", proof.realtime_differs)
+                            .str())
+        .count("cycles", rehearsal.cycles())
+        .count("overruns", landing.counters().overruns)
+        .number("wall_s", wall_s)
+        .number("real_time_factor", real_time_factor(rehearsal, wall_s))
+        .str();
+}
+
+std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
+    const auto& landing = rehearsal.landing();
+    std::string text = fmt::format("{} (seed {}): {}", rehearsal.scenario().name, rehearsal.seed(), rehearsal.outcome());
+    if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
+    text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");
+    for (const auto& event : sorted_events(rehearsal))
+        text += fmt::format("{:<28}{:>10.2f}{:>14.1f}{:>12.2f}\n", event.name, event.e_s, event.altitude_m,
+                            event.speed_mps);
+    text += fmt::format("\npeak deceleration {:.2f} m/s2\n", landing.peak_deceleration_mps2());
+    if (const auto touchdown = landing.touchdown())
+        text += fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, {:.0f} m from the target, at {:.4f}, {:.4f}\n",
+                            touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->miss_m,
+                            touchdown->latitude_deg, touchdown->longitude_deg);
+    const auto& tones = rehearsal.tones();
+    text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
+                        rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);
+    text += telemetry::text_of(rehearsal.proof()) + '\n';
+    for (const auto& refusal : rehearsal.script_refusals()) text += "scripted command refused: " + refusal + '\n';
+    text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",
+                        rehearsal.digest(), rehearsal.cycles(), landing.counters().overruns, wall_s,
+                        real_time_factor(rehearsal, wall_s));
+    return text;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "server/rehearsal/rehearsal.hpp"
+
+#include <string>
+
+namespace aeolis::server {
+
+/// One landing as `aeolis rehearse` prints it.
+///
+/// json   the object of docs/architecture.md, one line; a number that is not finite is null
+/// table  the same for people
+std::string landing_json(const Rehearsal& rehearsal, double wall_s);
+std::string landing_table(const Rehearsal& rehearsal, double wall_s);
+
+} // namespace aeolis::server

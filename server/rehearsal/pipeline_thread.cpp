@@ -1,0 +1,133 @@
+#include "server/rehearsal/pipeline_thread.hpp"
+
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::chrono::milliseconds retry_interval{500}; // ours: a full disk does not empty faster
+constexpr int retries_when_closing = 4;                  // then the last commit is given up, and said so
+
+} // namespace
+
+void Delivery::add(const simulation::CycleReport& report) {
+    entries.insert(entries.end(), report.packets.begin(), report.packets.end());
+    entries.insert(entries.end(), report.tones.begin(), report.tones.end());
+    entries.insert(entries.end(), report.links.begin(), report.links.end());
+}
+
+PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
+                               pipeline::Publish publish)
+    : archive_(std::move(archive)), pipeline_(archive_, dictionary), faults_(faults) {
+    pipeline_.on_publish(
+        [this, publish = std::move(publish)](std::shared_ptr<const pipeline::PublishedBatch> batch) {
+            ++batches_;
+            items_ += batch->last_seq - batch->first_seq + 1;
+            if (publish) publish(std::move(batch));
+        });
+    thread_ = std::thread{[this] { run(); }};
+}
+
+PipelineThread::~PipelineThread() {
+    jobs_.close();
+    thread_.join();
+}
+
+Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start) {
+    Begin job{start, {}};
+    auto done = job.done.get_future();
+    if (!jobs_.push(std::move(job))) return Error{"the archive is closing"};
+    return done.get();
+}
+
+bool PipelineThread::deliver(Delivery delivery) {
+    return !given_up_ && jobs_.push(std::move(delivery)) && !given_up_;
+}
+
+Result<void> PipelineThread::finish(const archive::RunEnd& end) {
+    Finish job{end, {}};
+    auto done = job.done.get_future();
+    if (!jobs_.push(std::move(job))) return Error{"the archive is closing"};
+    return done.get();
+}
+
+std::string PipelineThread::fault() const {
+    const std::scoped_lock lock{fault_mutex_};
+    return fault_;
+}
+
+PipelineThread::Figures PipelineThread::figures() const {
+    return {deliveries_, failed_commits_, batches_, items_, jobs_.size()};
+}
+
+void PipelineThread::run() {
+    for (;;) {
+        // Nothing waits for a commit: neither does this thread need to wake for one.
+        auto job = pipeline_.pending_items() == 0
+                       ? jobs_.pop()
+                       : jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval);
+        if (!job && pipeline_.pending_items() == 0) return;
+        pipeline_.want_items(items_wanted_);
+        if (job) {
+            if (auto* begin = std::get_if<Begin>(&*job)) {
+                begin->done.set_value(pipeline_.begin(begin->start));
+            } else if (auto* delivery = std::get_if<Delivery>(&*job)) {
+                take(*delivery);
+            } else {
+                auto& finish = std::get<Finish>(*job);
+                if (insist([&] { return pipeline_.finish(finish.end); }))
+                    finish.done.set_value({});
+                else
+                    finish.done.set_value(Error{fault()});
+            }
+        }
+        insist([&] { return pipeline_.commit_if_due(std::chrono::steady_clock::now()); });
+        if (!job && jobs_.closed() && (given_up_ || !pipeline_.commit().ok())) return;
+    }
+}
+
+void PipelineThread::take(Delivery& delivery) {
+    ++deliveries_;
+    for (auto& entry : delivery.entries) {
+        // Refused only while too much waits for a failing disk: then that must be committed first.
+        const auto accepted = insist([&]() -> Result<void> {
+            auto result = std::visit([&](auto& each) { return pipeline_.accept(each); }, entry);
+            return result;
+        });
+        if (!accepted) return;
+    }
+    pipeline_.relay_progress(delivery.relay_progress);
+    if (delivery.when_durable.empty()) return;
+    if (!insist([&] { return pipeline_.commit(); })) return;
+    for (const auto& tell : delivery.when_durable) tell();
+}
+
+bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
+    for (int tries = 0; !given_up_; ++tries) {
+        auto result = attempt();
+        if (result) {
+            if (tries > 0) {
+                spdlog::info("archive: writing goes on");
+                const std::scoped_lock lock{fault_mutex_};
+                fault_.clear();
+            }
+            return true;
+        }
+        ++failed_commits_;
+        if (tries == 0) {
+            spdlog::error("archive: {}", result.error().message);
+            const std::scoped_lock lock{fault_mutex_};
+            fault_ = result.error().message;
+        }
+        if (faults_ == Faults::give_up || (jobs_.closed() && tries >= retries_when_closing)) {
+            given_up_ = true;
+            break;
+        }
+        std::this_thread::sleep_for(retry_interval);
+        const auto committed = pipeline_.commit(); // what waits goes first: accept() can then succeed
+        (void)committed;
+    }
+    return false;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,89 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "server/archive/archive.hpp"
+#include "server/pipeline/pipeline.hpp"
+#include "server/rehearsal/bounded_queue.hpp"
+#include "simulation/landing.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <thread>
+#include <variant>
+#include <vector>
+
+namespace aeolis::server {
+
+/// What a run hands to the archive at once, in the order in which it reached Earth.
+struct Delivery {
+    using Entry = std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState,
+                               archive::StageRecord>;
+    std::vector<Entry> entries;
+    double relay_progress = 0.0;
+    std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
+
+    void add(const simulation::CycleReport& report);
+};
+
+/// The only writer of the archive: takes deliveries, commits, publishes.
+///
+/// In       deliveries of one run at a time, through a queue of `deliveries_max`: who delivers waits when it is full
+/// Out      what the pipeline publishes, on this thread
+/// Faults   a failed commit is told once, and tried again every half second; the run waits meanwhile and nothing is
+///          lost. With `Faults::give_up` (one landing without a console) the first failure ends it.
+class PipelineThread {
+  public:
+    static constexpr std::size_t deliveries_max = 64; ///< ours: some 64 × 256 units, about 2 MB
+
+    enum class Faults { hold, give_up };
+    PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
+                   pipeline::Publish publish);
+    ~PipelineThread(); ///< takes what is in the queue, then ends
+
+    /// Waits until the run is in the archive.
+    Result<archive::RunId> begin(const archive::RunStart& start);
+    /// Waits while the queue is full. False when writing was given up.
+    bool deliver(Delivery delivery);
+    /// Waits until everything delivered is durable and the run is marked finished.
+    Result<void> finish(const archive::RunEnd& end);
+
+    void want_items(bool wanted) { items_wanted_ = wanted; }
+    /// Given up, or held right now; empty when all is well.
+    std::string fault() const;
+
+    struct Figures {
+        std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
+        std::size_t waiting = 0;
+    };
+    Figures figures() const;
+
+  private:
+    struct Begin {
+        archive::RunStart start;
+        std::promise<Result<archive::RunId>> done;
+    };
+    struct Finish {
+        archive::RunEnd end;
+        std::promise<Result<void>> done;
+    };
+    using Job = std::variant<Begin, Delivery, Finish>;
+
+    void run();
+    void take(Delivery& delivery);
+    /// Repeats `attempt` until it succeeds; false when that is given up.
+    bool insist(const std::function<Result<void>()>& attempt);
+
+    archive::Archive archive_;
+    pipeline::Pipeline pipeline_;
+    Faults faults_;
+    BoundedQueue<Job> jobs_{deliveries_max};
+    std::atomic<bool> items_wanted_{true}, given_up_{false};
+    std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    mutable std::mutex fault_mutex_;
+    std::string fault_;
+    std::thread thread_;
+};
+
+} // namespace aeolis::server

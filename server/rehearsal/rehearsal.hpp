@@ -1,0 +1,97 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+#include "server/gateway/command_gateway.hpp"
+#include "server/rehearsal/digest.hpp"
+#include "simulation/landing.hpp"
+#include "telemetry/proof.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// A timepoint as the recording tells it.
+struct RecordedFiring {
+    std::string name;
+    double fired_sclk = 0.0;
+    std::string verdict;
+};
+
+struct ToneScore {
+    std::uint64_t sent = 0, decoded = 0, wrong = 0, missed = 0;
+};
+
+/// One run: the landing, its command path, its script, and what is summed up over it. No thread, no clock, no disk.
+///
+/// In       cycles to step; commands                    Out   the cycle's report; stages of commands; the score
+/// Rate     as fast as it is called                     Memory   the recording and its register: some tens of megabytes
+/// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
+class Rehearsal {
+  public:
+    /// The dictionary must outlive this.
+    Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+              const dictionary::Dictionary& dictionary);
+
+    /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
+    const simulation::CycleReport& step();
+
+    v1::CommandReply submit(const v1::CommandRequest& request);
+
+    /// Stages since the last call; their `seq` is not given yet.
+    std::vector<archive::StageRecord> take_stages();
+    /// Reasons for which commands of the scenario's own script were refused.
+    const std::vector<std::string>& script_refusals() const { return script_refusals_; }
+
+    bool finished() const { return !broken_.empty() || landing_.finished(); }
+    std::string outcome() const; ///< running, touchdown, impact, lost, not_commanded, timeout
+    std::string outcome_reason() const;
+    std::string digest() const { return digest_.text(); }
+
+    archive::RunStart run_start(double pace) const;
+    v1::Clocks clocks() const;
+
+    const simulation::Scenario& scenario() const { return scenario_; }
+    const simulation::Landing& landing() const { return landing_; }
+    const CommandGateway& gateway() const { return gateway_; }
+    std::uint64_t seed() const { return seed_; }
+    std::uint64_t cycles() const { return cycles_; }
+
+    // ---- the score ---------------------------------------------------------------------------------------------
+    const std::vector<simulation::TruthEvent>& events() const { return events_; }
+    const std::vector<RecordedFiring>& firings() const { return firings_; }
+    const ToneScore& tones() const { return tones_; }
+    /// Real time against the recording: as it came down; when none comes (no touchdown), as it lies in NVM.
+    telemetry::Proof proof() const;
+
+  private:
+    void send_script();
+    void take(const simulation::CycleReport& report);
+    void note_firings(std::span<const std::uint8_t> recorded);
+
+    simulation::Scenario scenario_;
+    const dictionary::Dictionary& dictionary_;
+    std::uint64_t seed_ = 0, case_number_ = 0;
+    simulation::Landing landing_;
+    CommandGateway gateway_;
+    std::vector<simulation::ScriptedCommand> script_; ///< by time, the next one last
+    std::vector<archive::StageRecord> stages_;
+    std::vector<std::string> script_refusals_;
+    Digest digest_;
+    std::uint64_t cycles_ = 0;
+    std::string broken_; ///< the condition that failed in the simulation
+
+    const dictionary::Packet* firing_packet_ = nullptr;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
+    std::vector<simulation::TruthEvent> events_;
+    std::vector<RecordedFiring> firings_;
+    ToneScore tones_;
+    telemetry::UnitRegister units_;
+    simulation::CycleReport nothing_;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,100 @@
+#include "server/rehearsal/rehearsal_desk.hpp"
+
+#include "server/scenario/scenario_text.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+Result<double> checked_pace(double pace) {
+    if (std::isfinite(pace) && (pace == 0.0 || (pace >= 1.0 && pace <= RehearsalRunner::pace_max))) return pace;
+    return Error{fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace,
+                             RehearsalRunner::pace_max)};
+}
+
+} // namespace
+
+RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
+                             PipelineThread& pipeline, Post post, Callbacks callbacks)
+    : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
+      callbacks_(std::move(callbacks)) {}
+
+RehearsalDesk::~RehearsalDesk() = default;
+
+void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
+    const auto pace = checked_pace(request.pace());
+    if (!pace) return began(pace.error());
+    if (request.has_inline_scenario() && !request.scenario().empty())
+        return began(Error{"scenario and inline_scenario: one of them, not both"});
+    auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
+                                                  : scenarios_.scenario(request.scenario());
+    if (!scenario) return began(scenario.error());
+    start(std::move(*scenario), request.seed(), *pace, std::move(began));
+}
+
+void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
+    if (going_on())
+        return began(Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())});
+    runner_.reset();
+    RehearsalRunner::Callbacks callbacks;
+    callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {
+        post_([this, began, state = std::move(state)] {
+            if (state) {
+                state_ = *state;
+                callbacks_.on_state(state_);
+            }
+            began(state);
+        });
+    };
+    callbacks.on_state = [this](v1::RunState state) {
+        post_([this, state = std::move(state)]() mutable {
+            state_ = state;
+            callbacks_.on_state(std::move(state));
+        });
+    };
+    callbacks.on_clocks = [this](v1::Clocks clocks) {
+        post_([this, clocks = std::move(clocks)]() mutable { callbacks_.on_clocks(std::move(clocks)); });
+    };
+    runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,
+                                                std::move(callbacks));
+}
+
+Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {
+    if (control.action_case() == v1::RehearsalControl::kStart) {
+        start(control.start(), std::move(began));
+        return {};
+    }
+    if (!going_on()) return Error{"no rehearsal goes on"};
+    switch (control.action_case()) {
+    case v1::RehearsalControl::kPause: runner_->pause(control.pause()); return {};
+    case v1::RehearsalControl::kPace: {
+        const auto pace = checked_pace(control.pace());
+        if (!pace) return pace.error();
+        runner_->set_pace(*pace);
+        return {};
+    }
+    case v1::RehearsalControl::kStop:
+        if (!control.stop()) return Error{"stop: false asks for nothing"};
+        runner_->stop();
+        return {};
+    default: return Error{"the control says nothing: start, pause, pace or stop is wanted"};
+    }
+}
+
+void RehearsalDesk::command(v1::CommandRequest request, RehearsalRunner::Reply reply) {
+    v1::CommandReply refusal;
+    refusal.set_request(request.request());
+    if (!going_on())
+        refusal.set_reason("no run goes on: nothing listens");
+    else if (request.run() != 0 && request.run() != state_.run())
+        refusal.set_reason(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
+    else
+        return runner_->submit(std::move(request), [this, reply = std::move(reply)](v1::CommandReply answer) {
+            post_([reply, answer = std::move(answer)] { reply(answer); });
+        });
+    reply(std::move(refusal));
+}
+
+} // namespace aeolis::server

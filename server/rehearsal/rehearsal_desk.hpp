@@ -1,0 +1,51 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "aeolis/v1/stream.pb.h"
+#include "common/result.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "server/rehearsal/rehearsal_runner.hpp"
+#include "server/scenario/scenario_library.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace aeolis::server {
+
+/// Where rehearsals are started, paced and stopped, and commands are taken to the one that goes on: one at a time.
+///
+/// Thread   the network thread only; Callbacks are given through `post`, which brings a function there
+class RehearsalDesk {
+  public:
+    struct Callbacks {
+        std::function<void(v1::RunState)> on_state;
+        std::function<void(v1::Clocks)> on_clocks;
+    };
+    using Post = std::function<void(std::function<void()>)>;
+    using Began = std::function<void(Result<v1::RunState>)>;
+
+    RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
+                  Post post, Callbacks callbacks);
+    ~RehearsalDesk();
+
+    /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
+    /// archive.
+    void start(const v1::StartRehearsal& request, Began began);
+    void start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
+    Result<void> control(const v1::RehearsalControl& control, Began began);
+    void command(v1::CommandRequest request, RehearsalRunner::Reply reply);
+
+    const v1::RunState& current() const { return state_; } ///< run 0: none since the server started
+    bool going_on() const { return runner_ && !runner_->over(); }
+
+  private:
+    const ScenarioLibrary& scenarios_;
+    const dictionary::Dictionary& dictionary_;
+    PipelineThread& pipeline_;
+    Post post_;
+    Callbacks callbacks_;
+    v1::RunState state_;
+    std::unique_ptr<RehearsalRunner> runner_;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,254 @@
+#include "server/rehearsal/rehearsal_runner.hpp"
+
+#include "server/rehearsal/rehearsal.hpp"
+#include "server/rehearsal/wall_clock.hpp"
+
+#include <algorithm>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+
+constexpr milliseconds delivery_interval{5};    // half a commit's: a commit then holds what is 15 ms old at most
+constexpr std::size_t delivery_entries = 256;   // or so many, when it goes fast
+constexpr milliseconds clocks_interval{100};    // ten times a second: brief of the stream
+constexpr milliseconds state_interval{1000};
+constexpr milliseconds shortest_wait{1};        // shorter ones cost more than they pace
+constexpr double behind_s_max = 0.25;           // later than that the pace is not attained; do not rush to catch up
+
+} // namespace
+
+RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
+                                 const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
+                                 Callbacks callbacks)
+    : scenario_(std::move(scenario)), seed_(seed), dictionary_(dictionary), pipeline_(pipeline),
+      callbacks_(std::move(callbacks)) {
+    control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
+    thread_ = std::thread{[this] { run(); }};
+}
+
+RehearsalRunner::~RehearsalRunner() {
+    stop();
+    thread_.join();
+}
+
+void RehearsalRunner::pause(bool paused) {
+    const std::scoped_lock lock{mutex_};
+    control_.paused = paused;
+    control_.changed = true;
+    changed_.notify_one();
+}
+
+void RehearsalRunner::set_pace(double pace) {
+    const std::scoped_lock lock{mutex_};
+    control_.pace = std::clamp(pace, 0.0, pace_max);
+    control_.changed = true;
+    changed_.notify_one();
+}
+
+void RehearsalRunner::stop() {
+    const std::scoped_lock lock{mutex_};
+    control_.stop = true;
+    control_.changed = true;
+    changed_.notify_one();
+}
+
+void RehearsalRunner::submit(v1::CommandRequest request, Reply reply) {
+    v1::CommandReply refusal;
+    refusal.set_request(request.request());
+    {
+        const std::scoped_lock lock{mutex_};
+        if (over_ || control_.stop) {
+            refusal.set_reason("the run is over: nothing listens on board");
+        } else if (control_.requests.size() >= requests_max) {
+            refusal.set_reason(fmt::format("{} commands wait already", requests_max));
+        } else {
+            control_.requests.emplace_back(std::move(request), std::move(reply));
+            control_.changed = true;
+            changed_.notify_one();
+            return;
+        }
+    }
+    reply(std::move(refusal));
+}
+
+bool RehearsalRunner::over() const {
+    const std::scoped_lock lock{mutex_};
+    return over_;
+}
+
+void RehearsalRunner::run() {
+    Rehearsal rehearsal{scenario_, seed_, 0, dictionary_};
+    start_ = rehearsal.run_start(pace_);
+    const auto run = pipeline_.begin(start_);
+    if (run) {
+        run_id_ = *run;
+        spdlog::info("run {} begins: {} seed {} pace {}", run_id_.value, scenario_.name, seed_, pace_);
+        callbacks_.on_begun(state(rehearsal));
+        fly(rehearsal);
+    } else {
+        callbacks_.on_begun(run.error());
+    }
+    std::vector<std::pair<v1::CommandRequest, Reply>> late;
+    {
+        const std::scoped_lock lock{mutex_};
+        over_ = true;
+        late.swap(control_.requests);
+    }
+    for (auto& [request, reply] : late) {
+        v1::CommandReply refusal;
+        refusal.set_request(request.request());
+        refusal.set_reason("the run is over: nothing listens on board");
+        reply(std::move(refusal));
+    }
+}
+
+void RehearsalRunner::fly(Rehearsal& rehearsal) {
+    auto anchor = Clock::now(); // the pace counts from here
+    auto anchor_cycles = rehearsal.cycles();
+    state_told_ = clocks_told_ = delivered_ = anchor;
+    while (!rehearsal.finished() && !stopped_ && !archive_gave_up_) {
+        auto now = Clock::now();
+        // Time when the next cycle is due; without pace it always is.
+        auto due = now;
+        if (pace_ > 0.0) {
+            const double flown_s = static_cast<double>(rehearsal.cycles() - anchor_cycles) * seconds_per_tick / pace_;
+            due = anchor + std::chrono::duration_cast<Clock::duration>(duration<double>{flown_s});
+        }
+        if (paused_) due = now + clocks_interval;
+        const bool wait = due - now >= shortest_wait;
+        if (wait) archive_gave_up_ = !deliver(rehearsal, now);
+        tell(rehearsal, now, false);
+
+        Control control;
+        {
+            std::unique_lock lock{mutex_};
+            if (wait) changed_.wait_until(lock, due, [&] { return control_.changed; });
+            control.paused = control_.paused;
+            control.stop = control_.stop;
+            control.pace = control_.pace;
+            control.changed = std::exchange(control_.changed, false);
+            control.requests.swap(control_.requests);
+        }
+        now = Clock::now();
+        if (control.changed) {
+            const bool different = paused_ != control.paused || pace_ != control.pace;
+            paused_ = control.paused;
+            pace_ = control.pace;
+            stopped_ = control.stop;
+            send_requests(rehearsal, std::move(control.requests));
+            if (different) {
+                anchor = now;
+                anchor_cycles = rehearsal.cycles();
+                tell(rehearsal, now, true);
+            }
+            continue;
+        }
+        if (paused_) {
+            anchor = now;
+            anchor_cycles = rehearsal.cycles();
+            continue;
+        }
+        if (now - due > duration<double>{behind_s_max}) {
+            anchor = now;
+            anchor_cycles = rehearsal.cycles();
+        }
+        collect(rehearsal, rehearsal.step());
+        if (now - delivered_ >= delivery_interval || delivery_.entries.size() >= delivery_entries)
+            archive_gave_up_ = archive_gave_up_ || !deliver(rehearsal, now);
+    }
+    digest_ = rehearsal.digest();
+    deliver(rehearsal, Clock::now());
+    const bool ended = rehearsal.finished();
+    const auto finished =
+        pipeline_.finish({ended || rehearsal.outcome() != "running" ? rehearsal.outcome() : "stopped",
+                          ended ? rehearsal.outcome_reason() : "stopped by the controller", digest_, wall_clock_text()});
+    finished_ = true;
+    if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_id_.value, finished.error().message);
+    for (const auto& refusal : rehearsal.script_refusals())
+        spdlog::warn("run {}: scripted command refused: {}", run_id_.value, refusal);
+    spdlog::info("run {} ends: {} {}", run_id_.value, rehearsal.outcome(), rehearsal.outcome_reason());
+    tell(rehearsal, Clock::now(), true);
+}
+
+void RehearsalRunner::send_requests(Rehearsal& rehearsal,
+                                    std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
+    for (auto& [request, reply] : requests) {
+        auto answer = rehearsal.submit(request);
+        spdlog::info("run {}: command {} {}", run_id_.value, request.command(),
+                     answer.accepted() ? fmt::format("radiated as number {}", answer.command())
+                                       : "refused: " + answer.reason());
+        if (!answer.accepted()) {
+            reply(std::move(answer));
+            continue;
+        }
+        for (auto& stage : rehearsal.take_stages()) delivery_.entries.emplace_back(std::move(stage));
+        delivery_.when_durable.push_back(
+            [answer = std::move(answer), reply = std::move(reply)]() mutable { reply(std::move(answer)); });
+    }
+    if (!delivery_.when_durable.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
+}
+
+void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
+    delivery_.add(report);
+    for (auto& stage : rehearsal.take_stages()) delivery_.entries.emplace_back(std::move(stage));
+}
+
+bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now) {
+    delivered_ = now;
+    if (delivery_.entries.empty() && delivery_.when_durable.empty()) return true;
+    delivery_.relay_progress = rehearsal.landing().relay_progress();
+    return pipeline_.deliver(std::exchange(delivery_, {}));
+}
+
+void RehearsalRunner::tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed) {
+    if (changed || now - clocks_told_ >= clocks_interval) {
+        clocks_told_ = now;
+        callbacks_.on_clocks(rehearsal.clocks());
+    }
+    if (now - state_told_ >= state_interval) {
+        const double wall_s = duration<double>{now - state_told_}.count();
+        attained_pace_ = static_cast<double>(rehearsal.cycles() - cycles_told_) * seconds_per_tick / wall_s;
+        cycles_told_ = rehearsal.cycles();
+        state_told_ = now;
+        changed = true;
+    }
+    if (changed) callbacks_.on_state(state(rehearsal));
+}
+
+std::string RehearsalRunner::state_word() const {
+    if (finished_) return "finished";
+    return paused_ ? "paused" : "running";
+}
+
+v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
+    v1::RunState state;
+    state.set_run(run_id_.value);
+    state.set_scenario(start_.scenario);
+    state.set_title(start_.title);
+    state.set_venue(start_.venue);
+    state.set_seed(seed_);
+    state.set_state(state_word());
+    state.set_outcome(stopped_ && rehearsal.outcome() == "running" ? "stopped" : rehearsal.outcome());
+    state.set_pace(pace_);
+    state.set_attained_pace(attained_pace_);
+    state.set_started(start_.started);
+    state.set_entry_sclk(start_.entry.seconds);
+    state.set_start_sclk(start_.start.seconds);
+    state.set_light_time_s(start_.light_time_s);
+    *state.mutable_clocks() = rehearsal.clocks();
+    state.set_relay_progress(rehearsal.landing().relay_progress());
+    for (const auto& [name, value] : start_.solution) {
+        auto& argument = *state.add_solution();
+        argument.set_name(name);
+        argument.set_value(value);
+    }
+    state.set_tone_model(start_.tone_model);
+    state.set_digest(digest_);
+    return state;
+}
+
+} // namespace aeolis::server

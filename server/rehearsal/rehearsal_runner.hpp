@@ -1,0 +1,93 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "dictionaries/dictionary.hpp"
+#include "server/rehearsal/pipeline_thread.hpp"
+#include "simulation/scenario.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace aeolis::server {
+
+class Rehearsal;
+
+/// Flies one rehearsal in its own thread, at the pace asked for, and hands what reaches Earth to the archive.
+///
+/// In       pause, pace, stop, commands: from any thread, done between two cycles
+/// Out      deliveries to the pipeline; state on every change and once a second, clocks ten times a second
+/// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
+///          slower, nothing is skipped, and `attained_pace` says so.
+/// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error
+class RehearsalRunner {
+  public:
+    static constexpr double pace_max = 1000.0;
+    static constexpr std::size_t requests_max = 64; ///< commands waiting for the next cycle; ours
+
+    /// Called on the rehearsal's thread.
+    struct Callbacks {
+        std::function<void(Result<v1::RunState>)> on_begun; ///< once; after an error nothing else comes
+        std::function<void(v1::RunState)> on_state;
+        std::function<void(v1::Clocks)> on_clocks;
+    };
+    using Reply = std::function<void(v1::CommandReply)>;
+
+    /// Dictionary and pipeline must outlive this.
+    RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
+                    const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
+    ~RehearsalRunner(); ///< stops the run and waits for its thread
+
+    void pause(bool paused);
+    void set_pace(double pace);
+    void stop();
+    /// The reply comes on the pipeline's thread once the command's stages are durable; a refusal at once.
+    void submit(v1::CommandRequest request, Reply reply);
+    bool over() const; ///< the thread has nothing more to do
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    struct Control {
+        bool paused = false, stop = false, changed = false;
+        double pace = 1.0;
+        std::vector<std::pair<v1::CommandRequest, Reply>> requests;
+    };
+
+    void run();
+    void fly(Rehearsal& rehearsal);
+    void send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests);
+    void collect(Rehearsal& rehearsal, const simulation::CycleReport& report);
+    bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
+    void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);
+    v1::RunState state(const Rehearsal& rehearsal) const;
+    std::string state_word() const;
+
+    simulation::Scenario scenario_;
+    std::uint64_t seed_;
+    const dictionary::Dictionary& dictionary_;
+    PipelineThread& pipeline_;
+    Callbacks callbacks_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    Control control_; ///< under mutex_
+    bool over_ = false;
+
+    // Of the rehearsal's thread only.
+    archive::RunId run_id_;
+    archive::RunStart start_;
+    Delivery delivery_;
+    bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
+    double pace_ = 1.0, attained_pace_ = 0.0;
+    std::string digest_;
+    Clock::time_point delivered_{}, clocks_told_{}, state_told_{};
+    std::uint64_t cycles_told_ = 0;
+
+    std::thread thread_;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,267 @@
+#include "server/scenario/scenario_text.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+#include <initializer_list>
+#include <sstream>
+
+namespace aeolis::server {
+namespace {
+
+using google::protobuf::Message;
+using simulation::Scenario;
+
+constexpr std::size_t scenario_octets_max = 1 << 20;  // ours: ours are under 2 KiB
+
+/// A field of the message and the member of the struct that carry the same number under the same name.
+template <typename Struct>
+struct Bound {
+    const char* field;
+    double Struct::* member;
+};
+template <typename Struct>
+using Bindings = std::initializer_list<Bound<Struct>>;
+
+#define AEOLIS_BIND(Struct, member)                                                                                    \
+    { #member, &simulation::Struct::member }
+
+const Bindings<simulation::EntryState> entry_fields = {
+    AEOLIS_BIND(EntryState, radius_m),        AEOLIS_BIND(EntryState, latitude_deg),
+    AEOLIS_BIND(EntryState, longitude_deg),   AEOLIS_BIND(EntryState, speed_mps),
+    AEOLIS_BIND(EntryState, flight_path_deg), AEOLIS_BIND(EntryState, azimuth_deg),
+};
+const Bindings<simulation::Target> target_fields = {
+    AEOLIS_BIND(Target, latitude_deg),
+    AEOLIS_BIND(Target, longitude_deg),
+    AEOLIS_BIND(Target, radius_m),
+};
+const Bindings<simulation::Masses> mass_fields = {
+    AEOLIS_BIND(Masses, cruise_stage_kg),    AEOLIS_BIND(Masses, cruise_balance_each_kg),
+    AEOLIS_BIND(Masses, entry_kg),           AEOLIS_BIND(Masses, entry_balance_each_kg),
+    AEOLIS_BIND(Masses, heatshield_kg),      AEOLIS_BIND(Masses, backshell_and_parachute_kg),
+    AEOLIS_BIND(Masses, powered_descent_kg), AEOLIS_BIND(Masses, propellant_kg),
+    AEOLIS_BIND(Masses, rover_kg),
+};
+const Bindings<simulation::Dispersions> dispersion_fields = {
+    AEOLIS_BIND(Dispersions, delivery_flight_path_deg), AEOLIS_BIND(Dispersions, delivery_position_m),
+    AEOLIS_BIND(Dispersions, knowledge_position_m),     AEOLIS_BIND(Dispersions, knowledge_velocity_mps),
+    AEOLIS_BIND(Dispersions, density_fraction),         AEOLIS_BIND(Dispersions, drag_fraction),
+    AEOLIS_BIND(Dispersions, parachute_drag_fraction),  AEOLIS_BIND(Dispersions, wind_mps),
+    AEOLIS_BIND(Dispersions, imu_bias_mps2),            AEOLIS_BIND(Dispersions, gyro_bias_rps),
+    AEOLIS_BIND(Dispersions, attitude_rad),             AEOLIS_BIND(Dispersions, radar_range_fraction),
+    AEOLIS_BIND(Dispersions, radar_velocity_mps),
+};
+const Bindings<simulation::Radio> radio_fields = {
+    AEOLIS_BIND(Radio, light_time_s),
+    AEOLIS_BIND(Radio, uhf_rate_bps),
+    AEOLIS_BIND(Radio, blackout_start_speed_mps),
+    AEOLIS_BIND(Radio, blackout_end_speed_mps),
+    AEOLIS_BIND(Radio, blackout_start_altitude_m),
+    AEOLIS_BIND(Radio, uhf_loss_fraction),
+    AEOLIS_BIND(Radio, x_band_c_n0_dbhz),
+    AEOLIS_BIND(Radio, earth_set_after_entry_s),
+    AEOLIS_BIND(Radio, relay_rate_bps),
+    AEOLIS_BIND(Radio, relay_start_after_touchdown_s),
+};
+const Bindings<Scenario> scenario_fields = {
+    AEOLIS_BIND(Scenario, start_before_entry_s),   AEOLIS_BIND(Scenario, end_after_touchdown_s),
+    AEOLIS_BIND(Scenario, timeout_after_entry_s),  AEOLIS_BIND(Scenario, parachute_drag_area_m2),
+    AEOLIS_BIND(Scenario, steady_wind_east_mps),   AEOLIS_BIND(Scenario, steady_wind_north_mps),
+};
+const Bindings<Scenario> trigger_fields = {
+    AEOLIS_BIND(Scenario, parachute_speed_mps),
+    AEOLIS_BIND(Scenario, heatshield_speed_mps),
+    AEOLIS_BIND(Scenario, backshell_altitude_m),
+};
+const Bindings<simulation::DensityScale> density_fields = {
+    AEOLIS_BIND(DensityScale, altitude_m),
+    AEOLIS_BIND(DensityScale, scale),
+};
+#undef AEOLIS_BIND
+
+const google::protobuf::FieldDescriptor& field_of(const Message& message, const char* name) {
+    const auto* field = message.GetDescriptor()->FindFieldByName(name);
+    AEOLIS_CHECK(field != nullptr);
+    return *field;
+}
+
+template <typename Struct>
+void read(const Message& message, const Bindings<Struct>& bindings, Struct& into) {
+    for (const auto& bound : bindings) {
+        const auto& field = field_of(message, bound.field);
+        if (!field.has_presence() || message.GetReflection()->HasField(message, &field))
+            into.*bound.member = message.GetReflection()->GetDouble(message, &field);
+    }
+}
+
+template <typename Struct>
+void write(const Struct& from, const Bindings<Struct>& bindings, Message& message) {
+    for (const auto& bound : bindings)
+        message.GetReflection()->SetDouble(&message, &field_of(message, bound.field), from.*bound.member);
+}
+
+/// Numbers of every field, repeated and nested ones too, that are not finite: text format accepts "nan" and "inf".
+void collect_not_finite(const Message& message, const std::string& prefix, std::vector<std::string>& lines) {
+    const auto& reflection = *message.GetReflection();
+    std::vector<const google::protobuf::FieldDescriptor*> fields;
+    reflection.ListFields(message, &fields);
+    for (const auto* field : fields) {
+        const std::string name = prefix + field->name();
+        const int count = field->is_repeated() ? reflection.FieldSize(message, field) : 1;
+        for (int i = 0; i < count; ++i) {
+            const std::string where = field->is_repeated() ? fmt::format("{}[{}]", name, i) : name;
+            if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_DOUBLE) {
+                const double value = field->is_repeated() ? reflection.GetRepeatedDouble(message, field, i)
+                                                          : reflection.GetDouble(message, field);
+                if (!std::isfinite(value)) lines.push_back(fmt::format("{}: {} is not a finite number", where, value));
+            } else if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
+                collect_not_finite(field->is_repeated() ? reflection.GetRepeatedMessage(message, field, i)
+                                                        : reflection.GetMessage(message, field),
+                                   where + ".", lines);
+            }
+        }
+    }
+}
+
+std::string joined(const std::vector<std::string>& lines, const std::string& prefix) {
+    std::string text;
+    for (const auto& line : lines) text += (text.empty() ? "" : "\n") + prefix + line;
+    return text;
+}
+
+class Faults : public google::protobuf::io::ErrorCollector {
+  public:
+    explicit Faults(std::string file) : file_(std::move(file)) {}
+    void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
+        lines_.push_back(fmt::format("{}:{}:{}: {}", file_, line + 1, column + 1, message));
+    }
+    std::string text() const { return joined(lines_, ""); }
+
+  private:
+    std::string file_;
+    std::vector<std::string> lines_;
+};
+
+std::string utc_text(Scet scet) {
+    using namespace std::chrono;
+    const sys_time<microseconds> time{sys_days{year{2000} / January / 1} + hours{12} + microseconds{scet.microseconds}};
+    const auto day = floor<days>(time);
+    const year_month_day date{day};
+    const hh_mm_ss clock{time - day};
+    return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}.{:06}", static_cast<int>(date.year()),
+                       static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), clock.hours().count(),
+                       clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
+}
+
+}  // namespace
+
+Result<Scenario> scenario_from_message(const v1::Scenario& message) {
+    std::vector<std::string> faults;
+    collect_not_finite(message, "", faults);
+    if (!faults.empty()) return Error{joined(faults, "")};
+    if (message.name().empty()) return Error{"name: missing"};
+    if (message.entry_scet().empty()) return Error{"entry_scet: missing"};
+    const auto entry_scet = scet_from_text(message.entry_scet());
+    if (!entry_scet) return Error{"entry_scet: " + entry_scet.error().message};
+
+    Scenario scenario;
+    scenario.name = message.name();
+    scenario.title = message.title();
+    scenario.entry_scet = *entry_scet;
+    if (message.has_entry_sclk()) scenario.entry_sclk = Sclk{message.entry_sclk()};
+    if (!is_multiple_of_tick(scenario.entry_sclk.seconds))
+        return Error{fmt::format("entry_sclk: {} is not a multiple of 1/64 s", scenario.entry_sclk.seconds)};
+    read(message, scenario_fields, scenario);
+    read(message.entry(), entry_fields, scenario.entry);
+    read(message.target(), target_fields, scenario.target);
+    read(message.masses(), mass_fields, scenario.masses);
+    read(message.dispersions(), dispersion_fields, scenario.dispersions);
+    read(message.radio(), radio_fields, scenario.radio);
+    read(message.triggers(), trigger_fields, scenario);
+    for (const auto& row : message.density_scale()) {
+        simulation::DensityScale scale;
+        read(row, density_fields, scale);
+        scenario.density_scale.push_back(scale);
+    }
+    if (message.telemetry_plan() == v1::TELEMETRY_PLAN_WIDEBAND) scenario.telemetry_plan = flight::Plan::wideband;
+    for (const auto& row : message.commands()) {
+        simulation::ScriptedCommand command;
+        command.send_before_entry_s = row.send_before_entry_s();
+        command.command = row.command();
+        command.from_solution = row.from_solution();
+        for (const auto& argument : row.arguments()) command.arguments.emplace_back(argument.name(), argument.value());
+        scenario.commands.push_back(std::move(command));
+    }
+    const auto impossible = simulation::impossible_values(scenario);
+    if (!impossible.empty()) return Error{joined(impossible, "")};
+    return scenario;
+}
+
+v1::Scenario scenario_to_message(const Scenario& scenario) {
+    v1::Scenario message;
+    message.set_name(scenario.name);
+    message.set_title(scenario.title);
+    message.set_entry_scet(utc_text(scenario.entry_scet));
+    message.set_entry_sclk(scenario.entry_sclk.seconds);
+    write(scenario, scenario_fields, message);
+    write(scenario.entry, entry_fields, *message.mutable_entry());
+    write(scenario.target, target_fields, *message.mutable_target());
+    write(scenario.masses, mass_fields, *message.mutable_masses());
+    write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
+    write(scenario.radio, radio_fields, *message.mutable_radio());
+    write(scenario, trigger_fields, *message.mutable_triggers());
+    for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
+    message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
+                                                                                 : v1::TELEMETRY_PLAN_MISSION);
+    for (const auto& command : scenario.commands) {
+        auto& row = *message.add_commands();
+        row.set_send_before_entry_s(command.send_before_entry_s);
+        row.set_command(command.command);
+        row.set_from_solution(command.from_solution);
+        for (const auto& [name, value] : command.arguments) {
+            auto& argument = *row.add_arguments();
+            argument.set_name(name);
+            argument.set_value(value);
+        }
+    }
+    return message;
+}
+
+std::string scenario_to_text(const Scenario& scenario) {
+    std::string text;
+    google::protobuf::TextFormat::PrintToString(scenario_to_message(scenario), &text);
+    return text;
+}
+
+Result<Scenario> scenario_from_text(std::string_view text, const std::string& file) {
+    v1::Scenario message;
+    Faults faults{file};
+    google::protobuf::TextFormat::Parser parser;
+    parser.RecordErrorsTo(&faults);
+    if (!parser.ParseFromString(std::string{text}, &message)) return Error{faults.text()};
+    auto scenario = scenario_from_message(message);
+    if (scenario) return scenario;
+    std::istringstream lines{scenario.error().message};
+    std::vector<std::string> named;
+    for (std::string line; std::getline(lines, line);) named.push_back(line);
+    return Error{joined(named, file + ": ")};
+}
+
+Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::is_directory(file, error)) return Error{file.string() + ": is a directory, not a scenario"};
+    std::ifstream stream{file, std::ios::binary};
+    if (!stream) return Error{file.string() + ": cannot be opened"};
+    std::string text(scenario_octets_max + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > scenario_octets_max)
+        return Error{fmt::format("{}: larger than {} octets: not a scenario", file.string(), scenario_octets_max)};
+    return scenario_from_text(text, file.string());
+}
+
+}  // namespace aeolis::server
