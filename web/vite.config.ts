@@ -9,5 +9,5 @@ export default defineConfig({
   worker: { format: 'es' },
   oxc: { jsx: { runtime: 'automatic', importSource: 'preact' } },
   server: { host: '127.0.0.1', proxy: { '/api': { target: server, ws: true } } },
-  test: { environment: 'happy-dom', include: ['src/**/*.spec.{ts,tsx}'] },
+  test: { environment: 'node', include: ['src/**/*.spec.{ts,tsx}'] },
 });

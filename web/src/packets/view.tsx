@@ -7,13 +7,13 @@ import './style.css';
 
 const opened = signal<PacketRow | undefined>(undefined);
 
-async function open(unit: number): Promise<void> {
+async function open(seq: number): Promise<void> {
   const run = store.value;
   if (!run) return;
   try {
-    const list = await ask<PacketList>('packets', `/runs/${run.id}/packets?after=${unit - 1}&limit=1`);
+    const list = await ask<PacketList>('packets', `/runs/${run.id}/packets?after=${seq - 1}&limit=1`);
     opened.value = list.packets[0];
-    if (!opened.value) notify(`unit ${unit} is not in the archive`);
+    if (!opened.value) notify(`item ${seq} is not in the archive`);
   } catch (error) {
     notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
   }
@@ -44,7 +44,7 @@ export function Packets() {
               {newestUnits(run, cutoff.value, 120).map(({ seq, fact }) => (
                 <tr key={seq}>
                   <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
-                  <td><button type="button" class="link-button" onClick={() => void open(Number(fact.unit))}>{String(fact.unit)}</button></td>
+                  <td><button type="button" class="link-button" onClick={() => void open(seq)}>{String(fact.unit)}</button></td>
                   <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
                   <td>{fact.name}</td>
                   <td class="number">{fact.octets}</td>

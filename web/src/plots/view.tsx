@@ -12,6 +12,7 @@ import { cutoff, dictionary, store, tick } from '../run/session';
 import { outages } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import { align } from './model';
+import type { Aligned } from './model';
 import './style.css';
 
 const sync = uPlot.sync('aeolis');
@@ -125,7 +126,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       }
       const data = run
         ? align(recorded, live, run.entrySclk, span.from, span.to, cutoff.value, per, width * 2)
-        : ([[], [], []] as [number[], number[], number[]]);
+        : ([[], [], []] as Aligned);
       plot.batch(() => {
         plot?.setData(data as uPlot.AlignedData, false);
         plot?.setScale('x', { min: span.from, max: span.to });

@@ -20,22 +20,26 @@ export class Series {
     }
   }
 
-  /** History comes in: what we hold is kept only where it is newer than the last point of the history. */
+  /** History comes in: of what we hold, only what is newer than its last point is kept. */
   replaceBefore(sclk: Float64Array, value: Float64Array): void {
-    const newest = sclk[sclk.length - 1];
-    if (newest === undefined) return;
+    this.replace(-Infinity, sclk[sclk.length - 1] ?? -Infinity, sclk, value);
+  }
+
+  /** All that lies within [from, to] gives way to these samples. */
+  replace(from: number, to: number, sclk: Float64Array, value: Float64Array): void {
     ++this.version;
-    const keptFrom = this.firstAfter(newest);
-    const keptSclk = this.sclk.slice(keptFrom, this.length);
-    const keptValue = this.value.slice(keptFrom, this.length);
-    this.length = 0;
-    let last = -Infinity;
-    for (let i = 0; i < sclk.length; ++i) {
-      const at = sclk[i] as number;
-      if (at >= last) this.push(at, value[i] as number);
-      last = Math.max(last, at);
-    }
-    for (let i = 0; i < keptSclk.length; ++i) this.push(keptSclk[i] as number, keptValue[i] as number);
+    const [startsAt, endsAt] = [this.firstNotBefore(from), this.firstAfter(to)];
+    const tailSclk = this.sclk.slice(endsAt, this.length);
+    const tailValue = this.value.slice(endsAt, this.length);
+    this.length = startsAt;
+    for (let i = 0; i < sclk.length; ++i) this.push(sclk[i] as number, value[i] as number);
+    for (let i = 0; i < tailSclk.length; ++i) this.push(tailSclk[i] as number, tailValue[i] as number);
+  }
+
+  private firstNotBefore(sclk: number): number {
+    let index = this.firstAfter(sclk);
+    while (index > 0 && this.sclk[index - 1] === sclk) --index;
+    return index;
   }
 
   /** Index of the first sample later than `sclk`. */

@@ -2,6 +2,7 @@
 import { computed, effect, signal } from '@preact/signals';
 import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
+import { LAYOUT } from '../layout';
 import { Dictionary } from './dictionary';
 import { RunStore } from './store';
 
@@ -47,6 +48,8 @@ export function modeNow(): Mode {
   if (pastRange.value) return 'past';
   return store.value.going ? 'rehearsal' : 'finished';
 }
+
+const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
 
 let worker: Worker | undefined;
 let lastAsk = 0;
@@ -188,12 +191,17 @@ async function refreshTimepoints(): Promise<void> {
   }
 }
 
+const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
+
 async function refreshRuns(): Promise<void> {
   try {
     const list = await ask<RunList>('runs', '/runs');
     runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
     const mine = list.runs.find((run) => Number(run.run) === store.value?.id);
     if (mine && store.value && !store.value.going) store.value.update(mine);
+    // A run that began while the one we follow was already over, or lost with its server: go there.
+    const going = list.runs.find(isGoing);
+    if (watched.value === 0 && going && store.value && !store.value.going && Number(going.run) !== store.value.id) watch(0);
   } catch {
     // Not connected; the header says so.
   }
@@ -214,10 +222,10 @@ export async function begin(): Promise<void> {
 
   for (let attempt = 0; ; ++attempt) {
     try {
-      const [words, list] = await Promise.all([
+      const [reply, list] = await Promise.all([
         ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'),
       ]);
-      dictionary.value = new Dictionary(words);
+      dictionary.value = new Dictionary(reply);
       runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
       break;
     } catch (error) {
@@ -227,17 +235,22 @@ export async function begin(): Promise<void> {
     }
   }
   const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
-  const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
   watched.value = chosen;
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(dictionary.value?.packets ?? []) });
+  const words = dictionary.value as Dictionary;
+  const plotted = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel)]
+    .map((names) => words.pick(names)?.name).filter((name) => name !== undefined);
+  const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted: [...new Set(plotted)], others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
     if (store.value?.going) await refreshTimepoints();
+  });
+  void everySeconds(5, async () => {
     if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory();
   });
 }

@@ -4,11 +4,10 @@ import type {
   Alarm, Clocks, CommandStage, Event, Explanation, LinkChange, TimepointFiring, Tone, Unit,
 } from '../gen/aeolis/v1/items_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
+import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
 import { Series } from './series';
 import { secondsOfDayOfYear } from './time';
-
-export const SOURCE_RECORDED = 2; // Source.RECORDED; the page itself does not load the schema
 
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
@@ -119,6 +118,12 @@ export class RunStore {
   addHistory(columns: Column[]): void {
     ++this.version;
     for (const column of columns) this.series(column).replaceBefore(column.sclk, column.value);
+  }
+
+  /** A range that was asked for: exact where what we held was thinned. */
+  addRange(columns: Column[], from_sclk: number, to_sclk: number): void {
+    ++this.version;
+    for (const column of columns) this.series(column).replace(from_sclk, to_sclk, column.sclk, column.value);
   }
 
   private series(column: Column): Series {

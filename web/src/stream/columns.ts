@@ -1,7 +1,9 @@
 // Turns the stream's batches into columns: one run of samples a channel, and facts in order of sequence number.
+import type { ChannelSeries } from '../gen/aeolis/v1/run_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
-import { Source } from '../gen/aeolis/v1/items_pb';
 import type { BatchOfFacts, Column, Fact } from './messages';
+
+export const SOURCE_RECORDED = 2; // Source.RECORDED; so that the page need not load the schema
 
 class GrowingColumn {
   sclk: number[] = [];
@@ -36,7 +38,7 @@ export class ColumnCollector {
       if (kind === undefined) continue;
       if (kind === 'samples') {
         this.thinned ||= value.thinned;
-        this.addSamples(value.sclk, value.ids, value.values, value.source === Source.RECORDED);
+        this.addSamples(value.sclk, value.ids, value.values, value.source === SOURCE_RECORDED);
       } else {
         this.facts.push({ kind, seq, fact: value } as Fact);
       }
@@ -82,4 +84,24 @@ export class ColumnCollector {
     column.sclk.push(sclk);
     column.value.push(value);
   }
+}
+
+/** Real time and recording are kept apart, so that each can be seen for itself. */
+export function splitBySource(series: ChannelSeries): Column[] {
+  const live: [number[], number[]] = [[], []];
+  const recorded: [number[], number[]] = [[], []];
+  for (let i = 0; i < series.sclk.length; ++i) {
+    const into = series.source[i] === SOURCE_RECORDED ? recorded : live;
+    into[0].push(series.sclk[i] ?? NaN);
+    into[1].push(series.value[i] ?? NaN);
+  }
+  const columns: Column[] = [];
+  for (const [part, isRecorded] of [[live, false], [recorded, true]] as const) {
+    if (part[0].length > 0) {
+      columns.push({
+        id: series.id, recorded: isRecorded, sclk: Float64Array.from(part[0]), value: Float64Array.from(part[1]),
+      });
+    }
+  }
+  return columns;
 }

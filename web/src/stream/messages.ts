@@ -40,7 +40,7 @@ export type FromWorker =
   | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
   | { type: 'run'; run: RunState | undefined; fresh: boolean }
   | { type: 'batch'; batch: BatchOfFacts }
-  | { type: 'history'; run: number; columns: Column[]; from: number; to: number }
+  | { type: 'history'; run: number; columns: Column[] }
   | { type: 'reply'; reply: CommandReply }
   | { type: 'refusal'; reason: string }
   | { type: 'answer'; ask: number; ok: true; value: unknown }
@@ -55,7 +55,7 @@ export type ControlAction =
 export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording';
 
 export type ToWorker =
-  | { type: 'open'; run: number; packets: Record<number, number[]> }
+  | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
   | { type: 'refresh_history' }
   | {

@@ -6,21 +6,21 @@
 // it is fetched, thinned by the server: no seam, and no million of samples through the socket.
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage } from '@bufbuild/protobuf';
-import { Source } from '../gen/aeolis/v1/items_pb';
 import {
   ChannelSeriesListSchema, DictionaryReplySchema, PacketListSchema, RecordingSummarySchema, RunListSchema,
   ScenarioListSchema, TimepointListSchema,
 } from '../gen/aeolis/v1/run_pb';
-import type { ChannelSeries } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { Batch, ClientMessage } from '../gen/aeolis/v1/stream_pb';
-import { ColumnCollector } from './columns';
-import type { Column, FromWorker, Question, StreamState, ToWorker } from './messages';
+import { ColumnCollector, splitBySource } from './columns';
+import type { FromWorker, Question, StreamState, ToWorker } from './messages';
 import { SequenceCheck, backoffSeconds } from './sequence';
 
 const POST_EVERY_MS = 25;
-const HISTORY_POINTS = 1500; // of each channel: about the pixels of a plot
-const MAX_RATE_HZ = 0; // all; the server thins when we are slow
+const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
+const OTHER_POINTS = 400; // of the others: for the table and a first look
+const CHANNELS_A_QUESTION = 64; // the server takes no more
+const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
 const post = (message: FromWorker) => self.postMessage(message);
 
@@ -34,12 +34,15 @@ let currentRun = 0;
 let serverVersion = '';
 let check = new SequenceCheck();
 let packetOf = new Map<number, readonly number[]>();
+let plotted: string[] = [];
+let others: string[] = [];
 let collector = new ColumnCollector();
 let posting = false;
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
 let stopAt = 0; // sequence number the first step ends at
+let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
 
 function say(next: StreamState): void {
   state = next;
@@ -56,7 +59,7 @@ function subscribe(): void {
   send({
     case: 'subscribe',
     value: {
-      $typeName: 'aeolis.v1.Subscribe', run: BigInt(currentRun || wantedRun), afterSeq: BigInt(check.completeThrough),
+      $typeName: 'aeolis.v1.Subscribe', run: BigInt(exact ? currentRun || wantedRun : wantedRun), afterSeq: BigInt(check.completeThrough),
       channels: [], allChannels: step === 'samples', maxRateHz: MAX_RATE_HZ,
     },
   });
@@ -107,6 +110,12 @@ function receive(bytes: Uint8Array): void {
       const welcome = message.value;
       serverVersion = welcome.serverVersion;
       const run = Number(welcome.runState?.run ?? 0);
+      if (run === 0 && currentRun !== 0) {
+        exact = true;
+        subscribe();
+        break;
+      }
+      if (run === 0) say('live');
       const fresh = run !== currentRun || step === 'facts';
       if (run !== currentRun) restart(run);
       if (step === 'facts') stopAt = Number(welcome.lastSeq);
@@ -183,33 +192,17 @@ async function fetchHistory(): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
   try {
-    const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?size=${HISTORY_POINTS}&strategy=minmax`);
-    if (run !== currentRun) return;
-    const columns = list.channels.flatMap(splitBySource);
-    post({ type: 'history', run, columns, from: 0, to: Infinity });
+    for (const [names, points] of [[plotted, PLOTTED_POINTS], [others, OTHER_POINTS]] as const) {
+      for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
+        const some = names.slice(i, i + CHANNELS_A_QUESTION).map(encodeURIComponent).join(',');
+        const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?names=${some}&points=${points}`);
+        if (run !== currentRun) return;
+        post({ type: 'history', run, columns: list.channels.flatMap(splitBySource) });
+      }
+    }
   } catch (error) {
     post({ type: 'refusal', reason: `history: ${error instanceof Error ? error.message : String(error)}` });
   }
-}
-
-/** Real time and recording are kept apart, so that each can be seen for itself. */
-function splitBySource(series: ChannelSeries): Column[] {
-  const live: [number[], number[]] = [[], []];
-  const recorded: [number[], number[]] = [[], []];
-  for (let i = 0; i < series.sclk.length; ++i) {
-    const into = series.source[i] === Source.RECORDED ? recorded : live;
-    into[0].push(series.sclk[i] ?? NaN);
-    into[1].push(series.value[i] ?? NaN);
-  }
-  const columns: Column[] = [];
-  for (const [part, isRecorded] of [[live, false], [recorded, true]] as const) {
-    if (part[0].length > 0) {
-      columns.push({
-        id: series.id, recorded: isRecorded, sclk: Float64Array.from(part[0]), value: Float64Array.from(part[1]),
-      });
-    }
-  }
-  return columns;
 }
 
 const ANSWERS: Record<Question, DescMessage> = {
@@ -241,12 +234,14 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   switch (message.type) {
     case 'open':
       wantedRun = message.run;
+      ({ plotted, others } = message);
       packetOf = new Map(Object.entries(message.packets).map(([id, all]) => [Number(id), all]));
       collector = new ColumnCollector(packetOf);
       connect();
       break;
     case 'watch':
       wantedRun = message.run;
+      exact = false;
       restart(0);
       subscribe();
       break;

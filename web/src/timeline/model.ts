@@ -2,6 +2,7 @@
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { RunStore } from '../run/store';
+import type { TimepointFiring } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 
 export interface Mark {
@@ -128,10 +129,10 @@ export function pointDetail(store: RunStore, plan: readonly TimepointRow[], id: 
 
 /** The first timepoint, in the order of the timeline, after the last one known to have fired. */
 export function nextTimepoint(store: RunStore, plan: readonly TimepointRow[], cutoff: number): TimepointRow | undefined {
-  let last = -1;
-  plan.forEach((row, index) => {
+  const firedBy = (firing: TimepointFiring | undefined) => firing !== undefined && firing.firedSclk <= cutoff;
+  const last = plan.findLastIndex((row) => {
     const pair = store.firings.get(row.id);
-    if ((pair?.live?.firedSclk ?? Infinity) <= cutoff || (pair?.recorded?.firedSclk ?? Infinity) <= cutoff) last = index;
+    return firedBy(pair?.live) || firedBy(pair?.recorded);
   });
   return plan[last + 1];
 }

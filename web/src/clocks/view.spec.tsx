@@ -1,0 +1,31 @@
+import { describe, expect, it } from 'vitest';
+import { aPlan, aRun, aStore, link } from '../testing/fixtures';
+import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
+
+describe('the header', () => {
+  it('shows one instant on every clock, a light time apart', () => {
+    const run = aRun({ lightTimeS: 100 });
+    if (run.clocks) run.clocks = { ...run.clocks, lightTimeS: 100, seenSclk: 800, sclk: 900, eS: -100 };
+    const { entry, others } = clocksOf(aStore([], run), undefined);
+    const of = (id: string) => others.find((clock) => clock.id === id)?.value;
+    expect(entry).toBe('E−00:03:20');
+    expect([of('ert'), of('scet'), of('sclk'), of('mars-now')]).toEqual(['2012-219T05:00:00.0', '2012-219T04:58:20.0', '800.000', 'E−01:40']);
+  });
+  it('counts down to the latest time to send, a light time before the first timepoint', () => {
+    const run = aRun({ lightTimeS: 10 });
+    if (run.clocks) run.clocks = { ...run.clocks, eS: -1000 };
+    expect(latestSend(aStore([], run), aPlan)).toMatchObject({ left_s: 164, first: 'coolant_vent' });
+  });
+  it('cannot be taken for another mode', () => {
+    const titles = [
+      badgeOf(undefined, undefined), badgeOf(aStore(), undefined), badgeOf(aStore(), { from: 0, to: 10 }),
+      badgeOf(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })), undefined), badgeOf(aStore([], aRun({ state: 'interrupted' })), undefined),
+    ].map((badge) => badge.title);
+    expect(titles).toEqual(['NO RUN', 'REHEARSAL', 'PAST, NOT LIVE', 'ENDED RUN', 'INTERRUPTED RUN']);
+  });
+  it('says why a link is silent, and that a lost connection shows old things', () => {
+    const store = aStore([link({ link: 'uhf_live', up: false, reason: 'plasma outage', ert: '2012-219T04:59:00.0' })]);
+    expect(linksOf(store, Infinity)).toEqual([{ name: 'UHF live', look: 'down', detail: 'plasma outage' }]);
+    expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'down', detail: 'what is shown is old; attempt 3' });
+  });
+});

@@ -1,0 +1,105 @@
+// @vitest-environment happy-dom
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
+import { afterEach, beforeEach, describe, expect, it } from 'vitest';
+import { useForTest } from '../run/session';
+import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
+import { back, chosen, forward, line, message, step, type } from './line';
+import { candidates, fieldsOf, isHazardous, preconditionsOf, readLine, stageCells } from './model';
+import { Commands } from './view';
+
+const set = aDictionary.command('EDL_SET_PARAMETERS');
+const doEdl = aDictionary.command('EDL_DO_EDL');
+if (!set || !doEdl) throw new Error('the fixture lacks its commands');
+
+describe('what is typed', () => {
+  it('finds a command by its words', () => {
+    expect(candidates(aDictionary, ['do', 'edl'])[0]?.name).toBe('EDL_DO_EDL');
+    expect(candidates(aDictionary, ['set', 'edl', 'parameters'])[0]?.name).toBe('EDL_SET_PARAMETERS');
+    expect(candidates(aDictionary, ['edl_set_par'])[0]?.name).toBe('EDL_SET_PARAMETERS');
+    expect(candidates(aDictionary, ['launch'])).toEqual([]);
+  });
+  it('reads arguments beside the words', () => {
+    const { words, given } = readLine(' edl_set_timepoint_offset  timepoint=3 ');
+    expect([words, [...given]]).toEqual([['edl_set_timepoint_offset'], [['timepoint', '3']]]);
+  });
+  it('refuses what is out of range, no number, or missing', () => {
+    const problems = (text: string) => fieldsOf(set, readLine(text).given, []).map((field) => field.problem);
+    expect(problems('x solution_id=3 parachute_speed_mps=500')).toEqual([undefined, 'must be at most 430']);
+    expect(problems('x solution_id=1.5')).toEqual(['must be a whole number', undefined]);
+    expect(problems('x solution_id=abc')).toEqual(['is not a number', undefined]);
+    expect(problems('x')).toEqual(['is needed', undefined]);
+    expect(problems('x solution_id=0x10')).toEqual(['is not a number', undefined]);
+  });
+  it('fills from the navigation solution only the command that it fits', () => {
+    const solution = [{ $typeName: 'aeolis.v1.CommandArgument' as const, name: 'solution_id', value: 9 }, { $typeName: 'aeolis.v1.CommandArgument' as const, name: 'parachute_speed_mps', value: 405 }];
+    expect(fieldsOf(set, new Map(), solution).map((field) => [field.from, field.value])).toEqual([['solution', 9], ['solution', 405]]);
+  });
+  it('shows preconditions with their live value, and unknown ones as unknown', () => {
+    expect(preconditionsOf(doEdl, aDictionary, aStore())[0]?.holds).toBeUndefined();
+    expect(preconditionsOf(doEdl, aDictionary, aStore([samples(900, { 5: 1 })]))[0]?.holds).toBe(true);
+    expect(preconditionsOf(doEdl, aDictionary, aStore([samples(900, { 5: 0 })]))[0]?.holds).toBe(false);
+  });
+});
+
+describe('stages', () => {
+  it('shows nothing green that was not heard of', () => {
+    const row = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok' }), stage({ command: 1n, stage: 'received', status: 'unknown' })]).commands.get(1);
+    const looks = Object.fromEntries((row ? stageCells(row) : []).map((cell) => [cell.stage, cell.look]));
+    expect(looks).toMatchObject({ queued: 'ok', received: 'unknown', accepted: 'none', verified: 'none' });
+  });
+});
+
+describe('the command line', () => {
+  let root: HTMLElement;
+  beforeEach(() => {
+    root = document.createElement('div');
+    document.body.append(root);
+    useForTest(aStore(), aDictionary);
+    act(() => render(<Commands />, root));
+  });
+  afterEach(() => {
+    act(() => {
+      back(true);
+      back(true);
+      type('');
+      render(null, root);
+    });
+    root.remove();
+  });
+  it('goes on by Enter: review, armed, and sends nothing without the typed name', async () => {
+    act(() => type('do edl'));
+    expect(root.querySelector('[role="option"]')?.textContent).toContain('EDL_DO_EDL');
+    await act(() => forward());
+    expect([step.value, chosen.value?.name]).toEqual(['review', 'EDL_DO_EDL']);
+    expect(isHazardous(doEdl)).toBe(true);
+    await act(() => forward());
+    expect(step.value).toBe('armed');
+    expect(root.querySelector('[data-testid="command-armed"]')).not.toBeNull();
+    await act(() => forward());
+    expect([step.value, message.value?.good]).toEqual(['armed', false]);
+    act(() => back());
+    expect(step.value).toBe('review');
+    act(() => back());
+    expect(step.value).toBe('type');
+  });
+  it('does not go on with a missing argument', async () => {
+    act(() => type('set edl parameters'));
+    await act(() => forward());
+    await act(() => forward());
+    expect([step.value, message.value?.text]).toEqual(['review', 'solution_id is needed']);
+  });
+  it('shows a name with markup as text', () => {
+    act(() => {
+      type('');
+      useForTest(aStore([stage({ command: 1n, name: '<img src=x onerror=alert(1)>', stage: 'queued', status: 'ok' })]), aDictionary);
+    });
+    expect(root.querySelector('img')).toBeNull();
+    expect(root.textContent).toContain('<img src=x');
+    expect(line.value).toBe('');
+  });
+  it('takes no command for a run that has ended', () => {
+    act(() => useForTest(aStore([], aRun({ state: 'finished' })), aDictionary));
+    expect(root.querySelector<HTMLInputElement>('[data-testid="command-line"]')?.disabled).toBe(true);
+  });
+});

@@ -1,0 +1,91 @@
+import { describe, expect, it } from 'vitest';
+import { aStore, event, firing, samples, stage } from '../testing/fixtures';
+import { Series } from './series';
+import { dayOfYear, duration, fromEntry, readFromEntry, secondsOfDayOfYear } from './time';
+
+const f = (...values: number[]) => Float64Array.from(values);
+const sclks = (series: Series) => [...series.sclk.slice(0, series.length)];
+
+describe('a series', () => {
+  it('keeps late samples in their place and no sample twice', () => {
+    const series = new Series();
+    series.append(f(1, 2, 5), f(1, 2, 5));
+    series.append(f(3, 3, 5, 6), f(3, 3, 5, 6));
+    expect(sclks(series)).toEqual([1, 2, 3, 5, 6]);
+  });
+  it('takes history without a seam: what is newer stays', () => {
+    const series = new Series();
+    series.append(f(10, 11, 12), f(1, 1, 1));
+    series.replaceBefore(f(1, 5, 11), f(0, 0, 0));
+    expect(sclks(series)).toEqual([1, 5, 11, 12]);
+  });
+  it('gives an exact range room where it was thinned', () => {
+    const series = new Series();
+    series.append(f(1, 2, 3, 4), f(1, 2, 3, 4));
+    series.replace(2, 3, f(2, 2.5, 3), f(9, 9, 9));
+    expect(sclks(series)).toEqual([1, 2, 2.5, 3, 4]);
+  });
+  it('stays bounded and keeps the extremes', () => {
+    const series = new Series();
+    const count = 200_000;
+    series.append(Float64Array.from({ length: count }, (_, i) => i), Float64Array.from({ length: count }, (_, i) => (i === 777 ? 1e6 : 0)));
+    expect(series.length).toBeLessThanOrEqual(65536);
+    expect(Math.max(...series.value.slice(0, series.length))).toBe(1e6);
+    expect(series.sclk[series.length - 1]).toBe(count - 1);
+  });
+  it('finds the newest at or before an instant', () => {
+    const series = new Series();
+    series.append(f(1, 2, 3), f(10, 20, 30));
+    expect(series.at(2.5)).toEqual({ sclk: 2, value: 20 });
+    expect(series.at(0)).toBeUndefined();
+  });
+});
+
+describe('a run', () => {
+  it('shows an event once that came live and again with the recording', () => {
+    const same = { id: 5, name: 'X', text: 'x', sclk: 990 };
+    const store = aStore([event(same), event({ ...same, source: 2, duplicate: true }), event({ id: 6, name: 'Y', sclk: 980, source: 2 })]);
+    expect(store.events.map((row) => [row.fact.name, row.live, row.recorded])).toEqual([['Y', false, true], ['X', true, true]]);
+  });
+  it('keeps both ways by which a firing is known', () => {
+    const store = aStore([firing({ timepoint: 1, name: 'a', firedSclk: 950 }), firing({ timepoint: 1, name: 'a', firedSclk: 950, source: 2 })]);
+    const pair = store.firings.get(1);
+    expect([pair?.live?.firedSclk, pair?.recorded?.firedSclk]).toEqual([950, 950]);
+  });
+  it('looks at the past by an instant', () => {
+    const store = aStore([samples(900, { 3: 100 }), samples(910, { 3: 50 }, 2)]);
+    expect(store.latest(3)?.value).toBe(50);
+    expect(store.latest(3, 905)?.value).toBe(100);
+    expect(store.latest(3, 800)).toBeUndefined();
+  });
+  it('collects the stages of a command under its number', () => {
+    const store = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok', arguments: 'a=1' }), stage({ command: 1n, stage: 'radiated', status: 'ok' })]);
+    expect([...(store.commands.get(1)?.stages.keys() ?? [])]).toEqual(['queued', 'radiated']);
+    expect(store.commands.get(1)?.arguments).toBe('a=1');
+  });
+  it('tells the SCLK of what was received at an ERT', () => {
+    expect(aStore().sclkSeenAt('2012-219T04:59:50.0')).toBeCloseTo(890);
+  });
+});
+
+describe('times', () => {
+  it('reads and writes day of year', () => {
+    expect(dayOfYear(secondsOfDayOfYear('2012-219T05:10:47.400'))).toBe('2012-219T05:10:47.4');
+    expect(secondsOfDayOfYear('2012-08-06T05:10:47')).toBeNaN();
+    expect(new Date(secondsOfDayOfYear('2012-219T05:10:47') * 1000).toISOString()).toBe('2012-08-06T05:10:47.000Z');
+  });
+  it('counts from entry', () => {
+    expect(fromEntry(268.4, { hours: true })).toBe('E+00:04:28');
+    expect(fromEntry(-1142)).toBe('E−19:02');
+    expect(fromEntry(255.93, { tenths: true })).toBe('E+04:15.9');
+    expect(fromEntry(59.96, { tenths: true })).toBe('E+01:00.0');
+    expect(fromEntry(NaN)).toBe('E —');
+  });
+  it('reads what people type', () => {
+    expect(['E+3:20', '-120', '200.5', '4:28', 'e−1:00', '1:02:03', ''].map(readFromEntry)).toEqual([200, -120, 200.5, 268, -60, 3723, undefined]);
+    expect(readFromEntry('soon')).toBeUndefined();
+  });
+  it('says durations', () => {
+    expect([0, 12.34, 828.1, 7300].map(duration)).toEqual(['0 s', '12.3 s', '13 m 48 s', '2 h 01 m']);
+  });
+});

@@ -1,0 +1,40 @@
+import { create } from '@bufbuild/protobuf';
+import { describe, expect, it } from 'vitest';
+import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
+import { aDictionary, aPlan, aRun, aStore, explanation, firing, samples, stage } from '../testing/fixtures';
+import { waitingFor } from './model';
+
+const commanded = [
+  stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'executed', status: 'ok' }),
+  stage({ command: 2n, name: 'EDL_DO_EDL', stage: 'executed', status: 'ok' }),
+];
+
+describe('waiting for', () => {
+  it('tells a newcomer what to press first, and then what next', () => {
+    expect(waitingFor(aStore(), aDictionary, aPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
+    expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+  });
+  it('says why a command failed', () => {
+    const store = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' })]);
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]?.value).toContain('bad_argument');
+  });
+  it('names the next timepoint and when it is due by the vehicle’s own word', () => {
+    const store = aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 880 }), samples(899, { 1: 0, 2: 1000, 5: 1 })]);
+    const waiting = waitingFor(store, aDictionary, aPlan, Infinity);
+    expect(waiting.title).toBe('Waiting for entry interface');
+    expect(waiting.lines[0]).toMatchObject({ words: 'at entry', value: 'in 1 m 40 s', holds: false });
+  });
+  it('says that an anchor has not happened, and not nothing', () => {
+    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ value: 'has not happened', holds: false });
+  });
+  it('shows the condition that is missing, as flight explained it', () => {
+    const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: 'le', bound: 405, holds: false });
+    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] })]);
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({ words: 'speed mps ≤ 405', value: '450', holds: false });
+  });
+  it('ends with the outcome', () => {
+    expect(waitingFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 })), aDictionary, aPlan, Infinity).title).toBe('Landed');
+    expect(waitingFor(aStore([], aRun({ state: 'interrupted' })), aDictionary, aPlan, Infinity).title).toBe('Interrupted');
+  });
+});
