@@ -45,8 +45,8 @@ struct ReceivedTone {
     double likelihood = 0.0;    ///< 0 … 1 that the decision is right
     std::optional<ToneId> runner_up;
     double runner_up_likelihood = 0.0;
-    double c_n0_dbhz = 0.0;
-    double doppler_hz = 0.0;
+    double c_n0_dbhz = 0.0;  ///< total power to noise density as the receiver estimates it; 0 when erased
+    double doppler_hz = 0.0; ///< one way at 8.4 GHz, from the flown trajectory and a fixed direction to Earth
     bool locked = false;
     std::optional<ToneId> sent; ///< truth, for the run's score only: never shown as received
     Sclk sent_at;
@@ -94,10 +94,25 @@ struct CycleReport {
     std::vector<TruthEvent> events;
 };
 
+/// Events of the design's table that are decisions on board: the truth learns of them from the recorded event report of
+/// the same name in capitals, and dates them by its SCLK.
+inline constexpr std::array<const char*, 7> decided_on_board{
+    "guidance_start",          "heading_alignment",           "radar_lock", "powered_approach_start",
+    "constant_velocity_start", "constant_deceleration_start", "touchdown"};
+
+/// How one of them is found in the recording, from the dictionary: packets of `apid` begin their data with an event id.
+struct EventReportName {
+    Apid apid;
+    EvrId id;
+    std::string name; ///< as in decided_on_board
+};
+
 class Landing {
   public:
-    /// `case_number` selects an independent draw of all dispersions under the same seed.
-    Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0);
+    /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the events
+    /// decided on board are missing from the truth's.
+    Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0,
+            std::vector<EventReportName> reports = {});
     Landing(const Landing&);
     Landing& operator=(const Landing&);
     Landing(Landing&&) noexcept;

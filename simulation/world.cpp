@@ -325,10 +325,16 @@ const NavigationSolution& World::solution() const {
     return state_->initial.solution;
 }
 
+bool World::uhf_on() const {
+    using flight::SwitchId;
+    const Avionics& avionics = state_->avionics;
+    return avionics.on(SwitchId::uhf) &&
+           (avionics.on(SwitchId::entry_antenna) || avionics.on(SwitchId::parachute_antenna));
+}
+
 World::Inspection World::inspect() const {
     const State& s = *state_;
     const Vehicle::Flow flow = s.vehicle.flow();
-    using flight::SwitchId;
     return {.mass_kg = s.vehicle.configuration().total_kg(),
             .propellant_kg = s.vehicle.configuration().propellant_kg(),
             .mach = flow.mach,
@@ -339,8 +345,6 @@ World::Inspection World::inspect() const {
             .thrust_N = s.vehicle.engines().thrust_N(),
             .bridle_m = s.vehicle.bridle().payed_out_m(s.now_s()),
             .q_MB = array4(s.vehicle.q_MB()),
-            .uhf_on = s.avionics.on(SwitchId::uhf) &&
-                      (s.avionics.on(SwitchId::entry_antenna) || s.avionics.on(SwitchId::parachute_antenna)),
             .parachute_open = s.vehicle.parachute_open(s.now_s())};
 }
 

@@ -60,6 +60,7 @@ class World {
     std::optional<Sclk> contact() const;                     ///< when that was
     double peak_deceleration_mps2() const;
     const NavigationSolution& solution() const;
+    bool uhf_on() const; ///< transmitter on and an antenna selected
 
     /// What a test or a report may want to see of the truth, and flight never does.
     struct Inspection {

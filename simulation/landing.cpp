@@ -1,0 +1,292 @@
+#include "simulation/landing.hpp"
+
+#include "common/bytes.hpp"
+#include "simulation/devices/recorder.hpp"
+#include "simulation/entry_reference.hpp"
+#include "simulation/links/in_flight.hpp"
+#include "simulation/links/relay_link.hpp"
+#include "simulation/links/uhf_link.hpp"
+#include "simulation/links/x_band_link.hpp"
+#include "simulation/mars/earth.hpp"
+#include "simulation/moments.hpp"
+#include "simulation/random.hpp"
+#include "simulation/world.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+namespace aeolis::simulation {
+namespace {
+
+constexpr double x_band_hz = 8.4e9;           // [facts]
+constexpr double light_mps = 299792458.0;     // [bipm-si]
+constexpr std::size_t remembered_ticks = 256; // 4 s: an event report is recorded within a few cycles
+constexpr double symbol_s = 10.0;
+
+flight::Load load_for(const Scenario& scenario) {
+    flight::Load load;
+    load.uhf_rate_bps = scenario.radio.uhf_rate_bps;
+    load.telemetry_plan = scenario.telemetry_plan;
+    load.entry_mass_kg = scenario.masses.entry_kg;
+    load.powered_descent_mass_kg = scenario.masses.powered_descent_kg;
+    load.descent_stage_dry_kg =
+        scenario.masses.powered_descent_kg - scenario.masses.rover_kg - scenario.masses.propellant_kg;
+    load.rover_mass_kg = scenario.masses.rover_kg;
+    load.entry_reference = make_entry_reference(scenario);
+    return load;
+}
+
+std::int64_t microseconds(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
+}
+
+/// A link's last told state: a change is sent to Earth like everything else.
+struct LinkTeller {
+    bool told = false, up = false;
+    std::string_view reason;
+
+    std::optional<LinkState> change(LinkState now, const char* why) {
+        if (told && now.up == up && reason == why) return {};
+        told = true;
+        up = now.up;
+        reason = why;
+        now.reason = why;
+        return now;
+    }
+};
+
+} // namespace
+
+struct Landing::State {
+    Scenario scenario;
+    std::vector<EventReportName> reports;
+    World world;
+    flight::Computer computer;
+    flight::DeviceOutputs out;
+    Recorder recorder;
+    UhfLink uhf;
+    XBandLink x_band;
+    RelayLink relay;
+
+    std::int64_t light_time_us;
+    InFlight<std::vector<std::uint8_t>> uplinks;
+    InFlight<ReceivedPacket> packets;
+    InFlight<ReceivedTone> tones;
+    InFlight<LinkState> links;
+    LinkTeller uhf_told, x_band_told, relay_told;
+    std::vector<UhfLink::Delivered> uhf_delivered;
+
+    std::array<TruthState, remembered_ticks> remembered{};
+    std::int64_t ticks_without_computer = 0;
+    bool computer_on = true;
+    CycleReport report;
+
+    State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number, std::vector<EventReportName> names)
+        : scenario(s), reports(std::move(names)), world(s, seed, case_number), computer(load_for(s), world.sclk()),
+          uhf(s.radio, Random{seed, case_number, Stream::uhf}),
+          x_band(s.radio, Random{seed, case_number, Stream::x_band}), relay(s.radio.relay_rate_bps),
+          light_time_us(microseconds(s.radio.light_time_s)) {
+        computer_on = world.outcome() == Outcome::running;
+    }
+
+    Sclk sclk() const { return world.sclk() + static_cast<double>(ticks_without_computer) * seconds_per_tick; }
+    ClockCorrelation correlation() const { return {scenario.entry_sclk, scenario.entry_scet}; }
+    std::int64_t now_us() const { return correlation().scet_of(sclk()).microseconds; }
+
+    void fly();
+    void radiate(std::int64_t cycle_start_us);
+    void receive_tone(std::int64_t cycle_start_us);
+    void relay_recording(std::int64_t cycle_start_us);
+    void read_event_reports();
+    void tell(LinkTeller& teller, LinkState state, const char* reason, std::int64_t at_us);
+    bool relaying() const;
+    bool recording_down() const { return !relaying() || relay.sent_octets() == recorder.octets().size(); }
+};
+
+void Landing::State::tell(LinkTeller& teller, LinkState state, const char* reason, std::int64_t at_us) {
+    state.ert = {at_us + light_time_us};
+    if (auto change = teller.change(state, reason)) links.send(state.ert.microseconds, std::move(*change));
+}
+
+void Landing::State::fly() {
+    const std::int64_t cycle_start_us = now_us();
+    uplinks.arrive(cycle_start_us,
+                   [&](std::int64_t, const std::vector<std::uint8_t>& packet) { world.receive(packet); });
+    world.set_nvm(static_cast<std::uint32_t>(recorder.octets().size()), Recorder::capacity_octets);
+    remembered[static_cast<std::size_t>(world.sclk().ticks()) % remembered_ticks] = world.truth();
+
+    computer.step(world.sense(), out);
+
+    if (recorder.append(out.nvm.span())) report.recorded = out.nvm.span();
+    report.radiated = out.uhf.span();
+    radiate(cycle_start_us);
+    receive_tone(cycle_start_us);
+    world.advance(out);
+    report.events.assign(world.events().begin(), world.events().end());
+    read_event_reports();
+
+    const bool landed = world.outcome() == Outcome::touchdown;
+    const bool over = world.outcome() != Outcome::running;
+    computer_on = !over || (landed && world.sclk() - *world.contact() < scenario.end_after_touchdown_s);
+}
+
+void Landing::State::radiate(std::int64_t cycle_start_us) {
+    const TruthState truth = world.truth();
+    uhf.offer(out.uhf.span());
+    uhf_delivered.clear();
+    uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()}, uhf_delivered);
+    for (UhfLink::Delivered& packet : uhf_delivered) {
+        const Ert ert{cycle_start_us + packet.left_us + light_time_us};
+        packets.send(ert.microseconds, {LinkId::uhf_live, ert, std::move(packet.octets)});
+    }
+    tell(uhf_told, {.link = LinkId::uhf_live, .up = uhf.up()}, uhf.reason(), cycle_start_us);
+}
+
+void Landing::State::receive_tone(std::int64_t cycle_start_us) {
+    const TruthState truth = world.truth();
+    const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
+    const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
+    if (auto tone = x_band.cycle(out.tone, {truth.sclk, truth.e_s, doppler_hz})) {
+        tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
+        tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
+        tones.send(tone->end.microseconds, std::move(*tone));
+    }
+    tell(x_band_told, {.x_band = true, .up = x_band.up()}, x_band.reason(), cycle_start_us);
+}
+
+bool Landing::State::relaying() const {
+    return world.outcome() == Outcome::touchdown;
+}
+
+void Landing::State::relay_recording(std::int64_t cycle_start_us) {
+    if (!relaying()) return;
+    const bool started = sclk() - *world.contact() >= scenario.radio.relay_start_after_touchdown_s;
+    if (!started) return;
+    relay.cycle(recorder.octets(), [&](std::int64_t left_us, std::span<const std::uint8_t> packet) {
+        const Ert ert{cycle_start_us + left_us + light_time_us};
+        packets.send(ert.microseconds, {LinkId::relay, ert, {packet.begin(), packet.end()}});
+    });
+    const bool complete = !computer_on && recording_down();
+    tell(relay_told, {.link = LinkId::relay, .up = !complete}, complete ? "recording complete" : "nominal",
+         cycle_start_us);
+}
+
+void Landing::State::read_event_reports() {
+    if (reports.empty()) return;
+    std::span<const std::uint8_t> recorded = report.recorded;
+    for (auto packet = take_packet(recorded); !packet.empty(); packet = take_packet(recorded)) {
+        const Apid apid = read_primary_header(packet)->apid;
+        const bool is_report =
+            std::any_of(reports.begin(), reports.end(), [&](const auto& r) { return r.apid == apid; });
+        if (!is_report || packet.size() < tm_overhead_octets + 2) continue;
+        const auto header = read_tm_packet(packet);
+        if (!header) continue;
+        const EvrId id{static_cast<std::uint16_t>(read_bits(packet, tm_data_offset_octets * 8, 16))};
+        const auto found =
+            std::find_if(reports.begin(), reports.end(), [&](const auto& r) { return r.apid == apid && r.id == id; });
+        if (found == reports.end()) continue;
+        const TruthState& truth = remembered[static_cast<std::size_t>(header->time.ticks()) % remembered_ticks];
+        if (truth.sclk == header->time) report.events.push_back(moment(found->name.c_str(), truth));
+        reports.erase(found); // the first of a name is the moment
+    }
+}
+
+Landing::Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                 std::vector<EventReportName> reports)
+    : state_(std::make_unique<State>(scenario, seed, case_number, std::move(reports))) {}
+Landing::Landing(const Landing& other) : state_(std::make_unique<State>(*other.state_)) {
+    // What was reported of the last cycle points into the original.
+    state_->report = {};
+}
+Landing& Landing::operator=(const Landing& other) {
+    if (this != &other) *this = Landing{other};
+    return *this;
+}
+Landing::Landing(Landing&&) noexcept = default;
+Landing& Landing::operator=(Landing&&) noexcept = default;
+Landing::~Landing() = default;
+
+const CycleReport& Landing::step() {
+    State& s = *state_;
+    s.report.recorded = {};
+    s.report.radiated = {};
+    s.report.packets.clear();
+    s.report.tones.clear();
+    s.report.links.clear();
+    s.report.events.clear();
+
+    const std::int64_t cycle_start_us = s.now_us();
+    if (s.computer_on)
+        s.fly();
+    else
+        ++s.ticks_without_computer;
+    s.relay_recording(cycle_start_us);
+
+    const std::int64_t now_us = s.now_us();
+    s.packets.arrive(now_us, [&](std::int64_t, ReceivedPacket&& p) { s.report.packets.push_back(std::move(p)); });
+    s.tones.arrive(now_us, [&](std::int64_t, ReceivedTone&& t) { s.report.tones.push_back(std::move(t)); });
+    s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
+    return s.report;
+}
+
+void Landing::uplink(std::span<const std::uint8_t> packet) {
+    State& s = *state_;
+    s.uplinks.send(s.now_us() + s.light_time_us, {packet.begin(), packet.end()});
+}
+
+Sclk Landing::sclk() const {
+    return state_->sclk();
+}
+Scet Landing::scet() const {
+    return correlation().scet_of(sclk());
+}
+Ert Landing::ert_now() const {
+    return {scet().microseconds};
+}
+double Landing::light_time_s() const {
+    return state_->scenario.radio.light_time_s;
+}
+ClockCorrelation Landing::correlation() const {
+    return state_->correlation();
+}
+const NavigationSolution& Landing::solution() const {
+    return state_->world.solution();
+}
+TruthState Landing::truth() const {
+    return state_->world.truth();
+}
+Outcome Landing::outcome() const {
+    return state_->world.outcome();
+}
+std::string Landing::outcome_reason() const {
+    return state_->world.outcome_reason();
+}
+
+bool Landing::finished() const {
+    const State& s = *state_;
+    return !s.computer_on && s.recording_down() && s.packets.empty() && s.tones.empty() && s.links.empty();
+}
+
+std::optional<TouchdownReport> Landing::touchdown() const {
+    return state_->world.touchdown();
+}
+double Landing::peak_deceleration_mps2() const {
+    return state_->world.peak_deceleration_mps2();
+}
+flight::Computer::Counters Landing::counters() const {
+    return state_->computer.counters();
+}
+std::span<const std::uint8_t> Landing::recording() const {
+    return state_->recorder.octets();
+}
+
+double Landing::relay_progress() const {
+    const State& s = *state_;
+    const std::size_t recorded = s.recorder.octets().size();
+    if (recorded == 0 || !s.relaying()) return 0.0;
+    const double part = static_cast<double>(s.relay.sent_octets()) / static_cast<double>(recorded);
+    // While the computer still records, what has come down cannot be all.
+    return s.computer_on ? std::min(part, 0.999) : part;
+}
+
+} // namespace aeolis::simulation

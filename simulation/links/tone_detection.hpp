@@ -1,0 +1,28 @@
+#pragma once
+
+#include "simulation/random.hpp"
+
+#include <cstdint>
+
+namespace aeolis::simulation {
+
+/// What an ideal non-coherent receiver makes of one 10 s symbol of 256 orthogonal tones.
+struct ToneDecision {
+    std::uint8_t best = 0, second = 0;
+    double best_likelihood = 0.0; ///< posterior probability, all tones being equally likely beforehand
+    double second_likelihood = 0.0;
+    double tone_c_n0_dbhz = 0.0; ///< estimate from the winner's energy
+};
+
+/// Draws the 256 detector outputs from their exact distributions and decides: the symbol error is that of non-coherent
+/// orthogonal signalling, to the last digit, because it is the same experiment.
+///
+/// `tone_c_n0_dbhz`: power of the tone to noise density. A symbol without a tone is drawn with `sent` absent (−1).
+/// Source: [proakis-digital-communications] for the statistic, r = |√(2 E/N0) + n| against |n|, and its posterior,
+/// in proportion to I0(√(2 E/N0) r).
+ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Random& random);
+
+/// Natural logarithm of the modified Bessel function I0, x ≥ 0, within 1e-7. [abramowitz-stegun] 9.6.12, 9.7.1
+double log_bessel_i0(double x);
+
+} // namespace aeolis::simulation

@@ -1,0 +1,61 @@
+#include "simulation/links/x_band_link.hpp"
+
+#include "simulation/links/tone_detection.hpp"
+#include "simulation/vectors.hpp"
+
+namespace aeolis::simulation {
+namespace {
+
+constexpr int symbol_ticks = 640;
+constexpr double symbol_s = 10.0;                          // [facts]
+constexpr double modulation_index_rad = 48.0 * degree_rad; // ours
+constexpr double carrier_lock_dbhz = 15.8;                 // [limits-tones]
+constexpr double least_likelihood = 0.9;                   // ours
+
+} // namespace
+
+double XBandLink::carrier_power_db() {
+    return 20.0 * std::log10(std::cos(modulation_index_rad));
+}
+
+double XBandLink::tone_power_db() {
+    constexpr double first_sidebands = 8.0 / (std::numbers::pi * std::numbers::pi);
+    return 10.0 * std::log10(first_sidebands) + 20.0 * std::log10(std::sin(modulation_index_rad));
+}
+
+std::optional<ReceivedTone> XBandLink::cycle(std::optional<ToneId> tone, const Surroundings& at) {
+    const bool earth_up = at.e_s < radio_.earth_set_after_entry_s;
+    const bool strong = radio_.x_band_c_n0_dbhz + carrier_power_db() >= carrier_lock_dbhz;
+    up_ = earth_up && strong;
+    reason_ = earth_up ? "carrier too weak" : "Earth set";
+
+    std::optional<ReceivedTone> ended;
+    if (symbol_ && symbol_->ticks == symbol_ticks) {
+        ended = decide(false, at);
+    } else if (symbol_ && (!earth_up || !tone || *tone != symbol_->tone)) {
+        ended = decide(true, at);
+    }
+    if (ended) symbol_.reset();
+    if (tone && earth_up && !symbol_) symbol_ = Symbol{*tone, at.now, 0};
+    if (symbol_) ++symbol_->ticks;
+    return ended;
+}
+
+ReceivedTone XBandLink::decide(bool broken, const Surroundings& at) {
+    ReceivedTone received;
+    received.sent = symbol_->tone;
+    received.sent_at = symbol_->started;
+    received.doppler_hz = at.doppler_hz;
+    received.locked = up_;
+    if (broken || !up_) return received;
+    const ToneDecision decision =
+        detect_tone(symbol_->tone.value, radio_.x_band_c_n0_dbhz + tone_power_db(), symbol_s, random_);
+    received.likelihood = decision.best_likelihood;
+    received.runner_up = ToneId{decision.second};
+    received.runner_up_likelihood = decision.second_likelihood;
+    received.c_n0_dbhz = decision.tone_c_n0_dbhz - tone_power_db();
+    if (decision.best_likelihood >= least_likelihood) received.tone = ToneId{decision.best};
+    return received;
+}
+
+} // namespace aeolis::simulation

@@ -1,0 +1,139 @@
+#include "simulation/scenario.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace aeolis::simulation {
+namespace {
+
+struct Bounded {
+    const char* name;
+    double value, least, most;
+};
+
+std::string number(double value) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.10g", value);
+    return text.data();
+}
+
+/// The bounds are ours: wide enough for any landing on Mars that the models know, narrow enough to catch a slip.
+std::vector<Bounded> bounded_fields(const Scenario& s) {
+    return {
+        {"entry_sclk", s.entry_sclk.seconds, 1.0e6, 4.2e9},
+        {"start_before_entry_s", s.start_before_entry_s, 60.0, 86400.0},
+        {"end_after_touchdown_s", s.end_after_touchdown_s, 0.0, 3600.0},
+        {"timeout_after_entry_s", s.timeout_after_entry_s, 60.0, 7200.0},
+        {"entry.radius_m", s.entry.radius_m, 3.45e6, 3.6e6},
+        {"entry.latitude_deg", s.entry.latitude_deg, -89.0, 89.0},
+        {"entry.longitude_deg", s.entry.longitude_deg, -180.0, 360.0},
+        {"entry.speed_mps", s.entry.speed_mps, 1000.0, 20000.0},
+        {"entry.flight_path_deg", s.entry.flight_path_deg, -89.0, -1.0},
+        {"entry.azimuth_deg", s.entry.azimuth_deg, -180.0, 360.0},
+        {"target.latitude_deg", s.target.latitude_deg, -89.0, 89.0},
+        {"target.longitude_deg", s.target.longitude_deg, -180.0, 360.0},
+        {"target.radius_m", s.target.radius_m, 3.37e6, 3.42e6},
+        {"masses.cruise_stage_kg", s.masses.cruise_stage_kg, 0.0, 5000.0},
+        {"masses.cruise_balance_each_kg", s.masses.cruise_balance_each_kg, 0.0, 500.0},
+        {"masses.entry_kg", s.masses.entry_kg, 100.0, 10000.0},
+        {"masses.entry_balance_each_kg", s.masses.entry_balance_each_kg, 0.0, 200.0},
+        {"masses.heatshield_kg", s.masses.heatshield_kg, 0.0, 2000.0},
+        {"masses.backshell_and_parachute_kg", s.masses.backshell_and_parachute_kg, 0.0, 2000.0},
+        {"masses.powered_descent_kg", s.masses.powered_descent_kg, 100.0, 8000.0},
+        {"masses.propellant_kg", s.masses.propellant_kg, 0.0, 4000.0},
+        {"masses.rover_kg", s.masses.rover_kg, 1.0, 4000.0},
+        {"dispersions.delivery_flight_path_deg", s.dispersions.delivery_flight_path_deg, 0.0, 2.0},
+        {"dispersions.delivery_position_m", s.dispersions.delivery_position_m, 0.0, 100000.0},
+        {"dispersions.knowledge_position_m", s.dispersions.knowledge_position_m, 0.0, 100000.0},
+        {"dispersions.knowledge_velocity_mps", s.dispersions.knowledge_velocity_mps, 0.0, 100.0},
+        {"dispersions.density_fraction", s.dispersions.density_fraction, 0.0, 0.5},
+        {"dispersions.drag_fraction", s.dispersions.drag_fraction, 0.0, 0.3},
+        {"dispersions.parachute_drag_fraction", s.dispersions.parachute_drag_fraction, 0.0, 0.3},
+        {"dispersions.wind_mps", s.dispersions.wind_mps, 0.0, 50.0},
+        {"dispersions.imu_bias_mps2", s.dispersions.imu_bias_mps2, 0.0, 0.1},
+        {"dispersions.gyro_bias_rps", s.dispersions.gyro_bias_rps, 0.0, 1.0e-3},
+        {"dispersions.attitude_rad", s.dispersions.attitude_rad, 0.0, 0.2},
+        {"dispersions.radar_range_fraction", s.dispersions.radar_range_fraction, 0.0, 0.2},
+        {"dispersions.radar_velocity_mps", s.dispersions.radar_velocity_mps, 0.0, 5.0},
+        {"parachute_drag_area_m2", s.parachute_drag_area_m2, 1.0, 1000.0},
+        {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
+        {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
+        {"radio.light_time_s", s.radio.light_time_s, 0.0, 1500.0},
+        {"radio.uhf_rate_bps", s.radio.uhf_rate_bps, 1000.0, 1.0e7},
+        {"radio.blackout_start_speed_mps", s.radio.blackout_start_speed_mps, 0.0, 20000.0},
+        {"radio.blackout_end_speed_mps", s.radio.blackout_end_speed_mps, 0.0, 20000.0},
+        {"radio.blackout_start_altitude_m", s.radio.blackout_start_altitude_m, 0.0, 200000.0},
+        {"radio.uhf_loss_fraction", s.radio.uhf_loss_fraction, 0.0, 1.0},
+        {"radio.x_band_c_n0_dbhz", s.radio.x_band_c_n0_dbhz, -20.0, 60.0},
+        {"radio.earth_set_after_entry_s", s.radio.earth_set_after_entry_s, -86400.0, 86400.0},
+        {"radio.relay_rate_bps", s.radio.relay_rate_bps, 1000.0, 1.0e8},
+        {"radio.relay_start_after_touchdown_s", s.radio.relay_start_after_touchdown_s, 0.0, 86400.0},
+        {"triggers.parachute_speed_mps", s.parachute_speed_mps, 100.0, 1000.0},
+        {"triggers.heatshield_speed_mps", s.heatshield_speed_mps, 20.0, 500.0},
+        {"triggers.backshell_altitude_m", s.backshell_altitude_m, 100.0, 10000.0},
+    };
+}
+
+void check_masses(const Masses& masses, std::vector<std::string>& found) {
+    if (masses.powered_descent_kg <= masses.propellant_kg + masses.rover_kg)
+        found.push_back("masses.powered_descent_kg: " + number(masses.powered_descent_kg) +
+                        " leaves nothing for the descent stage beside propellant and rover");
+    const double parts_kg = masses.powered_descent_kg + masses.backshell_and_parachute_kg + masses.heatshield_kg +
+                            6.0 * masses.entry_balance_each_kg;
+    if (!(std::abs(parts_kg - masses.entry_kg) <= 1.0))
+        found.push_back("masses.entry_kg: " + number(masses.entry_kg) + " is not the sum of its parts, " +
+                        number(parts_kg));
+}
+
+void check_density_scale(const std::vector<DensityScale>& scales, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+        const std::string name = "density_scale[" + std::to_string(i) + "]";
+        if (!(scales[i].scale >= 0.1 && scales[i].scale <= 10.0))
+            found.push_back(name + ".scale: " + number(scales[i].scale) + " is outside 0.1 … 10");
+        if (!(scales[i].altitude_m >= -5000.0 && scales[i].altitude_m <= 250000.0))
+            found.push_back(name + ".altitude_m: " + number(scales[i].altitude_m) + " is outside -5000 … 250000");
+        if (i > 0 && !(scales[i].altitude_m > scales[i - 1].altitude_m))
+            found.push_back(name + ".altitude_m: " + number(scales[i].altitude_m) +
+                            " does not lie above the one before");
+    }
+}
+
+void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
+        const ScriptedCommand& command = scenario.commands[i];
+        const std::string name = "commands[" + std::to_string(i) + "]";
+        if (command.command.empty()) found.push_back(name + ".command: is empty");
+        if (!(command.send_before_entry_s <= scenario.start_before_entry_s &&
+              command.send_before_entry_s >= -scenario.timeout_after_entry_s))
+            found.push_back(name + ".send_before_entry_s: " + number(command.send_before_entry_s) +
+                            " is not within the run");
+    }
+}
+
+} // namespace
+
+std::vector<std::string> impossible_values(const Scenario& scenario) {
+    std::vector<std::string> found;
+    // Not within, rather than outside: a value that is no number is neither.
+    for (const Bounded& field : bounded_fields(scenario))
+        if (!(field.value >= field.least && field.value <= field.most))
+            found.push_back(std::string(field.name) + ": " + number(field.value) + " is outside " +
+                            number(field.least) + " … " + number(field.most));
+    if (scenario.name.empty()) found.push_back("name: is empty");
+    if (scenario.entry_scet.microseconds == 0) found.push_back("entry_scet: is missing");
+    if (!is_multiple_of_tick(scenario.entry_sclk.seconds))
+        found.push_back("entry_sclk: " + number(scenario.entry_sclk.seconds) + " is not a multiple of 1/64 s");
+    if (!is_multiple_of_tick(scenario.start_before_entry_s))
+        found.push_back("start_before_entry_s: " + number(scenario.start_before_entry_s) +
+                        " is not a multiple of 1/64 s");
+    if (!(scenario.radio.blackout_end_speed_mps <= scenario.radio.blackout_start_speed_mps))
+        found.push_back("radio.blackout_end_speed_mps: " + number(scenario.radio.blackout_end_speed_mps) +
+                        " is above the speed at which the blackout starts");
+    check_masses(scenario.masses, found);
+    check_density_scale(scenario.density_scale, found);
+    check_commands(scenario, found);
+    return found;
+}
+
+} // namespace aeolis::simulation
