@@ -1,6 +1,6 @@
 #include "server/archive/reader.hpp"
 #include "server/pipeline/pipeline.hpp"
-#include "tests/server/landing_fixture.hpp"
+#include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
 #include <csignal>

@@ -1,0 +1,227 @@
+// What the archive costs above bare SQLite with the same table, index, batch and synchronous=FULL; what a landing's
+// telemetry costs from packet to durable row; and what a plot costs to read.
+
+#include "common/bytes.hpp"
+#include "server/archive/archive.hpp"
+#include "server/archive/reader.hpp"
+#include "server/pipeline/pipeline.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <sqlite3.h>
+#include <unistd.h>
+
+using namespace aeolis;
+using archive::RunId;
+using archive::Sequence;
+
+namespace {
+
+constexpr std::size_t unit_octets = 256;
+constexpr std::size_t batch_units = 4096; // as `aeolis rehearse` commits
+constexpr std::size_t units = 49 * batch_units;
+constexpr std::size_t fields = 30;
+constexpr Apid apid{0x40};
+
+double wall_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+double cpu_s() {
+    timespec time{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+struct Cost {
+    double wall = 0.0, cpu = 0.0;
+};
+template <typename Work>
+Cost cost_of(Work work) {
+    const double wall = wall_s(), cpu = cpu_s();
+    work();
+    return {wall_s() - wall, cpu_s() - cpu};
+}
+void must(bool done, const char* what) {
+    if (done) return;
+    std::fprintf(stderr, "archive_bench: %s failed\n", what);
+    std::exit(1);
+}
+
+struct Folder {
+    std::filesystem::path path;
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "aeolis-bench-XXXXXX").string();
+        must(::mkdtemp(name.data()) != nullptr, "mkdtemp");
+        path = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+/// A packet of thirty floats, each a channel: the shape of the wideband load.
+dictionary::Dictionary wideband() {
+    dictionary::Dictionary d;
+    d.mission = "BENCH";
+    d.id = 1;
+    dictionary::Type type;
+    type.kind = dictionary::ValueKind::real;
+    type.encoding = dictionary::Encoding::ieee754;
+    type.bits = 32;
+    dictionary::Packet packet{"Wideband", "", apid, {}, static_cast<unsigned>(tm_overhead_octets + 4 * fields), {}, {}};
+    for (std::size_t i = 0; i < fields; ++i) {
+        const ChannelId id{static_cast<std::uint16_t>(i)};
+        const auto name = "wideband_" + std::to_string(i);
+        d.channels.push_back({id, name, name, "", type});
+        packet.fields.push_back(
+            {name, type, id, static_cast<unsigned>((tm_data_offset_octets + 4 * i) * 8), std::nullopt});
+    }
+    d.packets = {packet};
+    return d;
+}
+
+Cost raw_append(const std::filesystem::path& file, const std::vector<std::uint8_t>& octets) {
+    sqlite3* database = nullptr;
+    must(sqlite3_open(file.c_str(), &database) == SQLITE_OK, "open");
+    const auto run = [&](const char* sql) { must(sqlite3_exec(database, sql, nullptr, nullptr, nullptr) == 0, sql); };
+    run("PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=4000; PRAGMA cache_size=-16000;"
+        "CREATE TABLE units (key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER,"
+        " sclk REAL NOT NULL, ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL,"
+        " standing INTEGER NOT NULL, sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;"
+        "CREATE INDEX units_by_time ON units (run, apid, sclk);");
+    sqlite3_stmt* insert = nullptr;
+    must(sqlite3_prepare_v2(database, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)", -1, &insert, nullptr) == 0,
+         "prepare");
+    const Cost cost = cost_of([&] {
+        for (std::size_t i = 0; i < units; ++i) {
+            if (i % batch_units == 0) run("BEGIN IMMEDIATE");
+            sqlite3_bind_int64(insert, 1, static_cast<std::int64_t>((1ULL << 40U) + i + 1));
+            for (const auto& [column, value] : {std::pair{2, 1}, {3, 64}, {4, 0}, {7, 1}, {8, 1}, {9, 0}, {10, 0}})
+                sqlite3_bind_int64(insert, column, value);
+            sqlite3_bind_double(insert, 5, static_cast<double>(i) / 64.0);
+            sqlite3_bind_int64(insert, 6, static_cast<std::int64_t>(i) * 15'625);
+            sqlite3_bind_blob(insert, 12, octets.data(), static_cast<int>(octets.size()), SQLITE_STATIC);
+            must(sqlite3_step(insert) == SQLITE_DONE, "insert");
+            sqlite3_reset(insert);
+            if (i % batch_units == batch_units - 1) run("COMMIT");
+        }
+    });
+    sqlite3_finalize(insert);
+    sqlite3_close(database);
+    return cost;
+}
+
+Cost archive_append(const std::filesystem::path& file, const std::vector<std::uint8_t>& octets) {
+    auto opened = archive::Archive::open(file);
+    must(opened.ok(), "Archive::open");
+    const auto run = opened->begin_run({}, wideband());
+    must(run.ok(), "begin_run");
+    return cost_of([&] {
+        archive::Batch batch;
+        for (std::size_t i = 0; i < units; ++i) {
+            archive::UnitRecord unit;
+            unit.seq = i + 1;
+            unit.apid = apid;
+            unit.packet = std::uint16_t{0};
+            unit.sclk = Sclk{static_cast<double>(i) / 64.0};
+            unit.ert = Ert{static_cast<std::int64_t>(i) * 15'625};
+            unit.link = archive::Link::uhf_live;
+            unit.source = archive::Source::realtime;
+            unit.octets = {batch.octets.size(), octets.size()};
+            batch.octets.insert(batch.octets.end(), octets.begin(), octets.end());
+            batch.units.push_back(std::move(unit));
+            batch.last_seq = i + 1;
+            if (i % batch_units != batch_units - 1) continue;
+            must(opened->append(*run, batch).ok(), "append");
+            batch.clear();
+        }
+    });
+}
+
+constexpr std::size_t landing_units = 100'000;
+
+/// Packets made beforehand: only the ground's work is measured.
+std::vector<simulation::ReceivedPacket> landing() {
+    std::vector<simulation::ReceivedPacket> packets(landing_units);
+    for (std::size_t i = 0; i < landing_units; ++i) {
+        std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * fields);
+        BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
+        for (std::size_t f = 0; f < fields; ++f)
+            bits.put_float(static_cast<float>(std::sin(static_cast<double>(i * (f + 1)) * 1e-4)));
+        seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0}, 1);
+        packets[i] = {simulation::LinkId::relay, Ert{static_cast<std::int64_t>(i)}, std::move(octets)};
+    }
+    return packets;
+}
+
+Cost store_landing(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
+                   const std::vector<simulation::ReceivedPacket>& packets, bool items) {
+    auto opened = archive::Archive::open(file);
+    must(opened.ok(), "Archive::open");
+    pipeline::Pipeline pipeline(*opened, dictionary);
+    pipeline.want_items(items);
+    must(pipeline.begin({}).ok(), "begin");
+    return cost_of([&] {
+        for (const auto& packet : packets) {
+            must(pipeline.accept(packet).ok(), "accept");
+            must(pipeline.commit_if_full().ok(), "commit");
+        }
+        must(pipeline.finish({}).ok(), "finish");
+    });
+}
+
+double median_ms(const std::function<void()>& work) {
+    std::vector<double> times;
+    for (int i = 0; i < 15; ++i)
+        times.push_back(1e3 * cost_of(work).cpu);
+    std::nth_element(times.begin(), times.begin() + 7, times.end());
+    return times[7];
+}
+
+} // namespace
+
+int main() {
+    Folder folder;
+    const std::vector<std::uint8_t> octets(unit_octets, 0x5A);
+    // Twice each, the better one: the disk is shared.
+    Cost raw{1e9, 1e9}, ours{1e9, 1e9};
+    for (int i = 0; i < 2; ++i) {
+        const auto better = [](Cost a, Cost b) { return Cost{std::min(a.wall, b.wall), std::min(a.cpu, b.cpu)}; };
+        raw = better(raw, raw_append(folder.path / ("raw" + std::to_string(i)), octets));
+        ours = better(ours, archive_append(folder.path / ("ours" + std::to_string(i)), octets));
+    }
+    const double ratio = raw.wall / ours.wall;
+    std::printf("append of 256-octet units, %zu a commit, FULL\n", batch_units);
+    std::printf("  limit, raw SQLite  %9.0f rows/s  %5.2f us of CPU a row\n", units / raw.wall, 1e6 * raw.cpu / units);
+    std::printf("  archive            %9.0f rows/s  %5.2f us of CPU a row\n", units / ours.wall,
+                1e6 * ours.cpu / units);
+    std::printf("  ratio %.2f of the rate (goal 0.8), %.2f of the CPU (goal 1.25)\n", ratio, ours.cpu / raw.cpu);
+
+    const auto dictionary = wideband();
+    const auto packets = landing();
+    const auto quiet = store_landing(folder.path / "landing", dictionary, packets, false);
+    const auto watched = store_landing(folder.path / "watched", dictionary, packets, true);
+    const auto size = std::filesystem::file_size(folder.path / "landing");
+    std::printf("%zu packets of %zu channels, from octets to durable rows and segments\n", landing_units, fields);
+    std::printf(
+        "  nobody follows     %9.0f packets/s  %.2f s (goal 3 s for the landing), %.1f octets a sample in all\n",
+        landing_units / quiet.wall, quiet.wall,
+        static_cast<double>(size) / static_cast<double>(landing_units * fields));
+    std::printf("  items published    %9.0f packets/s  %.2f s\n", landing_units / watched.wall, watched.wall);
+
+    auto reader = archive::Reader::open(folder.path / "landing", dictionary);
+    must(reader.ok(), "Reader::open");
+    const archive::SeriesQuery exact{{"wideband_7"}, {}, {}};
+    const archive::SeriesQuery thinned{{"wideband_7"}, {}, 2000};
+    const double exact_ms = median_ms([&] { must(reader->series(RunId{1}, exact).ok(), "series"); });
+    const double thinned_ms = median_ms([&] { must(reader->series(RunId{1}, thinned).ok(), "thinned"); });
+    std::printf("one channel of 100 000 samples, CPU, hot: exact %.2f ms (goal 2.5), thinned to 2000 %.2f ms (goal 0.1"
+                " when segments have a pyramid)\n",
+                exact_ms, thinned_ms);
+    return ratio >= 0.8 && quiet.wall <= 3.0 && exact_ms <= 2.5 ? 0 : 1;
+}
