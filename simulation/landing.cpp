@@ -42,16 +42,17 @@ std::int64_t microseconds(double seconds) {
 
 /// A link's last told state: a change is sent to Earth like everything else.
 struct LinkTeller {
+    LinkId link{};
+    bool x_band = false;
     bool told = false, up = false;
-    std::string_view reason;
+    std::string_view reason{};
 
-    std::optional<LinkState> change(LinkState now, const char* why) {
-        if (told && now.up == up && reason == why) return {};
+    std::optional<LinkState> change(bool up_now, const char* reason_now, Ert ert) {
+        if (told && up_now == up && reason == reason_now) return {};
         told = true;
-        up = now.up;
-        reason = why;
-        now.reason = why;
-        return now;
+        up = up_now;
+        reason = reason_now;
+        return LinkState{link, x_band, ert, up, reason_now};
     }
 };
 
@@ -73,7 +74,7 @@ struct Landing::State {
     InFlight<ReceivedPacket> packets;
     InFlight<ReceivedTone> tones;
     InFlight<LinkState> links;
-    LinkTeller uhf_told, x_band_told, relay_told;
+    LinkTeller uhf_told{.link = LinkId::uhf_live}, x_band_told{.x_band = true}, relay_told{.link = LinkId::relay};
     std::vector<UhfLink::Delivered> uhf_delivered;
 
     std::array<TruthState, remembered_ticks> remembered{};
@@ -98,14 +99,14 @@ struct Landing::State {
     void receive_tone(std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     void read_event_reports();
-    void tell(LinkTeller& teller, LinkState state, const char* reason, std::int64_t at_us);
+    void tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us);
     bool relaying() const;
     bool recording_down() const { return !relaying() || relay.sent_octets() == recorder.octets().size(); }
 };
 
-void Landing::State::tell(LinkTeller& teller, LinkState state, const char* reason, std::int64_t at_us) {
-    state.ert = {at_us + light_time_us};
-    if (auto change = teller.change(state, reason)) links.send(state.ert.microseconds, std::move(*change));
+void Landing::State::tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us) {
+    const Ert ert{at_us + light_time_us};
+    if (auto change = teller.change(up, reason, ert)) links.send(ert.microseconds, std::move(*change));
 }
 
 void Landing::State::fly() {
@@ -139,7 +140,7 @@ void Landing::State::radiate(std::int64_t cycle_start_us) {
         const Ert ert{cycle_start_us + packet.left_us + light_time_us};
         packets.send(ert.microseconds, {LinkId::uhf_live, ert, std::move(packet.octets)});
     }
-    tell(uhf_told, {.link = LinkId::uhf_live, .up = uhf.up()}, uhf.reason(), cycle_start_us);
+    tell(uhf_told, uhf.up(), uhf.reason(), cycle_start_us);
 }
 
 void Landing::State::receive_tone(std::int64_t cycle_start_us) {
@@ -151,7 +152,7 @@ void Landing::State::receive_tone(std::int64_t cycle_start_us) {
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         tones.send(tone->end.microseconds, std::move(*tone));
     }
-    tell(x_band_told, {.x_band = true, .up = x_band.up()}, x_band.reason(), cycle_start_us);
+    tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
 }
 
 bool Landing::State::relaying() const {
@@ -167,8 +168,7 @@ void Landing::State::relay_recording(std::int64_t cycle_start_us) {
         packets.send(ert.microseconds, {LinkId::relay, ert, {packet.begin(), packet.end()}});
     });
     const bool complete = !computer_on && recording_down();
-    tell(relay_told, {.link = LinkId::relay, .up = !complete}, complete ? "recording complete" : "nominal",
-         cycle_start_us);
+    tell(relay_told, !complete, complete ? "recording complete" : "nominal", cycle_start_us);
 }
 
 void Landing::State::read_event_reports() {
