@@ -88,6 +88,7 @@ const std::vector<Home>& homes() {
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
         {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
         {"boost/", with_effects, "Boost is at home in server/"},
+        {"openssl/", with_effects, "OpenSSL is at home in server/"},
         {"spdlog/", with_effects, "only server/ logs"},
         {"CLI/", with_effects, "only server/ reads a command line"},
         {"catch2/", {"tests/support/"}, "Catch2 is reached through tests/support/catch.hpp"},
