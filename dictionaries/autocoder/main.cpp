@@ -1,0 +1,45 @@
+#include "dictionaries/autocoder/flight_header.hpp"
+#include "dictionaries/autocoder/timeline_source.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp and timeline.cpp, or prints every finding and writes
+// nothing. A file that would not change is left alone, so that flight is not compiled anew when only the autocoder was.
+// Ends with 0 done, 1 findings or not writable, 2 bad use.
+namespace {
+
+bool write(const std::filesystem::path& path, const std::string& text) {
+    {
+        std::ifstream in{path, std::ios::binary};
+        if (in && std::string{std::istreambuf_iterator<char>{in}, {}} == text) return true;
+    }
+    std::ofstream out{path, std::ios::binary | std::ios::trunc};
+    out << text << std::flush;
+    if (!out) std::cerr << path.string() << ": cannot be written\n";
+    return static_cast<bool>(out);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 3) {
+        std::cerr << "use: aeolis_autocoder DICTIONARY_DIR OUT_DIR\n";
+        return 2;
+    }
+    namespace dictionary = aeolis::dictionary;
+    const std::filesystem::path mission{argv[1]};
+    const std::filesystem::path out{argv[2]};
+    const dictionary::Loaded loaded = dictionary::load(mission);
+    for (const auto& finding : loaded.findings)
+        std::cerr << (mission / finding.text()).string() << '\n';
+    if (!loaded.dictionary) return 1;
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    const bool written =
+        write(out / "dictionary_flight.hpp", dictionary::autocoder::flight_header(*loaded.dictionary)) &&
+        write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary));
+    return written ? 0 : 1;
+}

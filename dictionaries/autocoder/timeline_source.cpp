@@ -1,0 +1,70 @@
+#include "dictionaries/autocoder/timeline_source.hpp"
+
+#include "dictionaries/autocoder/cpp_text.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace aeolis::dictionary::autocoder {
+namespace {
+
+template <typename Id>
+std::string id_literal(const char* type, const std::optional<Id>& id) {
+    return id ? std::string{type} + "{" + std::to_string(unsigned{id->value}) + "}" : "std::nullopt";
+}
+
+/// Id of the row of that name; the loader has made sure that there is one.
+template <typename Rows>
+auto id_of(const Rows& rows, const std::string& name) {
+    using Id = decltype(rows.front().id);
+    const auto found = std::ranges::find_if(rows, [&](const auto& row) { return row.name == name; });
+    return name.empty() || found == rows.end() ? std::optional<Id>{} : std::optional<Id>{found->id};
+}
+
+void write_timeline(const Dictionary& dictionary, std::ostringstream& out) {
+    out << "constinit const std::array<TimepointSpec, timepoint_count> timeline_specs{{\n";
+    for (const TimelineRow& row : dictionary.timeline)
+        out << "#line " << row.line << " \"timeline.csv\"\n    {" << string_literal(row.name) << ", "
+            << id_literal("AnchorId", row.anchor) << ", " << optional_literal(row.desired_offset_s) << ", "
+            << optional_literal(row.minimum_offset_s) << ", "
+            << (row.action.empty() ? "nullptr" : "&actions::" + row.action) << ", "
+            << optional_literal(row.reply_timeout_s) << ", "
+            << id_literal("TimepointId", id_of(dictionary.timeline, row.backtrack)) << ", "
+            << (row.essential ? "true" : "false") << ", " << id_literal("ToneId", row.tone) << ", "
+            << (row.event.empty() ? "nullptr" : "&announce<evr::" + row.event + ">") << "},\n";
+    out << "}};\n\n";
+}
+
+void write_anchors(const Dictionary& dictionary, std::ostringstream& out) {
+    out << "#line 1 \"anchors.csv\"\nconstinit const std::array<AnchorSpec, anchor_count> anchor_specs{{\n";
+    for (const AnchorRow& row : dictionary.anchors)
+        out << "    {" << string_literal(row.name) << ", " << id_literal("AnchorId", row.parent) << ", "
+            << optional_literal(row.offset_s) << "},\n";
+    out << "}};\n\n";
+}
+
+void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
+    out << "#line 1 \"tones.csv\"\nconstinit const std::array<ToneSpec, 256> tone_specs{{\n";
+    for (const ToneRow& row : dictionary.tones)
+        out << "    {" << static_cast<unsigned>(row.set) << ", " << row.priority << ", "
+            << double_literal(row.expires_s) << ", " << id_literal("ToneId", id_of(dictionary.tones, row.supersedes))
+            << "},\n";
+    out << "}};\n\n";
+}
+
+} // namespace
+
+std::string timeline_source(const Dictionary& dictionary) {
+    std::ostringstream out;
+    out << "// Made by the autocoder from the dictionary of " << dictionary.mission
+        << ". Not to be edited: change the spreadsheets.\n"
+           "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/timepoint.hpp\"\n\n"
+           "namespace aeolis::flight {\n\n";
+    write_timeline(dictionary, out);
+    write_anchors(dictionary, out);
+    write_tones(dictionary, out);
+    out << "}  // namespace aeolis::flight\n";
+    return out.str();
+}
+
+} // namespace aeolis::dictionary::autocoder

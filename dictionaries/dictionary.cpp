@@ -1,0 +1,39 @@
+#include "dictionaries/dictionary.hpp"
+
+#include <algorithm>
+
+namespace aeolis::dictionary {
+namespace {
+
+template <typename T, typename Fits>
+const T* first(const std::vector<T>& all, Fits fits) {
+    const auto found = std::ranges::find_if(all, fits);
+    return found == all.end() ? nullptr : &*found;
+}
+
+} // namespace
+
+const Channel* Dictionary::channel(std::string_view name_or_alias) const {
+    return first(channels, [&](const Channel& c) { return c.name == name_or_alias || c.alias == name_or_alias; });
+}
+const Command* Dictionary::command(std::string_view name) const {
+    return first(commands, [&](const Command& c) { return c.name == name; });
+}
+const Command* Dictionary::command(Opcode opcode) const {
+    return first(commands, [&](const Command& c) { return c.opcode == opcode; });
+}
+const Event* Dictionary::event(EvrId wanted) const {
+    return first(events, [&](const Event& e) { return e.id == wanted; });
+}
+const Event* Dictionary::event(std::string_view name) const {
+    return first(events, [&](const Event& e) { return e.name == name; });
+}
+const Packet* Dictionary::packet(std::string_view name) const {
+    return first(packets, [&](const Packet& p) { return p.name == name; });
+}
+
+std::string Finding::text() const {
+    return file + ":" + std::to_string(line) + ": " + message;
+}
+
+} // namespace aeolis::dictionary

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace aeolis::dictionary {
+
+/// Where the rules of one file put what they find.
+class Findings {
+  public:
+    Findings(std::string file, std::vector<Finding>& all) : file_(std::move(file)), all_(all) {}
+
+    void add(unsigned line, std::string message) { all_.push_back({file_, line, std::move(message)}); }
+
+  private:
+    std::string file_;
+    std::vector<Finding>& all_;
+};
+
+inline std::string in_quotes(std::string_view name) {
+    return "'" + std::string{name} + "'";
+}
+
+} // namespace aeolis::dictionary

@@ -1,0 +1,119 @@
+#include "dictionaries/dictionary.hpp"
+
+#include "common/crc.hpp"
+#include "dictionaries/findings.hpp"
+#include "dictionaries/spreadsheet/tables.hpp"
+#include "dictionaries/xtce/space_system.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <tuple>
+
+namespace aeolis::dictionary {
+namespace {
+
+constexpr std::uintmax_t file_octets_max = 16U << 20U; // ours: a hundred times the landing's largest file
+
+struct File {
+    std::string name;
+    std::optional<std::string> text; ///< none: a finding says why
+};
+
+File read_file(const std::filesystem::path& path, std::vector<Finding>& all) {
+    File file{path.filename().string(), std::nullopt};
+    Findings findings{file.name, all};
+    std::error_code error;
+    const std::uintmax_t octets = std::filesystem::file_size(path, error);
+    std::ifstream in{path, std::ios::binary};
+    if (error || !in)
+        findings.add(1, "cannot be read: " + path.string());
+    else if (octets > file_octets_max)
+        findings.add(1, "is larger than " + std::to_string(file_octets_max) + " octets");
+    else
+        file.text = std::string{std::istreambuf_iterator<char>{in}, {}};
+    return file;
+}
+
+/// The one XTCE file of the folder.
+File read_xtce(const std::filesystem::path& directory, std::vector<Finding>& all) {
+    std::vector<std::filesystem::path> found;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry{directory, error}, end; !error && entry != end;
+         entry.increment(error))
+        if (entry->path().extension() == ".xml") found.push_back(entry->path());
+    if (found.size() == 1) return read_file(found.front(), all);
+    std::ranges::sort(found);
+    const std::string name = found.empty() ? directory.filename().string() : found[1].filename().string();
+    Findings{name, all}.add(1, found.empty() ? "there is no XTCE file (*.xml) in " + directory.string()
+                                             : "a second XTCE file beside " + found[0].filename().string());
+    return {name, std::nullopt};
+}
+
+/// Changes with every change of any of the files, and with a move of content from one to the next.
+std::uint16_t hash(std::initializer_list<const File*> files) {
+    std::vector<std::uint8_t> octets;
+    for (const File* file : files) {
+        const std::string frame = file->name + ":" + std::to_string(file->text->size()) + "\n";
+        octets.insert(octets.end(), frame.begin(), frame.end());
+        octets.insert(octets.end(), file->text->begin(), file->text->end());
+    }
+    return crc16(octets);
+}
+
+std::vector<TimelineContext::DeclaredEvent> declared(const xtce::SpaceSystem& system) {
+    std::vector<TimelineContext::DeclaredEvent> events;
+    for (const auto& event : system.declared_events)
+        events.push_back({event.name, event.has_arguments});
+    return events;
+}
+
+} // namespace
+
+Loaded load(const std::filesystem::path& directory) {
+    Loaded loaded;
+    auto& all = loaded.findings;
+    const File xml = read_xtce(directory, all);
+    const File anchors_csv = read_file(directory / "anchors.csv", all);
+    const File tones_csv = read_file(directory / "tones.csv", all);
+    const File parameters_csv = read_file(directory / "parameters.csv", all);
+    const File timeline_csv = read_file(directory / "timeline.csv", all);
+
+    const auto read = [&](const File& file, auto reader) -> decltype(reader(*file.text, std::declval<Findings&>())) {
+        if (!file.text) return std::nullopt;
+        Findings findings{file.name, all};
+        return reader(*file.text, findings);
+    };
+    auto system = read(xml, xtce::read_space_system);
+    auto anchors = read(anchors_csv, read_anchors);
+    auto tones = read(tones_csv, read_tones);
+    auto parameters = read(parameters_csv, read_parameters);
+    std::vector<TimelineContext::DeclaredEvent> events;
+    if (system) events = declared(*system);
+    const TimelineContext context{anchors ? &*anchors : nullptr, tones ? &*tones : nullptr, system ? &events : nullptr};
+    auto timeline = read(timeline_csv, [&](std::string_view text, Findings& findings) {
+        return read_timeline(text, context, findings);
+    });
+
+    std::ranges::stable_sort(
+        all, [](const Finding& a, const Finding& b) { return std::tie(a.file, a.line) < std::tie(b.file, b.line); });
+    if (!all.empty()) return loaded;
+
+    Dictionary dictionary;
+    dictionary.mission = std::move(system->mission);
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv});
+    dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
+    dictionary.channels = std::move(system->channels);
+    dictionary.packets = std::move(system->packets);
+    dictionary.events = std::move(system->events);
+    dictionary.commands = std::move(system->commands);
+    dictionary.timeline = std::move(*timeline);
+    dictionary.anchors = std::move(*anchors);
+    dictionary.tones = std::move(*tones);
+    dictionary.parameters = std::move(*parameters);
+    loaded.dictionary = std::move(dictionary);
+    return loaded;
+}
+
+} // namespace aeolis::dictionary

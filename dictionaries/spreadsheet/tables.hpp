@@ -1,0 +1,41 @@
+#pragma once
+
+#include "dictionaries/findings.hpp"
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+// The mission's spreadsheets, each with the rules of its rows. None when a sheet cannot be read at all; otherwise every
+// row is there, also those with findings, so that a reference to one is not called dangling as well.
+namespace aeolis::dictionary {
+
+inline constexpr std::size_t timepoints_max = 1000; ///< ours: ten times the landing's; numbers fit the command's range
+inline constexpr std::size_t anchors_max = 100;     ///< ours
+inline constexpr std::size_t parameters_max = 1000; ///< ours
+inline constexpr std::size_t tones_count = 256;     ///< R31
+
+/// In topological order: parents before children, else as in the file. R12
+std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findings& findings);
+
+/// By id. Every prime tone NAME has a Second Chance tone sc_NAME. R31, R35
+std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& findings);
+
+std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, Findings& findings);
+
+/// What a timeline may refer to; a null pointer: unknown because its own file could not be read, so not checked.
+struct TimelineContext {
+    struct DeclaredEvent {
+        std::string name;
+        bool has_arguments = false;
+    };
+    const std::vector<AnchorRow>* anchors = nullptr;
+    const std::vector<ToneRow>* tones = nullptr;
+    const std::vector<DeclaredEvent>* events = nullptr;
+};
+
+/// In the order of the file, which is the order of firing. R11, R13, R20
+std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
+                                                      Findings& findings);
+
+} // namespace aeolis::dictionary

@@ -1,0 +1,105 @@
+#include "dictionaries/spreadsheet/table.hpp"
+#include "dictionaries/spreadsheet/tables.hpp"
+
+#include "dictionaries/words.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace aeolis::dictionary {
+namespace {
+
+using LinesByName = std::map<std::string, unsigned>;
+
+void read_reference(RowReader& cells, const TimelineContext& context, TimelineRow& row) {
+    const std::string& reference = cells.text("reference");
+    if (reference == "previous" || context.anchors == nullptr) return;
+    const auto anchor = std::ranges::find(*context.anchors, reference, &AnchorRow::name);
+    if (anchor == context.anchors->end())
+        cells.fault("reference " + in_quotes(reference) + " is neither previous nor an anchor");
+    else
+        row.anchor = anchor->id;
+}
+
+void read_action(RowReader& cells, TimelineRow& row) {
+    row.action = cells.text("action").empty() ? std::string{} : cells.identifier("action");
+    row.reply_timeout_s = cells.offset("reply_timeout_s");
+    if (!row.reply_timeout_s) return;
+    if (*row.reply_timeout_s <= 0.0) cells.fault("reply_timeout_s is not above 0");
+    if (row.action.empty()) cells.fault("waits for a reply, but has no action that could bring one");
+}
+
+void read_tone(RowReader& cells, const TimelineContext& context, TimelineRow& row) {
+    const std::string& name = cells.text("tone");
+    if (name.empty() || context.tones == nullptr) return;
+    const auto tone = std::ranges::find(*context.tones, name, &ToneRow::name);
+    if (tone == context.tones->end())
+        cells.fault("there is no tone " + in_quotes(name));
+    else if (tone->set != ToneSet::prime)
+        cells.fault("tone " + in_quotes(name) + " is not one of prime's; Second Chance finds its own");
+    else
+        row.tone = tone->id;
+}
+
+void read_event(RowReader& cells, const TimelineContext& context, TimelineRow& row) {
+    row.event = cells.text("event");
+    if (row.event.empty() || context.events == nullptr) return;
+    const auto event = std::ranges::find(*context.events, row.event, &TimelineContext::DeclaredEvent::name);
+    if (event == context.events->end())
+        cells.fault("there is no event " + in_quotes(row.event));
+    else if (event->has_arguments)
+        cells.fault("event " + in_quotes(row.event) + " has arguments; a timepoint announces only events without");
+}
+
+/// A reboot goes back to a timepoint at or before the one it interrupted. R32
+void read_backtrack(RowReader& cells, const LinesByName& all, const LinesByName& so_far, TimelineRow& row) {
+    row.backtrack = cells.text("backtrack_point");
+    if (row.backtrack.empty() || so_far.contains(row.backtrack)) return;
+    cells.fault(all.contains(row.backtrack) ? "backtrack point " + in_quotes(row.backtrack) + " comes later"
+                                            : "there is no timepoint " + in_quotes(row.backtrack) + " to backtrack to");
+}
+
+} // namespace
+
+std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
+                                                      Findings& findings) {
+    const auto table = Table::read(text,
+                                   {"name", "reference", "desired_offset_s", "minimum_offset_s", "action",
+                                    "reply_timeout_s", "backtrack_point", "essential", "tone", "event", "note"},
+                                   findings);
+    if (!table) return std::nullopt;
+    if (table->rows().size() > timepoints_max) {
+        findings.add(table->rows()[timepoints_max].line, "more than " + std::to_string(timepoints_max) + " timepoints");
+        return std::nullopt;
+    }
+    if (table->rows().empty()) findings.add(1, "the timeline has no timepoint");
+
+    LinesByName all;
+    for (const Sheet::Row& row : table->rows())
+        all.emplace(row.cells[table->column("name")], row.line);
+    LinesByName so_far;
+    std::vector<TimelineRow> rows;
+    for (const Sheet::Row& sheet_row : table->rows()) {
+        RowReader cells{*table, sheet_row, "timepoint", "name", findings};
+        TimelineRow row;
+        row.id = TimepointId{static_cast<std::uint16_t>(rows.size())};
+        row.line = sheet_row.line;
+        row.name = cells.identifier("name");
+        const auto [first, added] = so_far.emplace(row.name, row.line);
+        if (!added) cells.fault("is there twice, first in line " + std::to_string(first->second));
+        read_reference(cells, context, row);
+        row.desired_offset_s = cells.offset("desired_offset_s");
+        row.minimum_offset_s = cells.offset("minimum_offset_s");
+        read_action(cells, row);
+        read_backtrack(cells, all, so_far, row);
+        row.essential = cells.yes_or_no("essential");
+        read_tone(cells, context, row);
+        read_event(cells, context, row);
+        row.note = cells.text("note");
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+} // namespace aeolis::dictionary

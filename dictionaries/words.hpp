@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+// Reading of single words in spreadsheets and XML. Nothing is guessed: a word is wholly what it should be, or it is
+// not.
+namespace aeolis::dictionary {
+
+/// A finite decimal number: "-600.046875", "1e-3".
+std::optional<double> to_number(std::string_view word);
+
+/// A whole number, decimal or hexadecimal: "16", "-1", "0x010".
+std::optional<std::int64_t> to_integer(std::string_view word);
+
+/// Shortest text that reads back as the same number.
+std::string number_word(double value);
+
+/// Why `name` cannot be a name in the C++ that the autocoder writes; none when it can.
+std::optional<std::string> unusable_as_identifier(std::string_view name);
+
+} // namespace aeolis::dictionary

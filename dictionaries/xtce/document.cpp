@@ -1,0 +1,69 @@
+#include "dictionaries/xtce/document.hpp"
+
+#include "dictionaries/words.hpp"
+
+#include <algorithm>
+
+namespace aeolis::dictionary::xtce {
+
+std::unique_ptr<Document> Document::parse(const std::string& text, Findings& findings) {
+    auto document = std::make_unique<Document>();
+    document->line_starts_.push_back(0);
+    for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == '\n') document->line_starts_.push_back(static_cast<std::ptrdiff_t>(i) + 1);
+
+    const pugi::xml_parse_result result =
+        document->xml_.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+    if (!result) {
+        findings.add(document->line_of_offset(result.offset),
+                     std::string{"the XML does not parse: "} + result.description());
+        return nullptr;
+    }
+    if (!document->space_system()) {
+        findings.add(1, "the root element is not SpaceSystem");
+        return nullptr;
+    }
+    return document;
+}
+
+unsigned Document::line_of_offset(std::ptrdiff_t offset) const {
+    const auto after = std::ranges::upper_bound(line_starts_, std::max<std::ptrdiff_t>(offset, 0));
+    return static_cast<unsigned>(after - line_starts_.begin());
+}
+
+unsigned Document::line(pugi::xml_node element) const {
+    return line_of_offset(element.offset_debug());
+}
+
+void Reporter::expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
+                      std::initializer_list<std::string_view> attributes) {
+    const std::string parent = element.name();
+    for (const pugi::xml_node child : element.children())
+        if (child.type() == pugi::node_element && std::ranges::find(children, child.name()) == children.end())
+            fault(child, "element " + in_quotes(child.name()) + " in " + parent + " is unknown or not supported");
+    for (const pugi::xml_attribute attribute : element.attributes())
+        if (std::ranges::find(attributes, attribute.name()) == attributes.end())
+            fault(element,
+                  "attribute " + in_quotes(attribute.name()) + " of " + parent + " is unknown or not supported");
+}
+
+std::optional<double> Reporter::number(pugi::xml_node element, const char* attribute) {
+    const pugi::xml_attribute found = element.attribute(attribute);
+    if (!found) return std::nullopt;
+    const auto value = to_number(found.value());
+    if (!value) fault(element, std::string{attribute} + " " + in_quotes(found.value()) + " is not a number");
+    return value;
+}
+
+std::optional<std::int64_t> Reporter::integer(pugi::xml_node element, const char* attribute, std::int64_t min,
+                                              std::int64_t max) {
+    const pugi::xml_attribute found = element.attribute(attribute);
+    if (!found) return std::nullopt;
+    const auto value = to_integer(found.value());
+    if (value && *value >= min && *value <= max) return value;
+    fault(element, std::string{attribute} + " " + in_quotes(found.value()) + " is not a whole number from " +
+                       std::to_string(min) + " to " + std::to_string(max));
+    return std::nullopt;
+}
+
+} // namespace aeolis::dictionary::xtce

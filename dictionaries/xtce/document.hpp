@@ -1,0 +1,58 @@
+#pragma once
+
+#include "dictionaries/findings.hpp"
+
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aeolis::dictionary::xtce {
+
+/// A parsed XML file that knows the line of each of its elements.
+class Document {
+  public:
+    /// None, with a finding, when the text is no XML or holds no SpaceSystem.
+    static std::unique_ptr<Document> parse(const std::string& text, Findings& findings);
+
+    pugi::xml_node space_system() const { return xml_.child("SpaceSystem"); }
+    unsigned line(pugi::xml_node element) const;
+
+  private:
+    unsigned line_of_offset(std::ptrdiff_t offset) const;
+
+    pugi::xml_document xml_;
+    std::vector<std::ptrdiff_t> line_starts_;
+};
+
+/// Says what is wrong with an element, and where.
+class Reporter {
+  public:
+    Reporter(const Document& document, Findings& findings) : document_(document), findings_(findings) {}
+
+    void fault(pugi::xml_node element, const std::string& message) { findings_.add(document_.line(element), message); }
+
+    /// Every child element and attribute must be among those named: what we do not read, we do not pass over in
+    /// silence.
+    void expect(pugi::xml_node element, std::initializer_list<std::string_view> children,
+                std::initializer_list<std::string_view> attributes);
+
+    /// The attribute as a number; none, with a finding, when it is there and is no number.
+    std::optional<double> number(pugi::xml_node element, const char* attribute);
+    std::optional<std::int64_t> integer(pugi::xml_node element, const char* attribute, std::int64_t min,
+                                        std::int64_t max);
+    unsigned line(pugi::xml_node element) const { return document_.line(element); }
+
+  private:
+    const Document& document_;
+    Findings& findings_;
+};
+
+inline std::string name_of(pugi::xml_node element) {
+    return element.attribute("name").value();
+}
+
+} // namespace aeolis::dictionary::xtce

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "dictionaries/xtce/types.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::dictionary::xtce {
+
+struct Parameter {
+    std::string name;
+    std::string path;
+    std::optional<Type> type; ///< none: its type has findings
+    std::optional<ChannelId> channel;
+    std::string valid_by; ///< path of the flag that says whether the value is defined; empty: always
+    pugi::xml_node element;
+};
+
+/// Every parameter of the file, by path; and those that are channels, in the order of the file.
+struct Parameters {
+    std::map<std::string, Parameter> by_path;
+    std::vector<Channel> channels;
+    std::vector<pugi::xml_node> channel_elements;
+};
+
+Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter& report);
+
+} // namespace aeolis::dictionary::xtce

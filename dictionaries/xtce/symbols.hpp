@@ -1,0 +1,42 @@
+#pragma once
+
+#include "dictionaries/xtce/document.hpp"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aeolis::dictionary::xtce {
+
+enum class Kind { parameter_type, argument_type, parameter, container, command, command_container };
+
+/// Something with a name in a SpaceSystem, where it stands, and its element.
+struct Symbol {
+    Kind kind{};
+    std::string path;  ///< "/MSL/Events/COMMAND_ACCEPTED"
+    std::string scope; ///< path of its SpaceSystem
+    pugi::xml_node element;
+};
+
+/// All names of a file. A reference is looked for in its own SpaceSystem, then outwards; "Events/X" and "/MSL/Events/X"
+/// lead into others.
+class Symbols {
+  public:
+    /// Duplicates within a SpaceSystem are findings.
+    Symbols(const Document& document, Reporter& report);
+
+    const Symbol* find(Kind kind, const std::string& scope, std::string_view reference) const;
+    /// In the order of the file.
+    const std::vector<Symbol>& all() const { return all_; }
+
+  private:
+    void read_space_system(pugi::xml_node system, const std::string& outer, unsigned depth, Reporter& report);
+    void read_set(pugi::xml_node set, Kind kind, const std::string& scope, Reporter& report);
+    void add(Kind kind, const std::string& scope, pugi::xml_node element, Reporter& report);
+
+    std::vector<Symbol> all_;
+    std::map<std::pair<Kind, std::string>, std::size_t> by_path_;
+};
+
+} // namespace aeolis::dictionary::xtce

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "dictionaries/xtce/symbols.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace aeolis::dictionary::xtce {
+
+/// The types of parameters and arguments, each checked once, where it stands.
+class Types {
+  public:
+    Types(const Symbols& symbols, Reporter& report);
+
+    /// None when `reference` is dangling, which is a finding at `element`, or when the type itself has findings.
+    std::optional<Type> of(Kind kind, const std::string& scope, pugi::xml_node element, const char* attribute,
+                           Reporter& report) const;
+
+  private:
+    const Symbols& symbols_;
+    std::map<std::pair<Kind, std::string>, std::optional<Type>> types_;
+};
+
+} // namespace aeolis::dictionary::xtce
