@@ -102,6 +102,16 @@ TEST_CASE("an archive has one writer", "[archive]") {
     CHECK(Archive::open(file).ok());
 }
 
+TEST_CASE("a file that another program holds is refused in one line that names it", "[archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "held.db";
+    auto other = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+    REQUIRE(other->execute("CREATE TABLE t(x); BEGIN EXCLUSIVE").ok());
+    const auto opened = Archive::open(file);
+    REQUIRE_FALSE(opened.ok());
+    CHECK(opened.error().message == file.string() + ": database is locked");
+}
+
 TEST_CASE("a batch is stored whole or not at all, and may be given again", "[archive]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
