@@ -51,8 +51,8 @@ export const LAYOUT = {
   window: { from: -60, to: 470 },
   /** Named moments that get a label in the timeline; the others are marks only. */
   labelled: [
-    'cruise_stage_separation', 'entry_interface', 'guidance_start', 'heading_alignment', 'sufr_start',
-    'parachute_deploy', 'heatshield_separation', 'radar_lock', 'engine_priming', 'backshell_separation',
-    'powered_approach_start', 'sky_crane_start', 'rover_separation', 'touchdown', 'flyaway_end',
+    'coolant_vent', 'cruise_stage_separation', 'turn_to_entry', 'entry_interface', 'entry_guidance', 'sufr',
+    'parachute_deploy', 'heatshield_separation', 'radar_processing', 'engine_priming', 'backshell_separation',
+    'powered_approach', 'sky_crane', 'rover_separation', 'touchdown', 'engines_off',
   ],
 } as const;

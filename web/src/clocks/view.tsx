@@ -1,6 +1,6 @@
 // The header: which run, what time it is, what is connected.
 import { fromEntry, duration } from '../run/time';
-import { cutoff, modeNow, pastRange, store, stream, tick, timepoints } from '../run/session';
+import { cutoff, modeNow, pastRange, runNow, stream, timepoints } from '../run/session';
 import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
 import type { LinkLine } from './model';
 import './style.css';
@@ -17,8 +17,7 @@ function Link({ line, testId }: { line: LinkLine; testId: string }) {
 }
 
 export function Header() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const past = pastRange.value;
   const badge = badgeOf(run, past);
   const clocks = run && clocksOf(run, past?.to);

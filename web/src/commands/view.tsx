@@ -5,7 +5,7 @@ import type { DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../panel';
 import { latestSend } from '../clocks/model';
 import { inWords } from '../run/dictionary';
-import { dictionary, modeNow, store, tick, timepoints } from '../run/session';
+import { dictionary, modeNow, runNow, timepoints } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import {
   back, choiceIndex, choose, chosen, complete, confirmation, fields, formText, forward, line, message, offered,
@@ -44,7 +44,7 @@ function Offers() {
 }
 
 function Arrival() {
-  const run = store.value;
+  const run = runNow();
   if (!run) return null;
   const light = run.run.lightTimeS;
   const arrives = (run.clocks?.eS ?? run.seenE) + light;
@@ -59,7 +59,7 @@ function Arrival() {
 
 function Review({ command }: { command: DictionaryCommand }) {
   const words = dictionary.value;
-  const conditions = words ? preconditionsOf(command, words, store.value) : [];
+  const conditions = words ? preconditionsOf(command, words, runNow()) : [];
   const filled = fields.value.filter((field) => field.from === 'solution').length;
   return (
     <div class="review" data-testid="command-review">
@@ -106,7 +106,7 @@ function Armed({ command }: { command: DictionaryCommand }) {
     <div class="armed" data-testid="command-armed">
       <b>▲ ARMED: {command.name}</b>
       <label>
-        <span>Type <b>{command.name}</b> and press Enter to send. Esc disarms.</span>
+        <span> Type <b>{command.name}</b> and press Enter to send. Esc disarms.</span>
         <input ref={input} data-testid="command-confirmation" autocomplete="off" spellcheck={false} value={confirmation.value}
           onInput={(event) => (confirmation.value = event.currentTarget.value)}
           onKeyDown={(event) => {
@@ -123,7 +123,7 @@ const STAGE_SHAPES = { ok: '✓', failed: '✖', unknown: '?', pending: '…', n
 const STAGE_WORDS = { ok: 'seen', failed: 'failed', unknown: 'not known', pending: 'due', none: 'nothing known' } as const;
 
 function History() {
-  const run = store.value;
+  const run = runNow();
   if (!run) return null;
   const rows = [...run.commands.values()].sort((a, b) => b.command - a.command).slice(0, HISTORY_SHOWN);
   return (
@@ -147,7 +147,6 @@ function History() {
 }
 
 export function Commands() {
-  void tick.value;
   const command = chosen.value;
   const canSend = modeNow() === 'rehearsal';
   return (

@@ -66,6 +66,11 @@ function draw({ context: c, width, height, colours }: Surface): void {
     c.stroke();
   }
   moments(c, [...recorded, ...live], x, y, width, colours);
+  if (live.length + recorded.length === 0) {
+    c.fillStyle = colours.dim;
+    c.textAlign = 'center';
+    c.fillText(`no ${altitude.name} has come yet`, (LEFT + width) / 2, height / 2);
+  }
   const now = live[live.length - 1] ?? recorded[recorded.length - 1];
   if (now) {
     c.fillStyle = colours.text;

@@ -27,6 +27,9 @@ export interface EventFilter {
   range: { from: number; to: number } | undefined;
 }
 
+/** Verdicts that come again and again while nothing happens: the waiting panel shows the newest of them. */
+const MINOR = new Set(['held', 'chosen', 'dropped']);
+
 const SAME_MOMENT_S = 1 / 16; // ours: an explanation and its event leave within a few cycles
 
 /** At most `most` lines. An explanation stands with the event of its moment that it speaks of, else by itself. */
@@ -58,11 +61,11 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
     if (!inRange(row.fact.sclk)) continue;
     const e_s = row.fact.sclk - store.entrySclk;
     const decision = row.fact.decision.toLowerCase();
-    const owner = lines.findLast((line) =>
-      !line.explanation && Math.abs(line.e_s - e_s) <= SAME_MOMENT_S && decision !== '' &&
-      (line.name.toLowerCase().includes(decision) || decision.includes(line.name.toLowerCase())));
+    const minor = MINOR.has(row.fact.verdict);
+    const owner = minor || decision === '' ? undefined : lines.findLast((line) =>
+      !line.explanation && Math.abs(line.e_s - e_s) <= SAME_MOMENT_S && line.name.toLowerCase().startsWith(decision));
     if (owner) owner.why.push(row.fact.text);
-    else if (least <= 1 || row.fact.verdict !== 'chosen') {
+    else if (least === 0 || !minor) {
       lines.push({
         key: `x${row.seq}`, seq: row.seq, e_s, level: 'why', name: row.fact.decision, text: row.fact.text, why: [],
         live: row.live, recorded: row.recorded, explanation: true,

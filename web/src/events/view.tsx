@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { Panel } from '../panel';
-import { pastRange, store, tick } from '../run/session';
+import { pastRange, runNow } from '../run/session';
 import { fromEntry } from '../run/time';
 import { LEVELS, eventLines, levelShape, levelWords, sourceWords } from './model';
 import './style.css';
@@ -10,8 +10,7 @@ const search = signal('');
 const SHOWN = 250;
 
 export function Events() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const { lines, warnings } = run
     ? eventLines(run, { from: from.value, search: search.value, range: pastRange.value }, SHOWN)
     : { lines: [], warnings: 0 };

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
-import { ask, cutoff, notify, store, tick } from '../run/session';
+import { ask, cutoff, notify, runNow, store } from '../run/session';
 import { fromEntry } from '../run/time';
 import { hexLines, linkRates, newestUnits } from './model';
 import './style.css';
@@ -20,8 +20,7 @@ async function open(seq: number): Promise<void> {
 }
 
 export function Packets() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   if (!run) return null;
   const packet = opened.value;
   return (

@@ -148,6 +148,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
         <output data-testid={`reading-${title.toLowerCase()}`}>{now === undefined || Number.isNaN(now) ? '—' : (now / per).toFixed(digits)}</output> {unit}
       </span>
     }>
+      {now === undefined && <span class="plot-empty">no {channel.name} has come yet</span>}
       <div class="plot" ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`} />
     </Panel>
   );

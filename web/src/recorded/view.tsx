@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import type { ChannelSeriesList, RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
-import { ask, dictionary, pastRange, store, tick } from '../run/session';
+import { ask, dictionary, pastRange, runNow, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { rangeProblem, rangeRow, seriesPath } from './model';
 import type { RangeRow } from './model';
@@ -72,8 +72,7 @@ export function backToLive(): void {
 }
 
 export function Recorded() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   if (!run) return null;
   return (
     <div class="table-box" data-testid="recorded">
@@ -86,7 +85,6 @@ export function Recorded() {
         <label class="wide">channels <input data-testid="range-channels" value={channels.value ?? defaultChannels()} onInput={(event) => (channels.value = event.currentTarget.value)} /></label>
         <label>points <input class="points" value={size.value} inputMode="numeric" onInput={(event) => (size.value = event.currentTarget.value)} /></label>
         <button type="submit" disabled={underWay.value} data-testid="range-query">{underWay.value ? 'asking…' : 'ask'}</button>
-        {pastRange.value && <button type="button" onClick={backToLive} data-testid="range-leave">leave the past view</button>}
       </form>
       {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">{message.value.good ? '✓' : '✖'} {message.value.text}</p>}
       <div class="table-scroll" tabIndex={0} aria-label="recorded range">

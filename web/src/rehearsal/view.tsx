@@ -1,7 +1,7 @@
 // Rehearsals: pace and pause in one bar that is always there; which run is looked at, and new ones, in a panel.
 import { signal } from '@preact/signals';
 import { outcomeWords } from '../clocks/model';
-import { control, modeNow, runs, scenarios, store, tick, watch } from '../run/session';
+import { control, modeNow, runNow, runs, scenarios, store, watch } from '../run/session';
 import { PACES, attainedText, nextPace, paceText } from './model';
 import './style.css';
 
@@ -15,8 +15,7 @@ export function togglePause(): void {
 }
 
 export function PaceBar() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   if (!run?.going || modeNow() === 'past') return null;
   const paused = run.run.state === 'paused';
   return (
@@ -42,8 +41,7 @@ function start(): void {
 }
 
 export function Rehearsal() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const going = runs.value.find((other) => ['waiting', 'running', 'paused'].includes(other.state));
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);

@@ -18,6 +18,12 @@ export const scenarios = signal<{ name: string; title: string }[]>([]);
 export const watched = signal(0);
 /** Five times a second, when something has changed. Numbers on the screen follow this and nothing faster. */
 export const tick = signal(0);
+/** The run, read by a view: it is then shown again at each tick, for a store changes without becoming another. */
+export function runNow(): RunStore | undefined {
+  void tick.value;
+  return store.value;
+}
+
 /** A part of the run looked at as the past, in seconds from entry; undefined: not a past view. */
 export const pastRange = signal<{ from: number; to: number } | undefined>(undefined);
 

@@ -4,7 +4,7 @@ import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../panel';
-import { cutoff, pastRange, store, tick, timepoints } from '../run/session';
+import { cutoff, pastRange, runNow, store, tick, timepoints } from '../run/session';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
@@ -28,6 +28,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   const bottom = TOP + LANE * LANES.length;
   hits = [];
 
+  const cursor = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag stands where labels would
   const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
   c.textAlign = 'center';
   c.textBaseline = 'middle';
@@ -36,7 +37,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
     c.strokeStyle = e_s === 0 ? colours.faint : colours.line;
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
-    c.fillText(axisTime(e_s, step), x(e_s), 11);
+    if (Math.abs(x(e_s) - cursor) > 58) c.fillText(axisTime(e_s, step), x(e_s), 11);
   }
   c.font = `12.5px ${colours.sans}`;
   c.textAlign = 'left';
@@ -66,7 +67,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   marks(c, lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : diamond(c, px, py, 5, colours.blue)), true);
   marks(c, lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : disc(c, px, py, 3.6, colours.green)), true);
   labels(c, lanes, x, bottom, width, colours);
-  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours);
+  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8);
   c.restore();
 }
 
@@ -148,25 +149,27 @@ function labels(
 
 function cursors(
   c: CanvasRenderingContext2D, seen: number, lightTime: number, x: (e: number) => number, bottom: number,
-  colours: Surface['colours'],
+  colours: Surface['colours'], right: number,
 ): void {
-  if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom);
+  if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom, right);
   const past = pastRange.value;
-  flag(c, x(past ? past.to : seen), past ? 'end of past view' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom);
+  flag(c, x(past ? past.to : seen), past ? 'end of past view' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
 }
 
-function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number): void {
+function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number, right: number): void {
+  if (px < GUTTER - 6) return;
   c.strokeStyle = colour;
   line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
   c.font = 'bold 11px sans-serif';
   const half = c.measureText(words).width / 2 + 6;
+  const middle = Math.max(GUTTER + half - 6, Math.min(right - half, px));
   c.fillStyle = colour;
   c.beginPath();
-  c.roundRect(px - half, 3, half * 2, 17, 3);
+  c.roundRect(middle - half, 3, half * 2, 17, 3);
   c.fill();
   c.fillStyle = ink;
   c.textAlign = 'center';
-  c.fillText(words, px, 12);
+  c.fillText(words, middle, 12);
 }
 
 function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
@@ -224,8 +227,7 @@ const CHOICES: [Choice & string, string, string][] = [
 ];
 
 function Detail() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const id = selected.value;
   if (!run || id === undefined) return null;
   const detail = pointDetail(run, timepoints.value, id, cutoff.value);
@@ -252,8 +254,7 @@ function Detail() {
 }
 
 export function Timeline() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const fired = run ? [...run.firings.values()].filter((pair) => pair.live || pair.recorded).length : 0;
   return (
     <Panel name="timeline" title="Timeline" extra={

@@ -9,17 +9,21 @@ import { latestTone, toneBars, toneEvidence, toneTitle } from './model';
 import './style.css';
 
 const LEFT = 42;
+const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came need
 
 function draw({ context: c, width, height, colours }: Surface): void {
   const run = store.value;
   const { from, to } = plotSpan(run);
   const bottom = height - 20;
   const x = (e_s: number) => LEFT + ((e_s - from) / (to - from)) * (width - LEFT - 12);
-  const y = (tone: number) => bottom - (tone / 255) * (bottom - 14);
+  const bars = run ? toneBars(run, cutoff.value) : [];
+  const most = bars.reduce((largest, bar) => Math.max(largest, bar.tone ?? 0), 0);
+  const high = HEIGHTS.find((height) => most < height) ?? 256;
+  const y = (tone: number) => bottom - (tone / high) * (bottom - 22);
   c.font = `11px ${colours.mono}`;
   c.lineWidth = 1;
   c.textBaseline = 'middle';
-  for (const tone of [0, 64, 128, 192, 255]) {
+  for (const tone of [0, high / 4, high / 2, (high * 3) / 4, high - 1]) {
     c.strokeStyle = colours.line;
     c.beginPath();
     c.moveTo(LEFT, Math.round(y(tone)) + 0.5);
@@ -32,8 +36,6 @@ function draw({ context: c, width, height, colours }: Surface): void {
   const step = timeStep(to - from, Math.floor(width / 100));
   c.textAlign = 'center';
   for (const e_s of ticks(from, to, step)) c.fillText(axisTime(e_s, step), x(e_s), height - 8);
-  if (!run) return;
-  const bars = toneBars(run, cutoff.value);
   c.save();
   c.beginPath();
   c.rect(LEFT, 0, width - LEFT - 10, height);
@@ -45,7 +47,7 @@ function draw({ context: c, width, height, colours }: Surface): void {
       // An erasure: an empty dashed box in the middle, never nothing.
       c.strokeStyle = colours.dim;
       c.setLineDash([2, 2]);
-      c.strokeRect(left + 0.5, y(128) - 3.5, wide, 7);
+      c.strokeRect(left + 0.5, y(high / 2) - 3.5, wide, 7);
       c.setLineDash([]);
       return;
     }
@@ -69,8 +71,8 @@ export function Tones() {
   void tick.value;
   const tone = store.value && latestTone(store.value, cutoff.value);
   return (
-    <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>}
-      extra={<span data-testid="tone-evidence">{toneEvidence(tone)}</span>}>
+    <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>}>
+      <p class="tone-evidence" data-testid="tone-evidence">{toneEvidence(tone)}</p>
       <Canvas label={toneTitle(tone)} testId="tone-canvas" draw={draw} keyOf={() => {
         const span = plotSpan(store.value);
         return `${store.value?.id} ${store.value?.tones.length} ${Math.round(span.from * 2)} ${Math.round(span.to * 2)} ${cutoff.value}`;

@@ -1,7 +1,7 @@
 import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';
 import { openCommandLine } from '../commands/line';
-import { cutoff, dictionary, modeNow, store, tick, timepoints } from '../run/session';
+import { cutoff, dictionary, modeNow, runNow, store, timepoints } from '../run/session';
 import { focusPanel } from '../shortcuts/model';
 import { waitingFor } from './model';
 import './style.css';
@@ -18,8 +18,7 @@ const SHAPES = { holds: '✓', missing: '○', unknown: '?' } as const;
 const WORDS = { holds: 'holds', missing: 'is missing', unknown: 'is not known' } as const;
 
 export function WaitingFor() {
-  void tick.value;
-  const run = store.value;
+  const run = runNow();
   const words = dictionary.value;
   if (!words) return null;
   if (!run) {

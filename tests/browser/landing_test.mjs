@@ -1,0 +1,155 @@
+// A newcomer lands a spacecraft with the keyboard alone, reloads, and asks for a recorded range; a server that is
+// killed in mid-landing loses nothing that was shown. AEOLIS_PICTURES=1 renews docs/pictures.
+import assert from 'node:assert/strict';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { browser, open, root, secondsFromEntry, serve, temporaryFolder, waitFor } from './support.mjs';
+
+const pictures = process.env.AEOLIS_PICTURES === '1';
+let chrome;
+let folder;
+
+before(async () => {
+    [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
+});
+after(async () => {
+    await chrome?.close();
+    await folder?.remove();
+});
+
+async function picture(page, name) {
+    if (pictures) await page.screenshot({ path: path.join(root, 'docs/pictures', name) });
+}
+
+async function pace(page, wanted) {
+    for (let presses = 0; presses < 12; ++presses) {
+        const now = Number(await page.getByTestId('pace').inputValue());
+        if (now === wanted) return;
+        await page.keyboard.press(now === 0 || now > wanted ? '-' : '+');
+        await waitFor(() => page.getByTestId('pace').inputValue(), (value) => Number(value) !== now, 5_000);
+    }
+    assert.fail(`the pace never became ${wanted}`);
+}
+
+const stage = (page, command, name) =>
+    page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
+
+test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 80_000 }, async () => {
+    const server = await serve({ archive: path.join(folder.folder, 'landing.db'), more: ['--scenario', 'nominal'] });
+    try {
+        const { page, problems, text, shows } = await open(chrome, server.address);
+        await shows('badge', /REHEARSAL.*nominal/s);
+        await shows('waiting', /set edl parameters/);
+
+        await page.keyboard.press('/');
+        await page.keyboard.type('set edl parameters');
+        await page.keyboard.press('Enter');
+        await shows('command-review', /filled from ground/);
+        await page.keyboard.press('Enter');
+        await shows('command-message', /EDL_SET_PARAMETERS is #1/);
+        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
+        await shows('waiting', /do edl/);
+
+        await page.keyboard.type('do edl');
+        await page.keyboard.press('Enter');
+        await shows('command-review', /arms it; nothing is sent yet/);
+        await page.keyboard.press('Enter');
+        await shows('command-armed', /ARMED/);
+        await page.keyboard.press('Enter');
+        await shows('command-message', /nothing was sent/);
+        await page.keyboard.type('EDL_DO_EDL');
+        await page.keyboard.press('Enter');
+        await shows('command-message', /EDL_DO_EDL is #2/);
+        await waitFor(() => stage(page, 'EDL_DO_EDL', 'executed'), /ok/);
+        await page.keyboard.press('Escape');
+
+        await pace(page, 100);
+        await shows('timepoints-fired', /^[1-9]/);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > -60, 30_000);
+        await pace(page, 20);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 40_000);
+        await page.keyboard.press('p');
+        await shows('badge', /paused/);
+        await shows('phases', /Parachute/);
+        assert.match(await text('tone-title'), /Tone \d+ · \S/);
+        assert.match(await text('reading-altitude'), /\d/);
+        await picture(page, 'console_mid_entry.png');
+        await page.keyboard.press('p');
+        await pace(page, 50);
+
+        await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 30_000);
+        await pace(page, 0).catch(() => undefined); // it may have ended by now
+        await shows('waiting', /Landed/, 30_000);
+        await shows('badge', /ENDED RUN.*touchdown/s);
+        const seen = {
+            fired: await text('timepoints-fired'), through: await text('complete-through'), tone: await text('tone-title'),
+            stages: await stage(page, 'EDL_DO_EDL', 'executed'),
+        };
+        await picture(page, 'console_landed.png');
+
+        await page.reload();
+        await shows('waiting', /Landed/);
+        await waitFor(() => text('timepoints-fired'), (value) => value === seen.fired);
+        await waitFor(() => text('complete-through'), (value) => value === seen.through);
+        await waitFor(() => text('reading-altitude'), /\d/);
+        assert.equal(await text('tone-title'), seen.tone);
+        assert.equal(await stage(page, 'EDL_DO_EDL', 'executed'), seen.stages);
+        assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 1);
+
+        await page.keyboard.press('r');
+        await waitFor(() => page.evaluate(() => document.activeElement?.dataset.testid), /range-from/);
+        await page.keyboard.press('Control+A');
+        await page.keyboard.type('E+4:10');
+        await page.keyboard.press('Tab');
+        await page.keyboard.type('E+5:00');
+        await page.keyboard.press('Enter');
+        await shows('range-message', /✓ [1-9]\d* samples of 4 channels/);
+        await shows('badge', /PAST, NOT LIVE/);
+        assert.match(await text('past-bar'), /Nothing here is live/);
+        assert.match(await text('recording-summary'), /✓ Every live packet is in the recording/);
+        assert.equal(await text('clock-entry'), 'E+00:05:00');
+        assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 0, 'an event after the range is shown');
+        await picture(page, 'console_recorded_range.png');
+        await page.keyboard.press('Escape');
+        await page.keyboard.press('Escape');
+        await shows('badge', /ENDED RUN/);
+        assert.deepEqual(problems, []);
+        await page.close();
+    } finally {
+        await server.stop();
+    }
+});
+
+test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown', { timeout: 40_000 }, async () => {
+    const archive = path.join(folder.folder, 'killed.db');
+    const first = await serve({ archive, more: ['--scenario', 'nominal_auto', '--pace', '100'] });
+    let second;
+    try {
+        const { page, text, shows } = await open(chrome, first.address);
+        await shows('timepoints-fired', /^([5-9]|\d\d) of/, 30_000);
+        await shows('stream-state', /connected/);
+        await first.kill();
+        await shows('stream-state', /NO CONNECTION/);
+        const shown = Number((await text('complete-through')).replace(/\D/g, ''));
+        const fired = Number.parseInt(await text('timepoints-fired'), 10);
+        assert.ok(shown > 0);
+
+        second = await serve({ archive, port: first.port });
+        await shows('stream-state', /connected/);
+        await shows('badge', /INTERRUPTED RUN/);
+        await shows('waiting', /Interrupted/);
+        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
+        assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
+        const [run] = (await second.get('/runs')).runs;
+        assert.equal(run.state, 'interrupted');
+        assert.ok(Number(run.last_seq) >= shown, `${run.last_seq} stored, ${shown} shown`);
+
+        await page.reload();
+        await shows('badge', /INTERRUPTED RUN/);
+        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
+        await page.close();
+    } finally {
+        await first.kill();
+        await second?.stop();
+    }
+});
