@@ -1,0 +1,119 @@
+#include "flight/edl/edl_main.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+constexpr double entry_s = 100'000.0;
+
+command::EDL_SET_PARAMETERS parameters() {
+    command::EDL_SET_PARAMETERS p;
+    p.solution_id = 7;
+    p.epoch_sclk = entry_s - 1200.0;
+    p.position_x_m = 9.0e6;
+    p.velocity_x_mps = -5000.0;
+    p.velocity_y_mps = 500.0;
+    p.entry_sclk = entry_s;
+    p.target_radius_m = 3391148.0;
+    p.parachute_speed_mps = 405.0F;
+    return p;
+}
+
+struct Fixture {
+    EdlMain edl{Load{}};
+    test::OutboxRecorder recorder;
+
+    template <typename M>
+    void handle(const M& message, double at_s) {
+        recorder.begin(ModuleId::edl, Sclk{at_s});
+        edl.on(message, recorder.out);
+    }
+    void set_parameters(double at_s) { handle(ParametersUpdate{{}, parameters()}, at_s); }
+    std::optional<CommandRefusal> do_edl(double at_s) {
+        handle(DoEdlCommand{}, at_s);
+        REQUIRE(recorder.sent<CommandOutcome>().size() == 1);
+        return recorder.sent<CommandOutcome>()[0].refused;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("do edl before parameters is refused and not remembered", "[edl][R23]") {
+    Fixture f;
+    CHECK(f.do_edl(entry_s - 1200) == CommandRefusal::no_parameters);
+    f.set_parameters(entry_s - 1190);
+    f.handle(Tick{Sclk{entry_s - 1189}}, entry_s - 1189);
+    CHECK_FALSE(f.edl.timeline().begun());
+    CHECK_FALSE(f.do_edl(entry_s - 1188).has_value());
+    CHECK(f.edl.timeline().begun());
+}
+
+TEST_CASE("do edl is possible in late cruise only", "[edl][R23]") {
+    Fixture f;
+    f.set_parameters(entry_s - 40'000);
+    const double late_cruise_s = entry_s - ParameterDefaults{}.late_cruise_before_entry_s;
+    CHECK(f.do_edl(late_cruise_s - 1.0 / 64) == CommandRefusal::too_early);
+    CHECK_FALSE(f.do_edl(late_cruise_s).has_value());
+}
+
+TEST_CASE("do edl is refused when timepoints are overdue, for they would fire in a burst", "[edl][R23]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1200);
+    const double first_due_s = entry_s + *timeline_specs[0].desired_offset_s;
+    CHECK(f.do_edl(first_due_s) == CommandRefusal::too_late);
+    CHECK_FALSE(f.edl.timeline().begun());
+}
+
+TEST_CASE("a second do edl is refused", "[edl][R23]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1200);
+    CHECK_FALSE(f.do_edl(entry_s - 1100).has_value());
+    CHECK(f.do_edl(entry_s - 1099) == CommandRefusal::already_running);
+}
+
+TEST_CASE("parameters may come again with each navigation update, and are read back", "[edl][R23][R25]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1200);
+    CHECK(f.recorder.packets<packet::ParametersHeld>() == 1);
+    f.set_parameters(entry_s - 1100);
+    CHECK(f.recorder.packets<packet::ParametersHeld>() == 1);
+    CHECK(f.recorder.events<evr::EDL_PARAMETERS_ACCEPTED>() == 1);
+}
+
+TEST_CASE("do edl explains why it was refused", "[edl][R38]") {
+    Fixture f;
+    (void)f.do_edl(entry_s - 1200);
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+}
+
+TEST_CASE("without do edl the timeline fires nothing up to and past entry", "[edl][R23]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1200);
+    for (int tick = 0; tick < 64 * 1300; tick += 16) {
+        const double at_s = entry_s - 1190 + tick / 64.0;
+        f.handle(Tick{Sclk{at_s}}, at_s);
+        REQUIRE(f.recorder.sent<FirePyro>().empty());
+        REQUIRE(f.recorder.packets<packet::TimepointFired>() == 0);
+    }
+}
+
+TEST_CASE("an offset that is no multiple of 1/64 s, or of a row that is not there, is refused", "[edl][R16][R21]") {
+    Fixture f;
+    f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = 0.3, .minimum_offset_s = 0.0}}, 5.0);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 9999, .desired_offset_s = 1.0, .minimum_offset_s = 0.0}}, 5.0);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = -800.0, .minimum_offset_s = 0.0}}, 5.0);
+    CHECK_FALSE(f.recorder.sent<CommandOutcome>()[0].refused.has_value());
+    CHECK(f.recorder.events<evr::TIMEPOINT_OFFSET_CHANGED>() == 1);
+}
+
+TEST_CASE("every cycle ends with one confirmation to sync", "[edl][R18][R22]") {
+    Fixture f;
+    f.handle(Tick{Sclk{5.0}}, 5.0);
+    CHECK(f.recorder.sent<Confirm>().size() == 1);
+}

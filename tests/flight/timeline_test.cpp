@@ -1,0 +1,222 @@
+#include "flight/timeline/timeline.hpp"
+
+#include "flight/timeline/actions.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+#include <random>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+Sclk at(double seconds) {
+    return Sclk{1000.0 + seconds};
+}
+
+void nothing(ActionContext&) {}
+void fire_a_pyro(ActionContext& context) {
+    context.fire(PyroId::coolant_vent);
+}
+
+constexpr AnchorId root{0}, entry_anchor{1}, parachute_anchor{2};
+const std::vector<AnchorSpec> anchors{
+    {"root", {}, {}}, {"entry", root, MaybeOffset{1100.0}}, {"parachute", root, MaybeOffset{}}};
+
+TimepointSpec row(std::optional<AnchorId> anchor, MaybeOffset desired_s, MaybeOffset minimum_s, Action action = nothing,
+                  std::optional<double> reply_timeout_s = {}) {
+    return {"row", anchor, desired_s, minimum_s, action, reply_timeout_s, {}, true, {}, nullptr};
+}
+
+struct Fixture {
+    std::vector<TimepointSpec> rows;
+    Timeline timeline;
+    test::OutboxRecorder recorder;
+    gnc::Configuration configuration;
+
+    explicit Fixture(std::vector<TimepointSpec> its_rows) : rows(std::move(its_rows)), timeline(rows, anchors) {}
+
+    /// One cycle with a single pass.
+    std::vector<Firing> cycle(Sclk now) {
+        timeline.begin_cycle();
+        return pass(now);
+    }
+    std::vector<Firing> pass(Sclk now) {
+        recorder.begin(ModuleId::edl, now);
+        ActionContext context{recorder.out, configuration};
+        Firings firings;
+        timeline.pass(now, context, firings);
+        return {firings.begin(), firings.end()};
+    }
+};
+
+}  // namespace
+
+TEST_CASE("nothing fires before do edl was accepted", "[timeline][R16][R23]") {
+    Fixture f{{row({}, 0.0, 0.0)}};
+    CHECK(f.cycle(at(0)).empty());
+    f.timeline.begin(at(1));
+    CHECK(f.cycle(at(1)).size() == 1);
+}
+
+TEST_CASE("a timepoint fires at its desired offset from the previous firing, not a tick before", "[timeline][R11]") {
+    Fixture f{{row({}, 2.0, 0.0)}};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(2.0 - 1.0 / 64)).empty());
+    const auto fired = f.cycle(at(2.0));
+    REQUIRE(fired.size() == 1);
+    CHECK(fired[0].fired == at(2.0));
+}
+
+TEST_CASE("a timepoint that its anchor makes due still waits for its minimum offset", "[timeline][R11]") {
+    Fixture f{{row({}, 0.0, 0.0), row(entry_anchor, -95.0, 8.0)}};  // entry is at 100 s: desired at 5 s
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(0)).size() == 1);
+    CHECK(f.cycle(at(7.984375)).empty());
+    CHECK(f.cycle(at(8.0)).size() == 1);
+}
+
+TEST_CASE("a timepoint with an undefined anchor or offset never fires", "[timeline][R13]") {
+    for (const auto& spec : {row(parachute_anchor, 0.0, 0.0), row({}, MaybeOffset{}, 0.0), row({}, 0.0, MaybeOffset{})}) {
+        Fixture f{{spec}};
+        f.timeline.begin(at(0));
+        for (int second = 0; second < 1000; ++second) REQUIRE(f.cycle(at(second)).empty());
+    }
+}
+
+TEST_CASE("what GNC sets now is due in the second pass of the same cycle", "[timeline][R17]") {
+    Fixture f{{row(parachute_anchor, 0.0, 0.0), row(parachute_anchor, 2.0, 0.0)}};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(5)).empty());
+    CHECK(f.timeline.state() == TimepointState::undefined);
+    f.timeline.set_anchor_now(parachute_anchor, at(5));
+    CHECK(f.pass(at(5)).size() == 1);
+    CHECK(f.timeline.state() == TimepointState::pending);
+    CHECK(f.cycle(at(6.984375)).empty());
+    CHECK(f.cycle(at(7)).size() == 1);
+}
+
+TEST_CASE("at most five timepoints fire in one cycle, both passes together", "[timeline][R15]") {
+    Fixture f{std::vector<TimepointSpec>(7, row({}, 0.0, 0.0))};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(0)).size() == 5);
+    CHECK(f.pass(at(0)).empty());
+    CHECK(f.cycle(at(1.0 / 64)).size() == 2);
+    CHECK(f.timeline.finished());
+}
+
+TEST_CASE("a timepoint that waits for a reply is done when the reply comes, and its firing time is then", "[timeline][R14]") {
+    Fixture f{{row({}, 0.0, 0.0, fire_a_pyro, 1.0), row({}, 0.0, 0.0)}};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(0)).empty());
+    CHECK(f.recorder.sent<FirePyro>().size() == 1);
+    CHECK(f.timeline.state() == TimepointState::waiting_reply);
+    f.timeline.reply({ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::heatshield_separation)});  // another's
+    CHECK(f.cycle(at(0.25)).empty());
+    f.timeline.reply({ReplyKind::pyro, static_cast<std::uint8_t>(PyroId::coolant_vent)});
+    const auto done = f.cycle(at(0.5));
+    REQUIRE(done.size() == 2);
+    CHECK(done[0].verdict == FiringVerdict::replied);
+    CHECK(done[0].triggered == at(0));
+    CHECK(done[0].fired == at(0.5));
+    CHECK(done[1].fired == at(0.5));
+}
+
+TEST_CASE("a reply that does not come ends the wait at its time-out, not a tick before", "[timeline][R14]") {
+    Fixture f{{row({}, 0.0, 0.0, fire_a_pyro, 1.0)}};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(0)).empty());
+    CHECK(f.cycle(at(1.0 - 1.0 / 64)).empty());
+    const auto done = f.cycle(at(1));
+    REQUIRE(done.size() == 1);
+    CHECK(done[0].verdict == FiringVerdict::timed_out);
+}
+
+TEST_CASE("an action runs once, however long its reply takes", "[timeline][R14]") {
+    Fixture f{{row({}, 0.0, 0.0, fire_a_pyro, 10.0)}};
+    f.timeline.begin(at(0));
+    int fired = 0;
+    for (int tick = 0; tick < 64 * 5; ++tick) {
+        f.cycle(at(tick / 64.0));
+        fired += static_cast<int>(f.recorder.sent<FirePyro>().size());
+    }
+    CHECK(fired == 1);
+}
+
+TEST_CASE("an offset changed between cycles counts in the next pass", "[timeline][R16]") {
+    Fixture f{{row({}, 50.0, 0.0), row(entry_anchor, 0.0, 0.0)}};
+    f.timeline.begin(at(0));
+    CHECK(f.cycle(at(1)).empty());
+    CHECK(f.timeline.set_timepoint_offsets(TimepointId{0}, 1.0, 0.0));
+    CHECK(f.cycle(at(1.015625)).size() == 1);
+    CHECK(f.timeline.set_anchor_offset(entry_anchor, 1002.0));
+    CHECK(f.cycle(at(2)).size() == 1);
+}
+
+TEST_CASE("offsets of rows that do not exist, and the root, are refused", "[timeline][R16]") {
+    Fixture f{{row({}, 0.0, 0.0)}};
+    CHECK_FALSE(f.timeline.set_timepoint_offsets(TimepointId{1}, 0.0, 0.0));
+    CHECK_FALSE(f.timeline.set_anchor_offset(AnchorId{3}, 0.0));
+    CHECK_FALSE(f.timeline.set_anchor_offset(root, 0.0));
+}
+
+TEST_CASE("one sweep computes the whole tree of anchors, and undefined spreads down it", "[timeline][R12][R13]") {
+    const std::vector<AnchorSpec> tree{{"root", {}, {}},
+                                       {"entry", AnchorId{0}, MaybeOffset{}},
+                                       {"before", AnchorId{1}, MaybeOffset{-10.0}},
+                                       {"long_before", AnchorId{2}, MaybeOffset{-100.0}}};
+    Timeline timeline{{}, tree};
+    CHECK_FALSE(timeline.anchor_time(AnchorId{3}).defined());
+    REQUIRE(timeline.set_anchor_offset(AnchorId{1}, 500.0));
+    timeline.compute_anchors();
+    CHECK(timeline.anchor_time(AnchorId{3}).get()->seconds == 390.0);
+}
+
+TEST_CASE("firings keep the order of the rows whatever the offsets, and never come before their minimum", "[timeline][R19]") {
+    std::mt19937 random{11};
+    for (int round = 0; round < 300; ++round) {
+        std::vector<TimepointSpec> rows;
+        std::vector<double> minimum_s;
+        for (int i = 0; i < 20; ++i) {
+            minimum_s.push_back(static_cast<double>(random() % 64) / 64.0);
+            const double desired_s = (static_cast<int>(random() % 256) - 64) / 64.0;
+            rows.push_back(random() % 2 ? row({}, desired_s, minimum_s.back())
+                                        : row(entry_anchor, desired_s - 95.0, minimum_s.back()));
+        }
+        Fixture f{rows};
+        f.timeline.begin(at(0));
+        std::vector<Firing> fired;
+        for (int tick = 0; tick < 64 * 60 && !f.timeline.finished(); ++tick)
+            for (const Firing& firing : f.cycle(at(tick / 64.0))) fired.push_back(firing);
+        REQUIRE(fired.size() == rows.size());
+        for (std::size_t i = 1; i < fired.size(); ++i) {
+            REQUIRE(fired[i].timepoint.value == i);
+            REQUIRE(fired[i].fired - fired[i - 1].fired >= minimum_s[i]);
+        }
+    }
+}
+
+TEST_CASE("may_fire compares exactly at the tick", "[timeline][R11][R13]") {
+    const Sclk now{10.0};
+    CHECK(may_fire(Sclk{8.0}, 2.0, Sclk{9.0}, 1.0, now));
+    CHECK_FALSE(may_fire(Sclk{8.0}, 2.015625, Sclk{9.0}, 1.0, now));
+    CHECK_FALSE(may_fire(Sclk{8.0}, 2.0, Sclk{9.0}, 1.015625, now));
+    CHECK_FALSE(may_fire(MaybeTime{}, 2.0, Sclk{9.0}, 1.0, now));
+}
+
+TEST_CASE("the shipped timeline fits the engine, and every row that waits for a reply asks for one", "[timeline][R14][R20]") {
+    CHECK(timeline_specs.size() >= 60);
+    for (const TimepointSpec& spec : timeline_specs) {
+        if (!spec.reply_timeout_s) continue;
+        INFO(spec.name);
+        REQUIRE(spec.action);
+        test::OutboxRecorder recorder;
+        gnc::Configuration configuration;
+        ActionContext context{recorder.out, configuration};
+        context.begin(spec);
+        spec.action(context);
+        CHECK(context.awaited().kind != ReplyKind::none);
+    }
+}

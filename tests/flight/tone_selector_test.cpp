@@ -1,0 +1,104 @@
+#include "flight/mfsk/tone_selector.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+#include <array>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+std::array<ToneSpec, 256> tones() {
+    std::array<ToneSpec, 256> specs{};
+    for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}};
+    specs[50].supersedes = ToneId{40};
+    return specs;
+}
+
+struct Fixture {
+    std::array<ToneSpec, 256> specs = tones();
+    ToneSelector selector{specs};
+    test::OutboxRecorder recorder{ModuleId::mfsk};
+
+    void request(std::uint8_t tone, double at_s) {
+        recorder.begin(ModuleId::mfsk, Sclk{at_s});
+        selector.on(ToneRequest{ToneId{tone}, Sclk{at_s}}, recorder.out);
+    }
+    std::optional<ToneId> tick(double at_s) {
+        recorder.begin(ModuleId::mfsk, Sclk{at_s});
+        selector.on(ClockTick{Sclk{at_s}}, recorder.out);
+        return recorder.bus->tone;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("without a request the carrier goes out without a tone", "[mfsk][R31]") {
+    Fixture f;
+    CHECK_FALSE(f.tick(0).has_value());
+}
+
+TEST_CASE("a tone is sent for ten seconds, not a tick less", "[mfsk][R31]") {
+    Fixture f;
+    f.request(7, 0);
+    CHECK(f.tick(0) == ToneId{7});
+    CHECK(f.tick(10.0 - 1.0 / 64) == ToneId{7});
+    CHECK_FALSE(f.tick(10.0).has_value());
+}
+
+TEST_CASE("the most important outstanding request is sent first, and the choice explains itself", "[mfsk][R31][R38]") {
+    Fixture f;
+    f.request(10, 0);
+    f.request(90, 0);
+    f.request(20, 0);
+    CHECK(f.tick(0) == ToneId{90});
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    CHECK(f.recorder.packets<packet::ToneSelected>() == 1);
+    CHECK(f.tick(10) == ToneId{20});
+    CHECK(f.tick(20) == ToneId{10});
+}
+
+TEST_CASE("a tone that is being sent is not cut short by a more important one", "[mfsk][R31]") {
+    Fixture f;
+    f.request(1, 0);
+    CHECK(f.tick(0) == ToneId{1});
+    f.request(200, 1);
+    CHECK(f.tick(5) == ToneId{1});
+    CHECK(f.tick(10) == ToneId{200});
+}
+
+TEST_CASE("a request that has become too old is dropped, and says so", "[mfsk][R31][R38]") {
+    Fixture f;
+    f.request(200, 0);
+    f.request(3, 0);
+    CHECK(f.tick(0) == ToneId{200});
+    f.request(201, 9);
+    CHECK(f.tick(10) == ToneId{201});
+    f.request(202, 19);
+    CHECK(f.tick(20) == ToneId{202});
+    CHECK_FALSE(f.tick(30.015625).has_value());
+    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+}
+
+TEST_CASE("a request that a newer event has overtaken is dropped", "[mfsk][R31]") {
+    Fixture f;
+    f.request(200, 0);
+    CHECK(f.tick(0) == ToneId{200});
+    f.request(40, 1);
+    f.request(50, 2);
+    CHECK(f.tick(10) == ToneId{50});
+    CHECK_FALSE(f.tick(20).has_value());
+}
+
+TEST_CASE("when full, the least important request gives way and it is reported", "[mfsk][R31]") {
+    Fixture f;
+    for (std::uint8_t tone = 100; tone < 164; ++tone) f.request(tone, 0);
+    f.request(200, 0);
+    CHECK(f.recorder.events<evr::MFSK_REQUESTS_FULL>() == 1);
+    CHECK(f.tick(0) == ToneId{200});
+    f.request(199, 0);
+    f.request(5, 0);
+    CHECK(f.recorder.events<evr::MFSK_REQUESTS_FULL>() == 1);
+}
