@@ -1,0 +1,179 @@
+#include "common/space_packet.hpp"
+#include "simulation/devices/recorder.hpp"
+#include "simulation/links/relay_link.hpp"
+#include "simulation/links/tone_detection.hpp"
+#include "simulation/links/uhf_link.hpp"
+#include "simulation/links/x_band_link.hpp"
+#include "simulation/mars/earth.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+std::vector<std::uint8_t> packet_of(std::size_t octets, std::uint16_t count = 0) {
+    std::vector<std::uint8_t> packet(octets);
+    seal_tm_packet(packet, Apid{0x10}, count, Sclk{397501715.0}, 1);
+    return packet;
+}
+
+UhfLink::Surroundings coasting() {
+    return {-300.0, 800000.0, 5500.0, true};
+}
+
+} // namespace
+
+TEST_CASE("UHF carries its rate and no more", "[simulation][uhf]") {
+    Radio radio;
+    radio.uhf_rate_bps = 8000.0;
+    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    std::vector<UhfLink::Delivered> delivered;
+    for (int i = 0; i < 100; ++i)
+        link.offer(packet_of(100));
+    for (int cycle = 0; cycle < 64 * 5; ++cycle)
+        link.cycle(coasting(), delivered);
+    CHECK(delivered.size() == 50); // 5 s at 1000 octets a second
+    for (const auto& packet : delivered)
+        CHECK((packet.left_us >= 0 && packet.left_us <= 15625));
+}
+
+TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then is lost", "[simulation][uhf]") {
+    Radio radio;
+    radio.uhf_rate_bps = 16 * 8 * 64; // one packet a cycle
+    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    std::vector<UhfLink::Delivered> delivered;
+    const auto cycle = [&](UhfLink::Surroundings at) {
+        link.offer(packet_of(16));
+        link.cycle(at, delivered);
+        return link.up();
+    };
+    CHECK_FALSE(cycle({-300.0, 800000.0, 5500.0, false}));
+    CHECK(std::string{link.reason()} == "not switched on");
+    CHECK(delivered.empty());
+    CHECK(link.lost_packets() == 1);
+    CHECK(cycle(coasting()));
+    CHECK(cycle({10.0, 115000.0, 5855.0, true}));
+    CHECK_FALSE(cycle({46.0, 64000.0, 5868.0, true}));
+    CHECK(std::string{link.reason()} == "plasma blackout");
+    CHECK_FALSE(cycle({97.0, 20000.0, 2401.0, true}));
+    CHECK(cycle({98.0, 19500.0, 2399.0, true}));
+    CHECK(cycle({300.0, 3000.0, 85.0, true}));
+    CHECK(link.lost_packets() == 3);
+}
+
+TEST_CASE("UHF loses packets at random at the scenario's fraction", "[simulation][uhf]") {
+    Radio radio;
+    radio.uhf_rate_bps = 1.0e6;
+    radio.uhf_loss_fraction = 0.1;
+    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    std::vector<UhfLink::Delivered> delivered;
+    for (int i = 0; i < 4000; ++i) {
+        link.offer(packet_of(100));
+        link.cycle(coasting(), delivered);
+    }
+    CHECK(delivered.size() == Approx(3600.0).margin(60.0));
+}
+
+TEST_CASE("the relay brings the recording down whole, in order, at its rate", "[simulation][relay]") {
+    Recorder recorder;
+    for (std::uint16_t i = 0; i < 1000; ++i)
+        REQUIRE(recorder.append(packet_of(250, i)));
+    RelayLink relay{64.0e3};
+    std::vector<std::uint8_t> down;
+    int cycles = 0;
+    while (relay.sent_octets() < recorder.octets().size()) {
+        relay.cycle(recorder.octets(), [&](std::int64_t left_us, std::span<const std::uint8_t> packet) {
+            CHECK((left_us >= 0 && left_us <= 15625));
+            down.insert(down.end(), packet.begin(), packet.end());
+        });
+        ++cycles;
+    }
+    CHECK(std::equal(down.begin(), down.end(), recorder.octets().begin(), recorder.octets().end()));
+    CHECK(cycles == Approx(250000.0 * 8.0 / 64.0e3 * 64.0).margin(2.0));
+}
+
+TEST_CASE("a full recorder refuses whole packets and counts them", "[simulation][recorder]") {
+    Recorder recorder;
+    const std::vector<std::uint8_t> much(Recorder::capacity_octets - 10);
+    REQUIRE(recorder.append(much));
+    CHECK_FALSE(recorder.append(packet_of(16)));
+    CHECK(recorder.octets().size() == much.size());
+    CHECK(recorder.refused_octets() == 16);
+}
+
+TEST_CASE("tone decisions err as theory says for 256 non-coherent tones", "[simulation][tones]") {
+    // Tone power to noise density for a symbol error of 1e-2 and 1e-3 in 10 s: 2.36 and 3.53 dB-Hz. [limits-tones]
+    Random random{7, 0, Stream::x_band};
+    const auto errors = [&](double c_n0_dbhz, int symbols) {
+        int wrong = 0;
+        for (int i = 0; i < symbols; ++i)
+            wrong += detect_tone(i % 256, c_n0_dbhz, 10.0, random).best != i % 256;
+        return wrong;
+    };
+    CHECK(errors(2.36, 20000) == Approx(200.0).margin(45.0));
+    CHECK(errors(3.53, 20000) == Approx(20.0).margin(14.0));
+    CHECK(errors(18.5, 1000) == 0);
+}
+
+TEST_CASE("the likelihood of a tone is the share of decisions that are right", "[simulation][tones]") {
+    Random random{8, 0, Stream::x_band};
+    double promised = 0.0;
+    int right = 0;
+    for (int i = 0; i < 8000; ++i) {
+        const ToneDecision decision = detect_tone(17, 0.5, 10.0, random);
+        promised += decision.best_likelihood;
+        right += decision.best == 17;
+    }
+    CHECK(promised == Approx(right).epsilon(0.03));
+}
+
+TEST_CASE("the logarithm of I0 has no seam", "[simulation][tones]") {
+    CHECK(log_bessel_i0(0.0) == 0.0);
+    CHECK(log_bessel_i0(1.0) == Approx(std::log(1.2660658777520084)).epsilon(1e-10));
+    CHECK(log_bessel_i0(19.999999) == Approx(log_bessel_i0(20.000001)).margin(3e-6));
+    CHECK(log_bessel_i0(2000.0) > 1990.0);
+}
+
+TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silent after Earth set",
+          "[simulation][tones]") {
+    Radio radio;
+    XBandLink link{radio, Random{1, 0, Stream::x_band}};
+    std::vector<ReceivedTone> heard;
+    std::int64_t tick = 0;
+    const auto send = [&](std::optional<ToneId> tone, int ticks) {
+        for (int i = 0; i < ticks; ++i, ++tick) {
+            const XBandLink::Surroundings at{Sclk::from_ticks(tick), static_cast<double>(tick) / 64.0 + 200.0, 0.0};
+            if (auto received = link.cycle(tone, at)) heard.push_back(*received);
+        }
+    };
+    send(ToneId{42}, 640);
+    send(ToneId{42}, 640);
+    send(ToneId{43}, 100);
+    send({}, 10);
+    REQUIRE(heard.size() == 3);
+    CHECK(heard[0].tone == ToneId{42});
+    CHECK(heard[0].likelihood > 0.999);
+    CHECK(heard[0].c_n0_dbhz == Approx(22.0).margin(1.0));
+    CHECK(heard[1].sent_at - heard[0].sent_at == 10.0);
+    CHECK_FALSE(heard[2].tone.has_value());
+    CHECK(heard[2].sent == ToneId{43});
+    heard.clear();
+    send({}, 99 * 64 - static_cast<int>(tick) - 320);
+    send(ToneId{44}, 640); // Earth sets in its middle
+    send(ToneId{45}, 640);
+    REQUIRE(heard.size() == 1);
+    CHECK_FALSE(heard[0].tone.has_value());
+    CHECK_FALSE(heard[0].locked);
+    CHECK(std::string{link.reason()} == "Earth set");
+}
+
+TEST_CASE("Earth stands where the published geometry has it", "[simulation][earth]") {
+    // Elevation at entry 9.05°, one-way Doppler at 8.4 GHz −451 kHz at E+30 s. [facts-od137]
+    const Vector3 entry = place(-3.9226 * degree_rad, 126.703 * degree_rad, 3522200.0);
+    CHECK(earth_elevation_rad(entry, 0.0) / degree_rad == Approx(9.05).margin(0.05));
+    const Vector3 site = place(-4.6019 * degree_rad, 137.4102 * degree_rad, 3391148.0);
+    CHECK(earth_elevation_rad(site, 431.0) / degree_rad == Approx(-2.53).margin(0.05));
+    const double landed_hz = -earth_range_rate_mps(site, Vector3::Zero(), 431.0) / 299792458.0 * 8.4e9;
+    CHECK(landed_hz == Approx(-299300.0).margin(1000.0));
+}

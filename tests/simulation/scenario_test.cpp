@@ -1,0 +1,57 @@
+#include "simulation/scenario.hpp"
+
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+
+#include <limits>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+std::string only_fault(const Scenario& scenario) {
+    const auto found = impossible_values(scenario);
+    INFO(found.size());
+    REQUIRE(found.size() == 1);
+    return found.front();
+}
+
+} // namespace
+
+TEST_CASE("the nominal scenario is possible", "[simulation][scenario]") {
+    CHECK(impossible_values(tests::gale_scenario()).empty());
+}
+
+TEST_CASE("an impossible value is named, with its bounds", "[simulation][scenario]") {
+    Scenario scenario = tests::gale_scenario();
+    scenario.entry.speed_mps = -3.0;
+    CHECK(only_fault(scenario) == "entry.speed_mps: -3 is outside 1000 … 20000");
+
+    scenario = tests::gale_scenario();
+    scenario.radio.light_time_s = std::numeric_limits<double>::quiet_NaN();
+    CHECK(only_fault(scenario).find("radio.light_time_s: ") == 0);
+
+    scenario = tests::gale_scenario();
+    scenario.start_before_entry_s = 1200.001;
+    CHECK(only_fault(scenario) == "start_before_entry_s: 1200.001 is not a multiple of 1/64 s");
+
+    scenario = tests::gale_scenario();
+    scenario.masses.entry_kg = 3000.0;
+    CHECK(only_fault(scenario) == "masses.entry_kg: 3000 is not the sum of its parts, 3153");
+
+    scenario = tests::gale_scenario();
+    scenario.density_scale = {{1000.0, 1.0}, {500.0, 1.0}};
+    CHECK(only_fault(scenario) == "density_scale[1].altitude_m: 500 does not lie above the one before");
+
+    scenario = tests::gale_scenario();
+    scenario.commands.push_back({5000.0, "NO_OP", {}, false});
+    CHECK(only_fault(scenario) == "commands[0].send_before_entry_s: 5000 is not within the run");
+}
+
+TEST_CASE("every fault is told, not only the first", "[simulation][scenario]") {
+    Scenario scenario;
+    scenario.target.latitude_deg = 91.0;
+    const auto found = impossible_values(scenario);
+    CHECK(found.size() == 3); // latitude, name, entry_scet
+}
