@@ -22,7 +22,7 @@ export function Header() {
   const badge = badgeOf(run, past);
   const clocks = run && clocksOf(run, past?.to);
   const send = run?.going && !past ? latestSend(run, timepoints.value) : undefined;
-  const severities = run ? [...run.alarms.values()] : [];
+  const severities = run && !past ? [...run.alarms.values()] : [];
   return (
     <header class="header" data-testid="header">
       <div class="brand">AEOLIS</div>

@@ -139,19 +139,19 @@ export interface StageCell {
   at: string;
 }
 
-/** Every stage says what is known of it; one that was never heard of is not green. */
-export function stageCells(row: CommandRow): StageCell[] {
+/** Every stage says what is known of it, in a past view what was known then; one never heard of is not green. */
+export function stageCells(row: CommandRow, known: (at: string) => boolean = () => true): StageCell[] {
   const names = [...STAGES, ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage))];
   return names.map((name) => {
-    const stage = row.stages.get(name);
+    const heard = row.stages.get(name);
+    const stage = heard && known(heard.at) ? heard : undefined;
     const look = (['ok', 'failed', 'unknown', 'pending'] as const).find((each) => each === stage?.status);
     return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at: stage?.at ?? '' };
   });
 }
 
 /** The last stage with something to say, in words. */
-export function newestEvidence(row: CommandRow): string {
-  const cells = stageCells(row);
+export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
   const newest = failed ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';

@@ -5,7 +5,7 @@ import type { DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../panel';
 import { latestSend } from '../clocks/model';
 import { inWords } from '../run/dictionary';
-import { dictionary, modeNow, runNow, timepoints } from '../run/session';
+import { cutoff, dictionary, modeNow, runNow, timepoints } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import {
   back, choiceIndex, choose, chosen, complete, confirmation, fields, formText, forward, line, message, offered,
@@ -125,17 +125,20 @@ const STAGE_WORDS = { ok: 'seen', failed: 'failed', unknown: 'not known', pendin
 function History() {
   const run = runNow();
   if (!run) return null;
-  const rows = [...run.commands.values()].sort((a, b) => b.command - a.command).slice(0, HISTORY_SHOWN);
+  const known = (at: string) => !(run.sclkSeenAt(at) > cutoff.value);
+  const rows = [...run.commands.values()].sort((a, b) => b.command - a.command)
+    .map((row) => ({ row, cells: stageCells(row, known) }))
+    .filter(({ cells }) => cells.some((cell) => cell.look !== 'none')).slice(0, HISTORY_SHOWN);
   return (
     <ol class="history" data-testid="command-history">
-      {rows.map((row) => (
+      {rows.map(({ row, cells }) => (
         <li key={row.command} data-command={row.name}>
-          <div><b>{row.name} #{row.command}</b> <small title={row.arguments}>{newestEvidence(row)}</small></div>
+          <div><b>{row.name} #{row.command}</b> <small title={row.arguments}>{newestEvidence(cells)}</small></div>
           <ol class="stages">
-            {stageCells(row).map((cell) => (
+            {cells.map((cell) => (
               <li key={cell.stage} class={`stage stage-${cell.look}`} data-stage={cell.stage} data-look={cell.look}
                 title={`${cell.stage}: ${STAGE_WORDS[cell.look]}. ${cell.evidence} ${cell.at}`}>
-                <i /> <span>{STAGE_SHAPES[cell.look]} {cell.stage}</span>
+                <i>{STAGE_SHAPES[cell.look]}</i><span>{cell.stage}</span>
               </li>
             ))}
           </ol>

@@ -65,7 +65,7 @@ function draw({ context: c, width, height, colours }: Surface): void {
     }
     c.stroke();
   }
-  moments(c, [...recorded, ...live], x, y, width, colours);
+  moments(c, [...recorded, ...live], x, y, width, bottom, colours);
   if (live.length + recorded.length === 0) {
     c.fillStyle = colours.dim;
     c.textAlign = 'center';
@@ -86,7 +86,7 @@ function draw({ context: c, width, height, colours }: Surface): void {
 
 function moments(
   c: CanvasRenderingContext2D, points: { sclk: number; speed: number; altitude: number }[], x: (v: number) => number,
-  y: (h: number) => number, width: number, colours: Surface['colours'],
+  y: (h: number) => number, width: number, bottom: number, colours: Surface['colours'],
 ): void {
   const run = store.value;
   if (!run || points.length === 0) return;
@@ -109,10 +109,10 @@ function moments(
     c.fill();
     const words = inWords(firing.name);
     const wide = c.measureText(words).width;
-    for (const [dx, dy, align] of [[10, 12, 'left'], [-10, -12, 'right'], [10, -12, 'left'], [-10, 12, 'right'], [12, 26, 'left']] as const) {
+    for (const [dx, dy, align] of [[10, 12, 'left'], [-10, -12, 'right'], [10, -12, 'left'], [-10, 12, 'right'], [14, -28, 'left'], [14, 30, 'left'], [14, -44, 'left']] as const) {
       const left = align === 'left' ? px + dx : px + dx - wide;
       const box: [number, number, number, number] = [left, py + dy - 8, left + wide, py + dy + 8];
-      if (box[0] < LEFT || box[2] > width - 8) continue;
+      if (box[0] < LEFT || box[2] > width - 8 || box[3] > bottom || box[1] < 4) continue;
       if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
       boxes.push(box);
       c.fillStyle = colours.text;

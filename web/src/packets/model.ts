@@ -23,8 +23,8 @@ export function linkRates(store: RunStore): LinkRate[] {
   });
 }
 
-export function newestUnits(store: RunStore, cutoff: number, most: number): Known<Unit>[] {
-  return store.units.filter(({ fact }) => fact.sclk <= cutoff).slice(-most).reverse();
+export function newestUnits(store: RunStore, most: number): Known<Unit>[] {
+  return store.units.slice(-most).reverse();
 }
 
 export interface HexLine {

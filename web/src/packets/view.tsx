@@ -1,10 +1,14 @@
 import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import type { Unit } from '../gen/aeolis/v1/items_pb';
+import type { RunStore } from '../run/store';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
-import { ask, cutoff, notify, runNow, store } from '../run/session';
+import { ask, pastRange, notify, runNow, store } from '../run/session';
 import { fromEntry } from '../run/time';
 import { hexLines, linkRates, newestUnits } from './model';
 import './style.css';
 
+const SHOWN = 100;
 const opened = signal<PacketRow | undefined>(undefined);
 
 async function open(seq: number): Promise<void> {
@@ -19,7 +23,32 @@ async function open(seq: number): Promise<void> {
   }
 }
 
+/** In a past view the units of that range come from the archive: the page itself holds only the newest. */
+const pastRows = signal<PacketRow[]>([]);
+
+async function askPast(range: { from: number; to: number }): Promise<void> {
+  const run = store.value;
+  if (!run) return;
+  try {
+    const path = `/runs/${run.id}/packets?from=${run.entrySclk + range.from}&to=${run.entrySclk + range.to}&limit=${SHOWN}`;
+    const list = await ask<PacketList>('packets', path);
+    pastRows.value = list.packets;
+  } catch (error) {
+    notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
+  }
+}
+
+function shownUnits(run: RunStore, past: boolean): { fact: Unit; show: () => void }[] {
+  if (!past) return newestUnits(run, SHOWN).map(({ seq, fact }) => ({ fact, show: () => void open(seq) }));
+  return pastRows.value.flatMap((row) => (row.unit ? [{ fact: row.unit, show: () => (opened.value = row) }] : []));
+}
+
 export function Packets() {
+  const past = pastRange.value;
+  useEffect(() => {
+    pastRows.value = [];
+    if (past) void askPast(past);
+  }, [past]);
   const run = runNow();
   if (!run) return null;
   const packet = opened.value;
@@ -28,7 +57,7 @@ export function Packets() {
       <div class="table-tools" data-testid="link-rates">
         {linkRates(run).map((rate) => (
           <span key={rate.link}>
-            <b>{rate.link}</b> {rate.units} units, {rate.octets} octets
+            <b>{rate.link}</b>{past ? ', whole run:' : ''} {rate.units} units, {rate.octets} octets
             {rate.octets_per_s !== undefined && `, ${(rate.octets_per_s * 8 / 1000).toFixed(1)} kb/s`}
             {rate.duplicates > 0 && `, ${rate.duplicates} seen before`}
           </span>
@@ -40,10 +69,10 @@ export function Packets() {
           <table data-testid="unit-table">
             <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th></tr></thead>
             <tbody>
-              {newestUnits(run, cutoff.value, 120).map(({ seq, fact }) => (
-                <tr key={seq}>
+              {shownUnits(run, past !== undefined).map(({ fact, show }) => (
+                <tr key={String(fact.unit)}>
                   <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
-                  <td><button type="button" class="link-button" onClick={() => void open(seq)}>{String(fact.unit)}</button></td>
+                  <td><button type="button" class="link-button" onClick={show}>{String(fact.unit)}</button></td>
                   <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
                   <td>{fact.name}</td>
                   <td class="number">{fact.octets}</td>

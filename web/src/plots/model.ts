@@ -26,6 +26,7 @@ export function align(
   const both = a.end > a.i;
   let lastAll = NaN;
   let lastLive = NaN;
+  let lastLiveRow = -1;
   while (a.i < a.end || b.i < b.end) {
     const aSclk = a.i < a.end ? (a.series?.sclk[a.i] as number) : Infinity;
     const bSclk = b.i < b.end ? (b.series?.sclk[b.i] as number) : Infinity;
@@ -34,17 +35,21 @@ export function align(
     const sclk = Math.min(aSclk, bSclk);
     const value = (from.series?.value[from.i] as number) / per;
     const shown = Number.isNaN(value) ? null : value;
-    if (sclk - lastAll > GAP_S || (isLive && sclk - lastLive > GAP_S)) {
-      // A break just before this sample, in each trace that had none for so long.
+    if (sclk - lastAll > GAP_S) {
       xs.push(sclk - entry_sclk - 1e-3);
-      all.push(both && sclk - lastAll > GAP_S ? null : SKIP);
-      lives.push(isLive && sclk - lastLive > GAP_S ? null : SKIP);
+      all.push(both ? null : SKIP);
+      lives.push(SKIP);
     }
+    // uPlot leaves out what lies between two nulls: all of a silence must be marked.
+    if (isLive && sclk - lastLive > GAP_S) lives.fill(null, lastLiveRow + 1);
     xs.push(sclk - entry_sclk);
     all.push(both ? shown : SKIP);
     lives.push(isLive ? shown : SKIP);
     lastAll = sclk;
-    if (isLive) lastLive = sclk;
+    if (isLive) {
+      lastLive = sclk;
+      lastLiveRow = lives.length - 1;
+    }
     // The newest sample is always drawn, whatever the stride.
     from.i = from.i + from.stride >= from.end && from.i < from.end - 1 ? from.end - 1 : from.i + from.stride;
   }

@@ -9,7 +9,7 @@ import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../panel';
 import { cutoff, dictionary, store, tick } from '../run/session';
-import { outages } from '../timeline/model';
+import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import { align } from './model';
 import type { Aligned } from './model';
@@ -29,7 +29,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
   const colours = palette();
   const axis = { stroke: colours.dim, font: `11px ${colours.mono}`, grid: { stroke: colours.line, width: 1 }, ticks: { show: false } };
   return {
-    width, height, legend: { show: false }, pxAlign: 1,
+    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 10, 0, 0],
     cursor: { sync: { key: sync.key, setSeries: false }, drag: { x: false, y: false }, points: { show: false }, y: false },
     scales: { x: { time: false } },
     axes: [
@@ -67,12 +67,20 @@ function shadeSilence(plot: uPlot): void {
   const { left, top, width, height } = plot.bbox;
   const now = Math.min(run.seenSclk, cutoff.value) - run.entrySclk;
   plot.ctx.save();
-  plot.ctx.globalAlpha = 0.1;
   plot.ctx.fillStyle = palette().amber;
   for (const outage of outages(run, 'uhf_live', now, cutoff.value)) {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
     const to = Math.min(left + width, plot.valToPos(outage.to, 'x', true));
-    if (to > from) plot.ctx.fillRect(from, top, to - from, height);
+    if (to <= from) continue;
+    plot.ctx.globalAlpha = 0.1;
+    plot.ctx.fillRect(from, top, to - from, height);
+    const words = shortReason(outage.words);
+    plot.ctx.font = `${11 * (window.devicePixelRatio || 1)}px ${palette().sans}`;
+    if (plot.ctx.measureText(words).width + 8 > to - from) continue;
+    plot.ctx.globalAlpha = 1;
+    plot.ctx.textAlign = 'center';
+    plot.ctx.textBaseline = 'bottom';
+    plot.ctx.fillText(words, (from + to) / 2, top + height - 4);
   }
   plot.ctx.restore();
 }

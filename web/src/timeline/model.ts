@@ -93,6 +93,11 @@ export function outages(store: RunStore, link: string, now_e_s: number, cutoff: 
   return all;
 }
 
+/** "plasma outage, as predicted" → "plasma outage": what there is room for. */
+export function shortReason(words: string): string {
+  return words.split(/[,:;(]/)[0]?.trim() ?? words;
+}
+
 export type PointState = 'fired' | 'timed out' | 'waiting for reply' | 'next' | 'pending' | 'undefined';
 
 export interface PointDetail {

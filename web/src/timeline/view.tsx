@@ -8,7 +8,7 @@ import { cutoff, pastRange, runNow, store, tick, timepoints } from '../run/sessi
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { lanesOf, pointDetail, title } from './model';
+import { lanesOf, pointDetail, shortReason, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
@@ -62,12 +62,12 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
       : 'the recording comes down after landing';
     c.fillText(words, (GUTTER + width) / 2, y(3) - 0.5);
   }
-  marks(c, lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), false);
-  marks(c, lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.violet), false);
-  marks(c, lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : diamond(c, px, py, 5, colours.blue)), true);
-  marks(c, lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : disc(c, px, py, 3.6, colours.green)), true);
-  labels(c, lanes, x, bottom, width, colours);
-  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8);
+  marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
+  marks(lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.violet), false);
+  marks(lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : diamond(c, px, py, 5, colours.blue)), true);
+  marks(lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : disc(c, px, py, 3.6, colours.green)), true);
+  labels(c, lanes, x, bottom, width, height, colours);
+  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8, run.going);
   c.restore();
 }
 
@@ -98,35 +98,35 @@ function drawOutages(
       c.fillStyle = colours.amber;
       c.textAlign = 'left';
       c.font = `11px ${colours.sans}`;
-      if (right - left > 40) c.fillText(outage.words, left + 6, y(lane) + 0.5);
+      const words = c.measureText(outage.words).width + 12 < right - left ? outage.words : shortReason(outage.words);
+      if (right - left > 40) c.fillText(words, left + 6, y(lane) + 0.5);
       c.restore();
     }
   }
 }
 
 function marks(
-  c: CanvasRenderingContext2D, all: Mark[], x: (e: number) => number, y: number,
+  all: Mark[], x: (e: number) => number, y: number,
   shape: (x: number, y: number, bad: boolean) => void, hit: boolean,
 ): void {
   for (const mark of all) {
     const px = x(mark.e_s);
     if (px < GUTTER - 6) continue;
     shape(px, y, mark.bad);
-    if (hit || mark.id >= 0) hits.push({ x: px, y, id: y > TOP + LANE && y < TOP + 2 * LANE ? -1 : mark.id });
+    if (hit) hits.push({ x: px, y, id: mark.id });
   }
-  c.setLineDash([]);
 }
 
 /** Names under the lanes, in as many rows as it takes that none covers another. */
 function labels(
-  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number,
+  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number, height: number,
   colours: Surface['colours'],
 ): void {
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
   for (const mark of [...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
   const all = [...known.values()].sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
-  const rows: [number, number][][] = [[], [], [], []];
+  const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `12px ${colours.sans}`;
   c.textAlign = 'center';
   for (const { mark, done } of all) {
@@ -136,7 +136,7 @@ function labels(
     const half = c.measureText(words).width / 2 + 5;
     const at = Math.min(width - 14 - half, Math.max(GUTTER + half, px));
     const row = rows.findIndex((taken) => taken.every(([left, right]) => at + half < left || at - half > right));
-    if (row < 0 || (!mark.important && row > 2)) continue;
+    if (row < 0) continue;
     rows[row]?.push([at - half, at + half]);
     c.strokeStyle = colours.line;
     line(c, px, top, px, top + 6 + row * 15);
@@ -149,11 +149,11 @@ function labels(
 
 function cursors(
   c: CanvasRenderingContext2D, seen: number, lightTime: number, x: (e: number) => number, bottom: number,
-  colours: Surface['colours'], right: number,
+  colours: Surface['colours'], right: number, going: boolean,
 ): void {
   if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom, right);
   const past = pastRange.value;
-  flag(c, x(past ? past.to : seen), past ? 'end of past view' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
+  flag(c, x(past ? past.to : seen), past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
 }
 
 function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number, right: number): void {
@@ -217,7 +217,7 @@ function select(px: number, py: number): void {
   let best: (typeof hits)[number] | undefined;
   for (const hit of hits) {
     const distance = Math.hypot(hit.x - px, hit.y - py);
-    if (hit.id >= 0 && distance < 14 && (!best || distance < Math.hypot(best.x - px, best.y - py))) best = hit;
+    if (distance < 14 && (!best || distance < Math.hypot(best.x - px, best.y - py))) best = hit;
   }
   selected.value = best?.id;
 }

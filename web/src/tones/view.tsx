@@ -40,6 +40,8 @@ function draw({ context: c, width, height, colours }: Surface): void {
   c.beginPath();
   c.rect(LEFT, 0, width - LEFT - 10, height);
   c.clip();
+  let labelled = -Infinity;
+  const lastLeft = x(bars[bars.length - 1]?.from_e_s ?? to);
   bars.forEach((bar, index) => {
     const left = x(bar.from_e_s);
     const wide = Math.max(2, x(bar.to_e_s) - left - 1);
@@ -57,7 +59,9 @@ function draw({ context: c, width, height, colours }: Surface): void {
     c.fillRect(left, y(bar.tone) - 3.5, wide, 7);
     c.globalAlpha = 1;
     const before = bars[index - 1];
-    if (last || before?.tone !== bar.tone) {
+    const room = last || (left > labelled + 4 && left < lastLeft - 24);
+    if (last || (before?.tone !== bar.tone && room)) {
+      labelled = left + c.measureText(String(bar.tone)).width;
       c.fillStyle = last ? colours.text : colours.dim;
       c.font = last ? `bold 13px ${colours.mono}` : `10px ${colours.mono}`;
       c.textAlign = 'left';

@@ -104,8 +104,11 @@ function conditions(store: RunStore, dictionary: Dictionary, next: TimepointRow,
   const desired = itsOwn ? time(LAYOUT.nextDesired) : undefined;
   const minimum = itsOwn ? time(LAYOUT.nextMinimum) : undefined;
   const base = next.anchor ? inWords(next.anchor) : 'the one before';
-  lines.push(timeLine(`${offsetWords(next.desiredOffsetS)} ${base}`, desired, now, store.entrySclk));
-  if (next.minimumOffsetS !== undefined && next.anchor !== '') {
+  // An anchor that GNC starts has no time in the plan: what is waited for is the vehicle's own word.
+  const declared = next.anchor !== '' && next.desiredOffsetS === 0 && next.plannedES === undefined;
+  const words = declared ? `the vehicle declares “${base}”` : `${offsetWords(next.desiredOffsetS)} ${base}`;
+  lines.push(timeLine(words, desired, now, store.entrySclk));
+  if (next.minimumOffsetS !== undefined && next.minimumOffsetS > 0 && next.anchor !== '') {
     lines.push(timeLine(`${offsetWords(next.minimumOffsetS)} the one before`, minimum, now, store.entrySclk));
   }
   const held = latestHeld(store, cutoff);
@@ -121,7 +124,7 @@ function offsetWords(offset_s: number | undefined): string {
 
 function timeLine(words: string, due_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
   if (due_sclk === undefined) return { words, value: 'not known', holds: undefined };
-  if (Number.isNaN(due_sclk)) return { words, value: 'has not happened', holds: false };
+  if (Number.isNaN(due_sclk)) return { words, value: 'not yet', holds: false };
   const left = due_sclk - now_sclk;
   return {
     words, value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`,

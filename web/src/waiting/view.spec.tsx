@@ -26,7 +26,7 @@ describe('waiting for', () => {
   });
   it('says that an anchor has not happened, and not nothing', () => {
     const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
-    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ value: 'has not happened', holds: false });
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'not yet', holds: false });
   });
   it('shows the condition that is missing, as flight explained it', () => {
     const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: 'le', bound: 405, holds: false });
