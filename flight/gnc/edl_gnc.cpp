@@ -54,7 +54,7 @@ void EdlGnc::set_solution(const Solution& solution, Sclk now) {
 }
 
 void EdlGnc::on(const CruiseAttitude& attitude) {
-    strapdown_.set_attitude(to_quaternion(attitude.q_MB));
+    cruise_attitude_ = attitude;
 }
 
 void EdlGnc::on(const RadarSolution& solution) {
@@ -112,8 +112,12 @@ bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
 
 void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, Output& out) {
     out = Output{};
-    if (!configuration.cruise_stage_gone && in.cruise_attitude) on(*in.cruise_attitude);
     navigate(in);
+    if (in.cruise_attitude) on(*in.cruise_attitude);
+    // It is as of this tick, so it comes after the IMU's increments up to here, not before: the vehicle still spins.
+    if (cruise_attitude_ && !configuration.cruise_stage_gone)
+        strapdown_.set_attitude(to_quaternion(cruise_attitude_->q_MB));
+    cruise_attitude_.reset();
     if (!navigating_) {
         measured_at_ = in.now;
         return;

@@ -17,7 +17,7 @@ constexpr std::uint32_t refused_max = 5;
 } // namespace
 
 void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
-    if (now.ticks() % 8 != 0) return;
+    if (now.ticks() % 4 != 0) return;
     past_[next_] = {now, altitude_m, v_MB_M};
     next_ = (next_ + 1) % static_cast<std::uint32_t>(past_.size());
     count_ = std::min(count_ + 1, static_cast<std::uint32_t>(past_.size()));
@@ -28,20 +28,26 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     double altitude_sum_m = 0.0, time_sum_s = 0.0;
     Vector3 v_sum = Vector3::Zero();
     double samples = 0.0;
+    const Past* oldest = nullptr;
+    const Past* newest = nullptr;
     for (std::uint32_t i = 0; i < count_; ++i) {
         const double from_middle_s = past_[i].time - solution.time;
-        if (std::abs(from_middle_s) > half_s + 0.0625) continue;
+        if (std::abs(from_middle_s) > half_s + 0.03125) continue;
         altitude_sum_m += past_[i].altitude_m;
         v_sum += past_[i].v_MB_M;
         time_sum_s += from_middle_s;
+        if (oldest == nullptr || past_[i].time < oldest->time) oldest = &past_[i];
+        if (newest == nullptr || past_[i].time > newest->time) newest = &past_[i];
         samples += 1.0;
     }
     // At least half of the span must be covered, else averages of different times would be compared.
-    if (samples < std::max(1.0, 4.0 * solution.span_s)) return std::nullopt;
+    if (samples < std::max(1.0, 8.0 * solution.span_s)) return std::nullopt;
 
-    const Vector3 v_mean = v_sum / samples;
-    // What is left between the middle of our samples and that of the radar's, by the mean rate.
-    const double altitude_m = altitude_sum_m / samples - time_sum_s / samples * v_mean.dot(up_M);
+    // What is left between the middle of our samples and that of the radar's is taken off by the mean rates.
+    const double late_s = time_sum_s / samples;
+    const Vector3 a_mean = (newest->v_MB_M - oldest->v_MB_M) / std::max(newest->time - oldest->time, 0.0625);
+    const Vector3 v_mean = v_sum / samples - late_s * a_mean;
+    const double altitude_m = altitude_sum_m / samples - late_s * v_mean.dot(up_M);
     const double residual_h_m = solution.altitude_m - altitude_m;
     const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
 

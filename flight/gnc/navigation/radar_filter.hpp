@@ -14,7 +14,7 @@
 //   Δh = k_h · residual_h,  Δv = k_v · residual_v ;  the past is shifted by what was corrected
 //
 // Frame    M; altitude along the local vertical     In   RadarSolution, 1 Hz     Out   RadarCorrection
-// Memory   12 s of our own past at 8 Hz
+// Memory   9 s of our own past at 16 Hz
 // Faults   a solution whose residual is beyond the gate is refused and counted; five refused in a row are believed
 // Source   R25; the gains are ours: first solution taken whole, later ones by a third, so that noise of a solution
 //          is halved and an error dies out in 3 s
@@ -27,7 +27,7 @@ struct RadarCorrection {
 
 class RadarFilter {
   public:
-    /// Our own past, each cycle; every eighth is kept.
+    /// Our own past, each cycle; every fourth is kept.
     void remember(Sclk now, double altitude_m, const Vector3& v_MB_M);
 
     /// None when the solution is refused or our past does not cover it.
@@ -43,7 +43,7 @@ class RadarFilter {
         double altitude_m = 0.0;
         Vector3 v_MB_M = Vector3::Zero();
     };
-    std::array<Past, 96> past_{};
+    std::array<Past, 144> past_{};
     std::uint32_t next_ = 0;
     std::uint32_t count_ = 0;
     std::uint32_t accepted_ = 0;
