@@ -24,14 +24,18 @@ bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
 }  // namespace
 
 void EdlBg::on(const RadarReturns& returns, Outbox&) {
-    if (!attitude_) return;
-    batch_.on(returns.now, returns.beams.span(),
-              gnc::Quaternion{attitude_->q_MB[0], attitude_->q_MB[1], attitude_->q_MB[2], attitude_->q_MB[3]},
-              gnc::Vector3{attitude_->up_M[0], attitude_->up_M[1], attitude_->up_M[2]});
+    latest_ = returns;
 }
 
+// Sent after GNC's cycle, so it is the attitude at the tick of the returns: one cycle of lag would be metres of altitude
+// while the vehicle turns in the powered approach.
 void EdlBg::on(const NavigatedAttitude& attitude, Outbox&) {
-    attitude_ = attitude;
+    navigated_ = true;
+    radar_locked_ = attitude.radar_locked;
+    batch_.on(latest_.now, latest_.beams.span(),
+              gnc::Quaternion{attitude.q_MB[0], attitude.q_MB[1], attitude.q_MB[2], attitude.q_MB[3]},
+              gnc::Vector3{attitude.up_M[0], attitude.up_M[1], attitude.up_M[2]});
+    latest_.beams.clear();
 }
 
 void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
@@ -42,7 +46,7 @@ void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
 }
 
 void EdlBg::on(const ClockTick& tick, Outbox& out) {
-    if (at_resolution(tick.now, 1) != tick.now || !attitude_) return;
+    if (at_resolution(tick.now, 1) != tick.now || !navigated_) return;
     const auto solution = batch_.solve(tick.now);
     if (!solution) return;
     ++solutions_;
@@ -53,7 +57,7 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
                                 .radar_velocity_z_mps = static_cast<float>(solution->v_MB_M_mps[2]),
                                 .radar_solutions = solutions_,
                                 .radar_beams = solution->beams,
-                                .radar_locked = attitude_->radar_locked});
+                                .radar_locked = radar_locked_});
 }
 
 }  // namespace aeolis::flight

@@ -21,7 +21,9 @@ class EdlBg {
 
   private:
     gnc::RadarBatch batch_;
-    std::optional<NavigatedAttitude> attitude_;
+    RadarReturns latest_;  ///< of this cycle; the attitude that belongs to them comes after them
+    bool navigated_ = false;
+    bool radar_locked_ = false;
     std::uint16_t solutions_ = 0;
 };
 
