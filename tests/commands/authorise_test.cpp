@@ -1,6 +1,7 @@
 #include "commands/authorise.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 using namespace aeolis;
@@ -40,4 +41,27 @@ TEST_CASE("a precondition that fails or is not known refuses, and all of them ar
     CHECK(authorise(command("NO_OP"), {}, states).error().message ==
           "NO_OP must not be sent now: b == 1: is 0; c == 1: not known, no value has come");
     CHECK(authorise(command("NO_OP"), {}, std::span{states}.first(1)).ok());
+}
+
+TEST_CASE("in the shipped dictionary do edl is hazardous and wants parameters in late cruise",
+          "[authorise][R23][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto& start = *dictionary.command("EDL_DO_EDL");
+    CHECK(is_hazardous(start));
+    std::vector<LatestValue> latest(dictionary.channels.size());
+    const auto now = [&](const char* channel, double value) {
+        latest[dictionary.channel(channel)->id.value] = {value, 0.0};
+    };
+    const auto allowed = [&] { return authorise(start, {true, "EDL_DO_EDL"}, check(dictionary, start, latest)).ok(); };
+    CHECK_FALSE(allowed());
+    now("parameters_received", 1);
+    now("late_cruise", 1);
+    now("edl_enabled", 0);
+    CHECK(allowed());
+    now("edl_enabled", 1);
+    CHECK_FALSE(allowed());
+    now("edl_enabled", 0);
+    now("late_cruise", 0);
+    CHECK_FALSE(allowed());
+    CHECK_FALSE(is_hazardous(*dictionary.command("EDL_SET_PARAMETERS")));
 }

@@ -1,6 +1,7 @@
 #include "commands/encoder.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 #include <cmath>
@@ -171,4 +172,32 @@ TEST_CASE("ground's solution fills what was not given, and nothing that the comm
     CHECK(filled == std::vector<NamedValue>{{"solution_id", 9}, {"entry_sclk", 1000.0}});
     CHECK(arguments_text(filled) == "solution_id=9 entry_sclk=1000");
     CHECK(encode(set_parameters(), filled, 0).ok());
+}
+
+TEST_CASE("every command of the shipped dictionary can be sent at its bounds, and not beside them",
+          "[encoder][R44][R48]") {
+    for (const auto& command : tests::shipped_dictionary().commands) {
+        INFO(command.name);
+        for (const bool largest : {false, true}) {
+            std::vector<NamedValue> arguments;
+            for (const auto& argument : command.arguments) {
+                const auto& bound = largest ? argument.type.valid_max : argument.type.valid_min;
+                const double first = argument.type.enumeration.empty()
+                                         ? 0.0
+                                         : static_cast<double>(argument.type.enumeration.front().value);
+                arguments.push_back({argument.name, bound.value_or(first)});
+            }
+            const auto packet = encode(command, arguments, 1);
+            INFO((packet.ok() ? std::string{} : packet.error().message));
+            REQUIRE(packet.ok());
+            CHECK(*decode(command, *packet) == arguments);
+            for (std::size_t i = 0; i < arguments.size(); ++i) {
+                if (!command.arguments[i].type.valid_min || !command.arguments[i].type.valid_max) continue;
+                auto outside = arguments;
+                const double outwards = largest ? 1e300 : -1e300;
+                outside[i].value = std::nextafter(outside[i].value, outwards);
+                CHECK_FALSE(encode(command, outside, 1).ok());
+            }
+        }
+    }
 }

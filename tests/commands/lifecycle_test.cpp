@@ -1,6 +1,7 @@
 #include "commands/lifecycle.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 using namespace aeolis;
@@ -177,4 +178,27 @@ TEST_CASE("a stage that no event shows is unknown from the start", "[lifecycle]"
     lifecycle.ground_stage(Stage::radiated, Status::ok, "", Ert{0}, changes);
     CHECK(lifecycle.status(Stage::accepted) == Status::unknown);
     CHECK(lifecycle.status(Stage::executed) == Status::unknown);
+}
+
+TEST_CASE("every command of the shipped dictionary is shown by events, from acceptance to execution",
+          "[lifecycle][R44][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    for (const auto& command : dictionary.commands) {
+        INFO(command.name);
+        const auto answered = [&](std::initializer_list<const char*> events) {
+            CommandLifecycle lifecycle{command, 3, 0.0, false};
+            std::vector<StageChange> changes;
+            lifecycle.ground_stage(Stage::radiated, Status::ok, "", Ert{0}, changes);
+            for (const char* event : events)
+                lifecycle.on(Answer{dictionary.event(event)->id, event, "", command.opcode, 3, Sclk{1.0}, Ert{1}},
+                             changes);
+            return lifecycle;
+        };
+        CHECK(answered({}).status(Stage::executed) == Status::pending);
+        CHECK(answered({"COMMAND_ACCEPTED"}).status(Stage::accepted) == Status::ok);
+        CHECK(answered({"COMMAND_ACCEPTED"}).status(Stage::executed) == Status::pending);
+        CHECK(answered({"COMMAND_ACCEPTED", "COMMAND_EXECUTED"}).status(Stage::executed) == Status::ok);
+        CHECK(answered({"COMMAND_REFUSED"}).status(Stage::accepted) == Status::failed);
+        CHECK(answered({"COMMAND_ACCEPTED", "COMMAND_REFUSED"}).status(Stage::executed) == Status::failed);
+    }
 }

@@ -2,6 +2,7 @@
 
 #include "commands/encoder.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 #include <cmath>
@@ -68,4 +69,11 @@ TEST_CASE("comparing packets that are not these is a bug that is found", "[read_
     CHECK_THROWS_AS(compare(ground.command, {}, report, {}), CheckFailed);
     CHECK_THROWS_AS(compare(ground.command, ground.sent, report, PacketFiller{ground.dictionary, "Status"}.seal()),
                     CheckFailed);
+}
+
+TEST_CASE("the shipped dictionary reports the parameters that it is sent", "[read_back][R23][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto* command = dictionary.command("EDL_SET_PARAMETERS");
+    REQUIRE(command != nullptr);
+    CHECK(read_back_packet(dictionary, *command) == dictionary.packet("ParametersHeld"));
 }

@@ -2,6 +2,7 @@
 
 #include "common/crc.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 #include <limits>
@@ -171,4 +172,30 @@ TEST_CASE("decoding again needs no more memory", "[decommutator]") {
         REQUIRE_FALSE(decommutator.decode(PacketFiller{dictionary, packet.name}.seal(), decoded));
     CHECK(decoded.raw.data() == raw);
     CHECK(decoded.value.data() == values);
+}
+
+TEST_CASE("every packet of the shipped dictionary is decoded, whatever its fields hold", "[decommutator][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    std::mt19937 random{137};
+    Decoded decoded;
+    for (std::size_t index = 0; index < dictionary.packets.size(); ++index) {
+        const auto& packet = dictionary.packets[index];
+        for (int round = 0; round < 100; ++round) {
+            std::vector<std::uint8_t> octets(packet.octets);
+            for (auto& octet : octets)
+                octet = static_cast<std::uint8_t>(random());
+            if (packet.event) {
+                octets[tm_data_offset_octets] = static_cast<std::uint8_t>(packet.event->value >> 8);
+                octets[tm_data_offset_octets + 1] = static_cast<std::uint8_t>(packet.event->value & 0xFF);
+            }
+            seal_tm_packet(octets, packet.apid, 0, {}, dictionary.id);
+            INFO(packet.name);
+            REQUIRE_FALSE(decommutator.decode(octets, decoded));
+            REQUIRE(decoded.packet == index);
+            for (std::size_t i = 0; i < packet.fields.size(); ++i)
+                REQUIRE(decoded.raw[i] ==
+                        read_bits(octets, packet.fields[i].position_bits, packet.fields[i].type.bits));
+        }
+    }
 }

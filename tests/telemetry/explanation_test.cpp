@@ -1,6 +1,7 @@
 #include "telemetry/explanation.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 using namespace aeolis;
@@ -25,6 +26,15 @@ struct Ground {
         return explain(dictionary, decoded);
     }
 };
+
+/// The number of a label in the packet of explanations.
+std::uint64_t number_of(const dictionary::Dictionary& dictionary, std::string_view field, std::string_view label) {
+    const auto& packet = *dictionary.packet("Explanation");
+    for (const auto& entry : packet.fields.at(*field_index(packet, field)).type.enumeration)
+        if (entry.label == label) return static_cast<std::uint64_t>(entry.value);
+    FAIL("no label " << label);
+    return 0;
+}
 
 } // namespace
 
@@ -64,4 +74,24 @@ TEST_CASE("only the packet of explanations is explained", "[explanation]") {
     Decoded decoded;
     REQUIRE_FALSE(ground.decommutator.decode(PacketFiller{ground.dictionary, "Status"}.seal(), decoded));
     CHECK_FALSE(explain(ground.dictionary, decoded));
+}
+
+TEST_CASE("the shipped dictionary's explanations have what is told of them", "[explanation][R38][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    auto packet = PacketFiller{dictionary, "Explanation"};
+    packet.raw("condition_count", 4);
+    for (const char* slot : {"1", "2", "3", "4"})
+        packet.real(std::string{"value_"} + slot, 2.0).real(std::string{"bound_"} + slot, 3.0);
+    packet.raw("condition_4", number_of(dictionary, "condition_4", "speed_mps"));
+    packet.raw("comparison_4", number_of(dictionary, "comparison_4", "le")).raw("holds_4", 1);
+    REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
+    const auto explanation = explain(dictionary, decoded);
+    REQUIRE(explanation);
+    INFO(explanation->text);
+    CHECK(explanation->decision == "do_edl");
+    CHECK(explanation->verdict == "fired");
+    REQUIRE(explanation->conditions.size() == 4);
+    CHECK(explanation->text.find("speed 2.0 m/s <= 3.0 m/s") != std::string::npos);
 }

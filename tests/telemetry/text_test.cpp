@@ -1,6 +1,7 @@
 #include "telemetry/text.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 using namespace aeolis;
@@ -75,4 +76,21 @@ TEST_CASE("a brace that is not closed stays as it is", "[text]") {
     dictionary::Event event;
     event.format = "a {speed_mps} b {speed_mps";
     CHECK(event_text(dictionary, event, decoded) == "a 0.0 b {speed_mps");
+}
+
+TEST_CASE("every event of the shipped dictionary reads as a sentence without braces", "[text][R48]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    CHECK(dictionary.events.size() >= 50);
+    for (const auto& wanted : dictionary.events) {
+        REQUIRE_FALSE(decommutator.decode(PacketFiller{dictionary, wanted.name}.seal(), decoded));
+        const auto* event = event_of(dictionary, decoded);
+        REQUIRE(event != nullptr);
+        CHECK(event->id == wanted.id);
+        const auto text = event_text(dictionary, *event, decoded);
+        CHECK_FALSE(text.empty());
+        INFO(text);
+        CHECK(text.find('{') == std::string::npos);
+    }
 }
