@@ -8,7 +8,7 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr char newest_sql[] = "SELECT octets, source FROM units WHERE run = ?1 AND apid = ?2 AND sclk <= ?3"
+constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 
 Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::Dictionary& dictionary,
@@ -63,6 +63,31 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     return series;
 }
 
+/// What the newest unit of a packet and source says, where it is newer than what is known.
+Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, Source source, double to_s,
+                         std::vector<std::optional<ChannelValue>>& newest) {
+    const auto& channels = reader.columns.channels(packet);
+    if (channels.empty()) return {};
+    auto rows = reader.query(newest_sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value})
+        .bind(2, std::int64_t{reader.dictionary.packets[packet].apid.value})
+        .bind(3, to_s)
+        .bind(4, static_cast<std::int64_t>(packet))
+        .bind(5, static_cast<std::int64_t>(source));
+    auto found = row.step();
+    if (!found) return found.error();
+    if (!*found || reader.decommutator.decode(row.octets(0), reader.decoded)) return {};
+    std::vector<double> values;
+    reader.columns.append_values(reader.decoded, values);
+    const Sclk sclk = reader.decoded.header.time;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        if (auto& known = newest[channels[i].value]; !known || known->sclk < sclk)
+            known = ChannelValue{channels[i], values[i], sclk, source};
+    return {};
+}
+
 } // namespace
 
 Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
@@ -95,29 +120,9 @@ Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> 
     if (!info) return info.error();
     if (auto same = state_->same_dictionary(*info); !same) return same.error();
     std::vector<std::optional<ChannelValue>> newest(state_->dictionary.channels.size());
-    std::vector<double> values;
-    for (std::size_t packet = 0; packet < state_->columns.packets(); ++packet) {
-        const auto& channels = state_->columns.channels(packet);
-        if (channels.empty()) continue;
-        auto rows = state_->query(newest_sql);
-        if (!rows) return rows.error();
-        auto& row = **rows;
-        row.bind(1, std::int64_t{run.value})
-            .bind(2, std::int64_t{state_->dictionary.packets[packet].apid.value})
-            .bind(3, range->to_s)
-            .bind(4, static_cast<std::int64_t>(packet));
-        auto found = row.step();
-        if (!found) return found.error();
-        if (!*found || state_->decommutator.decode(row.octets(0), state_->decoded)) continue;
-        values.clear();
-        state_->columns.append_values(state_->decoded, values);
-        const Sclk sclk = state_->decoded.header.time;
-        for (std::size_t i = 0; i < channels.size(); ++i) {
-            auto& known = newest[channels[i].value];
-            if (!known || known->sclk < sclk)
-                known = ChannelValue{channels[i], values[i], sclk, static_cast<Source>(row.integer(1))};
-        }
-    }
+    for (std::size_t packet = 0; packet < state_->columns.packets(); ++packet)
+        for (const Source source : {Source::realtime, Source::recorded})
+            if (auto done = note_newest(*state_, run, packet, source, range->to_s, newest); !done) return done.error();
     std::vector<ChannelValue> answer;
     for (const auto& value : newest)
         if (value && !std::isnan(value->value)) answer.push_back(*value);

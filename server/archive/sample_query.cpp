@@ -15,16 +15,20 @@ constexpr char segments_sql[] =
     " WHERE run = ?1 AND packet = ?2 AND last_sclk >= ?3 AND first_sclk <= ?4 ORDER BY segment";
 constexpr char count_sql[] = "SELECT coalesce(sum(samples), 0) FROM segments"
                              " WHERE run = ?1 AND packet = ?2 AND last_sclk >= ?3 AND first_sclk <= ?4";
-constexpr char sealed_sql[] =
-    "SELECT coalesce(max(last_unit), 0) FROM segments WHERE run = ?1 AND packet = ?2 AND source = ?3";
+constexpr char sealed_sql[] = "SELECT coalesce(max(last_unit), 0), coalesce(sum(samples), 0) FROM segments"
+                              " WHERE run = ?1 AND packet = ?2 AND source = ?3";
 constexpr char times_sql[] = "SELECT sclk FROM segments WHERE segment = ?1";
 constexpr char values_sql[] = "SELECT value FROM segment_columns WHERE key = ?1";
 constexpr char extremes_sql[] =
     "SELECT defined, least, least_sclk, largest, largest_sclk FROM segment_columns WHERE key = ?1";
-// The plus keeps SQLite on the index by time: a range by key would read every packet of the run.
-constexpr char tail_sql[] =
-    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND sclk BETWEEN ?3 AND ?4 AND +key > ?5"
-    " AND source = ?6 AND packet = ?7 AND sampled = 1";
+// Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
+// SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
+constexpr char tail_by_time_sql[] =
+    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND sclk BETWEEN ?3 AND ?4 AND +key > ?5"
+    " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
+constexpr char tail_by_key_sql[] =
+    "SELECT octets FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
+    " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
 struct Segment {
     std::int64_t number = 0;
@@ -92,8 +96,11 @@ Result<void> read_tail(Reader::State& reader, RunId run, PacketColumns::Place pl
     (*sealed)->bind(3, static_cast<std::int64_t>(source));
     if (auto found = (*sealed)->step(); !found) return found.error();
     const auto last_unit = static_cast<Sequence>((*sealed)->integer(0));
+    const auto sealed_samples = static_cast<Sequence>((*sealed)->integer(1));
+    const auto last = reader.last_seq(run);
+    if (!last) return last.error();
 
-    auto rows = reader.query(tail_sql);
+    auto rows = reader.query(sealed_samples < *last - last_unit ? tail_by_time_sql : tail_by_key_sql);
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, std::int64_t{run.value})
@@ -102,7 +109,8 @@ Result<void> read_tail(Reader::State& reader, RunId run, PacketColumns::Place pl
         .bind(4, range.to_s)
         .bind(5, item_key(run, last_unit))
         .bind(6, static_cast<std::int64_t>(source))
-        .bind(7, std::int64_t{place.packet});
+        .bind(7, std::int64_t{place.packet})
+        .bind(8, item_key(run, *last));
     for (;;) {
         auto found = (*rows)->step();
         if (!found) return found.error();

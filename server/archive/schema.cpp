@@ -50,7 +50,7 @@ CREATE TABLE units (
     key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER, sclk REAL NOT NULL,
     ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL, standing INTEGER NOT NULL,
     sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;
-CREATE INDEX units_by_time ON units (run, apid, sclk);
+CREATE INDEX units_by_time ON units (run, apid, source, sclk);
 
 CREATE TABLE segments (
     segment INTEGER PRIMARY KEY, run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL,
