@@ -195,7 +195,7 @@ TEST_CASE("events are found by level and by text of any case", "[reader]") {
     CHECK(found->events(0).event().text() == "mortar fired at 405.0 m/s");
 }
 
-TEST_CASE("the timeline tells plan, real time and recording of each timepoint", "[reader][R14]") {
+TEST_CASE("the timeline tells plan, real time and recording of each timepoint", "[reader][R43]") {
     Recorded run(true);
     const auto list = run.reader.timepoints(RunId{1});
     REQUIRE(list.ok());
