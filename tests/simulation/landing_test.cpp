@@ -1,0 +1,157 @@
+#include "simulation/landing.hpp"
+
+#include "common/bytes.hpp"
+#include "generated/dictionary_flight.hpp"
+#include "simulation/devices/recorder.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <set>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+std::vector<EventReportName> event_reports() {
+    using namespace aeolis::flight;
+    const auto named = [](Apid apid, EvrId id, const char* name) { return EventReportName{apid, id, name}; };
+    return {named(evr::GUIDANCE_START::apid, evr::GUIDANCE_START::id, "guidance_start"),
+            named(evr::HEADING_ALIGNMENT::apid, evr::HEADING_ALIGNMENT::id, "heading_alignment"),
+            named(evr::RADAR_LOCK::apid, evr::RADAR_LOCK::id, "radar_lock"),
+            named(evr::TOUCHDOWN::apid, evr::TOUCHDOWN::id, "touchdown")};
+}
+
+std::vector<std::uint8_t> set_parameters(const NavigationSolution& solution) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SET_PARAMETERS::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    arguments.put(solution.solution_id, 16);
+    arguments.put_double(solution.epoch.seconds);
+    for (const double value : solution.p_MoB_M_m)
+        arguments.put_double(value);
+    for (const double value : solution.v_MB_M_mps)
+        arguments.put_double(value);
+    arguments.put_double(solution.entry.seconds);
+    arguments.put_double(solution.target.latitude_deg);
+    arguments.put_double(solution.target.longitude_deg);
+    arguments.put_double(solution.target.radius_m);
+    for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.0F})
+        arguments.put_float(value);
+    seal_tc_packet(packet, Apid{1}, 0, flight::command::EDL_SET_PARAMETERS::opcode);
+    return packet;
+}
+
+std::vector<std::uint8_t> do_edl() {
+    std::vector<std::uint8_t> packet(tc_overhead_octets);
+    seal_tc_packet(packet, Apid{1}, 1, flight::command::EDL_DO_EDL::opcode);
+    return packet;
+}
+
+/// What came of a landing that was commanded `ticks` after its start.
+struct Flown {
+    std::vector<std::uint8_t> relayed;
+    std::vector<std::vector<std::uint8_t>> live;
+    std::set<std::string> events;
+    std::int64_t first_link_us = 0;
+
+    void step(Landing& landing) {
+        const CycleReport& report = landing.step();
+        for (const ReceivedPacket& packet : report.packets) {
+            CHECK_FALSE(packet.ert > landing.ert_now());
+            if (packet.link == LinkId::relay)
+                relayed.insert(relayed.end(), packet.octets.begin(), packet.octets.end());
+            else
+                live.push_back(packet.octets);
+        }
+        for (const TruthEvent& event : report.events)
+            events.insert(event.name);
+        for (const LinkState& link : report.links)
+            if (first_link_us == 0) first_link_us = link.ert.microseconds;
+    }
+};
+
+void command(Landing& landing, Flown& flown) {
+    landing.uplink(set_parameters(landing.solution()));
+    for (int i = 0; i < 640; ++i)
+        flown.step(landing);
+    landing.uplink(do_edl());
+}
+
+std::set<std::vector<std::uint8_t>> packets_of(std::span<const std::uint8_t> recording) {
+    std::set<std::vector<std::uint8_t>> packets;
+    for (auto packet = take_packet(recording); !packet.empty(); packet = take_packet(recording))
+        packets.emplace(packet.begin(), packet.end());
+    return packets;
+}
+
+} // namespace
+
+TEST_CASE("a commanded landing stands, and its whole recording comes down with all that was sent live",
+          "[simulation][landing][R29]") {
+    Landing landing{tests::gale_scenario(1200.0), 1, 0, event_reports()};
+    Flown flown;
+    command(landing, flown);
+    while (!landing.finished())
+        flown.step(landing);
+    INFO(landing.outcome_reason());
+    REQUIRE(landing.outcome() == Outcome::touchdown);
+    for (const char* name : {"guidance_start", "heading_alignment", "radar_lock", "touchdown"})
+        CHECK(flown.events.count(name) == 1);
+    CHECK(std::ranges::equal(flown.relayed, landing.recording()));
+    CHECK(landing.relay_progress() == 1.0);
+    const auto recorded = packets_of(landing.recording());
+    CHECK(flown.live.size() > 1000);
+    CHECK(std::ranges::all_of(flown.live, [&](const auto& packet) { return recorded.contains(packet); }));
+}
+
+TEST_CASE("a copied landing stepped alike stays bit-identical", "[simulation][landing][invariant2]") {
+    Landing original{tests::gale_scenario(900.0), 3};
+    Flown flown;
+    command(original, flown);
+    for (int i = 0; i < 64 * 200; ++i)
+        flown.step(original);
+    Landing copy{original};
+    for (int i = 0; i < 64 * 600; ++i) {
+        original.step();
+        copy.step();
+    }
+    CHECK(std::ranges::equal(copy.recording(), original.recording()));
+    CHECK(copy.truth().p_MoB_M_m == original.truth().p_MoB_M_m);
+    CHECK(original.truth().e_s < 0.0); // flown on, not stuck at the end
+}
+
+TEST_CASE("commands and data each take a light time", "[simulation][landing]") {
+    Scenario scenario = tests::gale_scenario(1200.0);
+    scenario.radio.light_time_s = 30.0;
+    Landing landing{scenario, 1};
+    const std::int64_t start_us = landing.ert_now().microseconds;
+    const std::size_t before = landing.recording().size();
+    Flown flown;
+    landing.uplink(do_edl()); // refused, since no parameters came: the refusal is recorded
+    const auto records_of_a_second = [&] {
+        const std::size_t size = landing.recording().size();
+        for (int i = 0; i < 64; ++i)
+            flown.step(landing);
+        return landing.recording().size() - size;
+    };
+    const std::size_t quiet = (records_of_a_second(), records_of_a_second());
+    for (int i = 2; i < 29; ++i)
+        records_of_a_second();
+    CHECK(flown.first_link_us == 0); // Earth has heard nothing yet
+    const std::size_t arrival = records_of_a_second() + records_of_a_second();
+    CHECK(arrival > 2 * quiet);
+    CHECK(flown.first_link_us == start_us + 30'000'000);
+    CHECK(before == 0);
+}
+
+TEST_CASE("a landing that nobody commands ends as not commanded and brings no recording down",
+          "[simulation][landing]") {
+    Landing landing{tests::gale_scenario(60.0), 1};
+    Flown flown;
+    while (!landing.finished())
+        flown.step(landing);
+    CHECK(landing.outcome() == Outcome::not_commanded);
+    CHECK(flown.relayed.empty());
+    CHECK(landing.relay_progress() == 0.0);
+}
