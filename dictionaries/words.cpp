@@ -57,6 +57,16 @@ std::string number_word(double value) {
     return {text.data(), result.ptr};
 }
 
+bool is_taken_in_packets(std::string_view name) {
+    constexpr std::array taken{"apid", "octets", "encode", "id", "level", "out"};
+    return std::ranges::find(taken, name) != taken.end();
+}
+
+bool is_taken_in_commands(std::string_view name) {
+    constexpr std::array taken{"opcode", "argument_octets", "decode"};
+    return std::ranges::find(taken, name) != taken.end();
+}
+
 std::optional<std::string> unusable_as_identifier(std::string_view name) {
     if (name.empty()) return "is empty";
     if (!is_letter(name.front())) return "does not begin with a letter";

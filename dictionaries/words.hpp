@@ -21,4 +21,8 @@ std::string number_word(double value);
 /// Why `name` cannot be a name in the C++ that the autocoder writes; none when it can.
 std::optional<std::string> unusable_as_identifier(std::string_view name);
 
+/// Whether the structs that the autocoder writes for packets, events or commands have a member of that name already.
+bool is_taken_in_packets(std::string_view name);
+bool is_taken_in_commands(std::string_view name);
+
 } // namespace aeolis::dictionary

@@ -131,6 +131,8 @@ class CommandReader {
             const auto type = types_.of(Kind::argument_type, symbol.scope, element, "argumentTypeRef", report_);
             if (const auto why = unusable_as_identifier(name))
                 fault(element, command, "argument " + in_quotes(name) + " " + *why);
+            if (is_taken_in_commands(name))
+                fault(element, command, "argument " + in_quotes(name) + " is a name of the decoder's own");
             if (!type) {
                 unreadable.insert(name);
                 continue;

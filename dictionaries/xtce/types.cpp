@@ -170,10 +170,11 @@ class TypeReader {
         type_.valid_min = report_.number(range, "minInclusive");
         type_.valid_max = report_.number(range, "maxInclusive");
         const auto [least, most] = encodable(type_);
-        if (type_.valid_min && type_.valid_max && *type_.valid_min > *type_.valid_max)
+        if (type_.valid_min && type_.valid_max && *type_.valid_min > *type_.valid_max) {
             fault(range, "minInclusive is above maxInclusive");
-        else if (type_.calibrator.empty() &&
-                 (type_.valid_min.value_or(least) < least || type_.valid_max.value_or(most) > most))
+            type_.valid_min = type_.valid_max = std::nullopt; // so that no default is said to be outside
+        } else if (type_.calibrator.empty() &&
+                   (type_.valid_min.value_or(least) < least || type_.valid_max.value_or(most) > most))
             fault(range, "the valid range does not fit " + std::to_string(type_.bits) + " bits");
     }
 

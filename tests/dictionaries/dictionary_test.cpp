@@ -1,0 +1,204 @@
+#include "dictionaries/dictionary.hpp"
+
+#include "common/space_packet.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/mission_copy.hpp"
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+using namespace aeolis;
+using namespace aeolis::dictionary;
+
+namespace {
+
+const Dictionary& msl() {
+    static const Loaded loaded = load(tests::shipped_mission);
+    INFO(tests::lines_of(loaded));
+    REQUIRE(loaded.dictionary);
+    return *loaded.dictionary;
+}
+
+} // namespace
+
+TEST_CASE("the shipped dictionary breaks no rule and is as large as a landing needs", "[dictionary][R20][R31][R48]") {
+    const Dictionary& d = msl();
+    CHECK(d.mission == "MSL");
+    CHECK(d.channels.size() >= 60);
+    CHECK(d.packets.size() - d.events.size() >= 12);
+    CHECK(d.events.size() >= 50);
+    CHECK(d.commands.size() == 5);
+    CHECK(d.timeline.size() >= 60);
+    CHECK(d.tones.size() == 256);
+    CHECK(d.timeline.front().name == "coolant_vent");
+    CHECK(d.timeline.front().desired_offset_s == -826.0);
+    const auto with_alarms = std::ranges::count_if(
+        d.channels, [](const Channel& c) { return !c.type.alarms.ranges.empty() || !c.type.alarms.values.empty(); });
+    CHECK(with_alarms >= 12);
+}
+
+TEST_CASE("channels, commands, events and packets are found by their names", "[dictionary]") {
+    const Dictionary& d = msl();
+    REQUIRE(d.channel("altitude_m"));
+    CHECK(d.channel("altitude_m") == d.channel(d.channel("altitude_m")->alias));
+    CHECK(d.channel("altitude_m") == &d.channels[d.channel("altitude_m")->id.value]);
+    REQUIRE(d.command("EDL_DO_EDL"));
+    CHECK(d.command("EDL_DO_EDL") == d.command(Opcode{0x0103}));
+    REQUIRE(d.event("TOUCHDOWN"));
+    CHECK(d.event("TOUCHDOWN") == d.event(d.event("TOUCHDOWN")->id));
+    CHECK(d.packets[d.event("TOUCHDOWN")->packet].name == "TOUCHDOWN");
+    REQUIRE(d.packet("GncNavigation"));
+    CHECK(d.packet("GncNavigation")->apid == Apid{0x020});
+    CHECK(d.channel("no_such") == nullptr);
+    CHECK(d.command("NO_SUCH") == nullptr);
+    CHECK(d.event(EvrId{65535}) == nullptr);
+    CHECK(d.packet("NoSuch") == nullptr);
+}
+
+TEST_CASE("every event that the landing's report names is an event on board", "[dictionary][R48]") {
+    for (const char* name : {"CRUISE_STAGE_SEPARATION",
+                             "ENTRY_INTERFACE",
+                             "GUIDANCE_START",
+                             "BANK_REVERSAL",
+                             "PEAK_DECELERATION",
+                             "HEADING_ALIGNMENT",
+                             "SUFR_START",
+                             "PARACHUTE_DEPLOY",
+                             "HEATSHIELD_SEPARATION",
+                             "RADAR_LOCK",
+                             "ENGINE_PRIMING",
+                             "BACKSHELL_SEPARATION",
+                             "POWERED_APPROACH_START",
+                             "CONSTANT_VELOCITY_START",
+                             "CONSTANT_DECELERATION_START",
+                             "SKY_CRANE_START",
+                             "ROVER_SEPARATION",
+                             "TOUCHDOWN",
+                             "BRIDLE_CUT",
+                             "FLYAWAY_END"}) {
+        INFO(name);
+        CHECK(msl().event(name));
+    }
+}
+
+TEST_CASE("fields lie between the headers and the CRC, none on another", "[dictionary]") {
+    for (const Packet& packet : msl().packets) {
+        INFO(packet.name);
+        std::set<unsigned> used;
+        unsigned bits = 0;
+        const auto claim = [&](unsigned position, unsigned count) {
+            for (unsigned bit = position; bit < position + count; ++bit)
+                used.insert(bit);
+            bits += count;
+        };
+        for (const Field& field : packet.fields) {
+            claim(field.position_bits, field.type.bits);
+            if (field.validity_bit) claim(*field.validity_bit, 1);
+        }
+        CHECK(used.size() == bits);
+        if (!used.empty()) {
+            CHECK(*used.begin() >= tm_data_offset_octets * 8);
+            CHECK(*used.rbegin() < (packet.octets - packet_crc_octets) * 8);
+        }
+        CHECK(packet.octets <= packet_octets_max);
+    }
+}
+
+TEST_CASE("parameters read back as they were commanded, field by field and bit by bit", "[dictionary][R48]") {
+    const Command& sent = *msl().command("EDL_SET_PARAMETERS");
+    const Packet& held = *msl().packet("ParametersHeld");
+    REQUIRE(sent.arguments.size() == held.fields.size());
+    for (std::size_t i = 0; i < sent.arguments.size(); ++i) {
+        const Argument& argument = sent.arguments[i];
+        const Field& field = held.fields[i];
+        INFO(argument.name);
+        CHECK(argument.name == field.name);
+        CHECK(argument.type.encoding == field.type.encoding);
+        CHECK(argument.type.bits == field.type.bits);
+        CHECK(argument.type.unit == field.type.unit);
+        CHECK(argument.position_bits + tm_data_offset_octets * 8 == field.position_bits);
+    }
+}
+
+TEST_CASE("a command is preceded and followed by what its author asks for", "[dictionary][R23]") {
+    const Command& begin = *msl().command("EDL_DO_EDL");
+    CHECK(begin.significance == Significance::critical);
+    REQUIRE(begin.preconditions.size() == 3);
+    CHECK(begin.preconditions[0].channel == msl().channel("parameters_received")->id);
+    CHECK(begin.preconditions[0].value == 1.0);
+    CHECK(begin.preconditions[2].value == 0.0);
+    REQUIRE(begin.verifiers.size() == 2);
+    CHECK(begin.verifiers[0].stage == "accepted");
+    CHECK(begin.verifiers[0].event == msl().event("COMMAND_ACCEPTED")->id);
+    CHECK(begin.verifiers[0].failure_event == msl().event("COMMAND_REFUSED")->id);
+    CHECK(begin.verifiers[1].stage == "executed");
+    CHECK(begin.verifiers[1].window_s == 20.0);
+}
+
+TEST_CASE("any change of any file changes the dictionary's id; the timeline's version follows its own",
+          "[dictionary][R20]") {
+    std::set<std::uint16_t> ids{msl().id};
+    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv"}) {
+        INFO(file);
+        const tests::MissionCopy mission;
+        mission.write(file, mission.text(file) + "\n");
+        const Loaded loaded = mission.load();
+        REQUIRE(loaded.dictionary);
+        CHECK(ids.insert(loaded.dictionary->id).second);
+        const bool of_timeline = std::string_view{file} == "timeline.csv" || std::string_view{file} == "anchors.csv";
+        CHECK((loaded.dictionary->timeline_version != msl().timeline_version) == of_timeline);
+    }
+}
+
+TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary]") {
+    for (const char* file : {"timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "msl.xml"}) {
+        const tests::MissionCopy mission;
+        std::filesystem::remove(mission.path() / file);
+        const Loaded loaded = mission.load();
+        INFO(file << "\n" << tests::lines_of(loaded));
+        CHECK_FALSE(loaded.dictionary);
+        CHECK(loaded.findings.size() == 1);
+    }
+    CHECK(load("/no/such/folder").findings.size() == 5);
+}
+
+TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
+    std::mt19937 random{20120806};
+    const tests::MissionCopy mission;
+    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv"}) {
+        const std::string sound = mission.text(file);
+        for (int trial = 0; trial < 60; ++trial) {
+            std::string text = sound;
+            const auto somewhere = [&] { return random() % text.size(); };
+            if (trial % 3 == 0) {
+                text.resize(somewhere());
+            } else {
+                for (unsigned changes = 1 + random() % 8; changes > 0; --changes) {
+                    const std::size_t at = somewhere();
+                    switch (random() % 4) {
+                    case 0:
+                        text[at] = static_cast<char>(random());
+                        break;
+                    case 1:
+                        text.erase(at, random() % 200);
+                        break;
+                    case 2:
+                        text.insert(at, text.substr(somewhere(), random() % 200));
+                        break;
+                    default:
+                        text[at] = "\"<>,&/0-"[random() % 8];
+                        break;
+                    }
+                    if (text.empty()) break;
+                }
+            }
+            mission.write(file, text);
+            const Loaded loaded = mission.load();
+            CHECK(loaded.dictionary.has_value() == loaded.findings.empty());
+            for (const Finding& finding : loaded.findings)
+                CHECK(finding.line >= 1);
+        }
+        mission.write(file, sound);
+    }
+}

@@ -1,0 +1,107 @@
+#include "dictionaries/spreadsheet/tables.hpp"
+#include "tests/support/planted.hpp"
+
+using namespace aeolis;
+using aeolis::tests::Planted;
+
+TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is loaded", "[dictionary][R13][R20][R40]") {
+    static const std::vector<Planted> all{
+        // anchors
+        {"cycle of anchors", "anchors.csv", "entry,root,undefined", "entry,pre_edl_end,undefined",
+         "a cycle of anchors: entry -> pre_edl_end -> entry"},
+        {"dangling parent", "anchors.csv", "pre_edl_end,entry,", "pre_edl_end,exit,", "there is no anchor 'exit'"},
+        {"two roots", "anchors.csv", "parachute,root,undefined", "parachute,,", "has no parent"},
+        {"offset of the root", "anchors.csv", "root,,,", "root,,5,", "the root stands at zero"},
+        {"anchor twice", "anchors.csv", "priming,root", "backshell,root,undefined,\npriming,root",
+         "is there twice, first in line 9", 2},
+        {"anchor off the ticks", "anchors.csv", "-14400", "-14400.1", "-14400.1 is not a multiple of 1/64 s"},
+        {"undefined has one spelling", "anchors.csv", "parachute,root,undefined", "parachute,root,nan",
+         "'nan' is neither a number nor undefined"},
+        {"reserved anchor name", "anchors.csv", "pre_edl_end,", "previous,", "the name means something else"},
+        // timeline
+        {"off the ticks", "timeline.csv", "-600.046875", "-600.05", "-600.05 is not a multiple of 1/64 s"},
+        {"offset no number", "timeline.csv", "-600.046875", "soon", "'soon' is neither a number nor undefined"},
+        {"offset left empty", "timeline.csv", "-600.046875", "", "'' is neither a number nor undefined"},
+        {"dangling reference", "timeline.csv", "gnc_enable,entry", "gnc_enable,exit",
+         "reference 'exit' is neither previous nor an anchor"},
+        {"timepoint twice", "timeline.csv", "\ndetumble,", "\ngnc_enable,", "is there twice, first in line 11", 1},
+        {"dangling tone", "timeline.csv", ",yes,touchdown,,", ",yes,touchup,,", "there is no tone 'touchup'"},
+        {"tone of Second Chance", "timeline.csv", ",yes,touchdown,,", ",yes,sc_touchdown,,", "is not one of prime's"},
+        {"dangling event", "timeline.csv", "GNC_ENABLED", "GNC_DISABLED", "there is no event 'GNC_DISABLED'"},
+        {"event with arguments", "timeline.csv", "GNC_ENABLED", "PARACHUTE_DEPLOY", "has arguments"},
+        {"action no name", "timeline.csv", "start_detumble", "start-detumble", "action has characters other"},
+        {"reply without action", "timeline.csv", "start_uhf,4", ",4", "waits for a reply, but has no action"},
+        {"time-out not above 0", "timeline.csv", "start_uhf,4", "start_uhf,0", "reply_timeout_s is not above 0"},
+        {"dangling backtrack", "timeline.csv", "start_uhf,4,uhf_start", "start_uhf,4,uhf_begin",
+         "there is no timepoint 'uhf_begin'"},
+        {"backtrack forward", "timeline.csv", "vent_coolant,4,coolant_vent", "vent_coolant,4,touchdown", "comes later"},
+        {"essential neither yes nor no", "timeline.csv", "uhf_start,yes", "uhf_start,maybe",
+         "'maybe' is neither yes nor no"},
+        {"name a keyword", "timeline.csv", "\ndetumble,", "\nreturn,", "is a keyword of C++", 1},
+        // tones
+        {"tone number too large", "tones.csv", "\n255,", "\n256,", "'256' is not a whole number from 0 to 255", 1},
+        {"tone number twice", "tones.csv", "\n255,", "\n254,", "the id is there twice", 1},
+        {"unknown set", "tones.csv", "\n255,spare", "\n255,prim", "'prim' is none of prime", 1},
+        {"supersedes nothing", "tones.csv", ",127,120,rover_separation", ",127,120,rover", "there is no tone 'rover'"},
+        {"supersedes of another set", "tones.csv", ",127,120,rover_separation", ",127,120,sc_rover_separation",
+         "of another set"},
+        {"no expiry", "tones.csv", ",127,120,", ",127,0,", "expires_s is not above 0"},
+        {"named spare", "tones.csv", "\n255,spare,,", "\n255,spare,left_over,", "a spare tone has no name", 1},
+        // parameters
+        {"default outside its range", "parameters.csv", "guidance_gain,5,", "guidance_gain,11,",
+         "default 11 is outside 1 ... 10"},
+        {"range upside down", "parameters.csv", "guidance_gain,5,1,10", "guidance_gain,5,10,1",
+         "min 10 is above max 1"},
+        {"no unit", "parameters.csv", "guidance_gain,5,1,10,1,", "guidance_gain,5,1,10,,", "has no unit"},
+        {"no source", "parameters.csv", "Bridle,[facts] (H)", "Bridle,", "source is empty"},
+        {"bad number", "parameters.csv", "guidance_gain,5,", "guidance_gain,five,", "default 'five' is not a number"},
+        {"parameter twice", "parameters.csv", "drag_filter_time_s,", "guidance_start_drag_mps2,",
+         "is there twice, first in line 4"},
+        // the sheet itself
+        {"ragged row", "parameters.csv", "guidance_gain,5,", "guidance_gain,5,5,", "the row has 8 cells, the header 7"},
+        {"open quote", "tones.csv", "\n255,spare,,Spare", "\n255,spare,,\"Spare",
+         "the quote that opens here is never closed", 1},
+    };
+    for (const Planted& planted : all)
+        tests::check_planted(planted);
+}
+
+TEST_CASE("a column too many is named", "[dictionary]") {
+    std::vector<dictionary::Finding> all;
+    dictionary::Findings findings{"anchors.csv", all};
+    CHECK_FALSE(dictionary::read_anchors("name,parent,offset_s,note,Note\nroot,,,,\n", findings));
+    REQUIRE(all.size() == 1);
+    CHECK(all.front().text() == "anchors.csv:1: unknown column 'Note'");
+}
+
+TEST_CASE("a column that is missing is named", "[dictionary]") {
+    std::vector<dictionary::Finding> all;
+    dictionary::Findings findings{"anchors.csv", all};
+    CHECK_FALSE(dictionary::read_anchors("name,parent,note\nroot,,\n", findings));
+    REQUIRE(all.size() == 1);
+    CHECK(all.front().text() == "anchors.csv:1: column 'offset_s' is missing");
+}
+
+TEST_CASE("a tone without its Second Chance twin is found", "[dictionary][R35]") {
+    tests::check_planted(
+        {"twin", "tones.csv", "sc_coolant_vent", "coolant_vent_again", "there is no Second Chance tone", 10 - 106});
+}
+
+TEST_CASE("anchors are put in topological order, else as in the file", "[dictionary][R12]") {
+    std::vector<dictionary::Finding> all;
+    dictionary::Findings findings{"anchors.csv", all};
+    const auto rows = dictionary::read_anchors("name,parent,offset_s,note\n"
+                                               "late,entry,60,\n"
+                                               "root,,,\n"
+                                               "other,root,undefined,\n"
+                                               "entry,root,undefined,\n",
+                                               findings);
+    REQUIRE(all.empty());
+    REQUIRE(rows->size() == 4);
+    CHECK(rows->at(0).name == "root");
+    CHECK(rows->at(0).offset_s == 0.0);
+    CHECK_FALSE(rows->at(0).parent);
+    CHECK(rows->at(3).name == "late");
+    for (const auto& row : *rows)
+        if (row.parent) CHECK(row.parent->value < row.id.value);
+}
