@@ -133,9 +133,9 @@ Task<> write_messages(std::shared_ptr<StreamConnection> connection, std::shared_
     while (connection->open) {
         const auto message = session->next_message();
         if (session->flooded()) {
-            co_await connection->socket.async_close(
-                {websocket::close_code::policy_error, "too many requests without reading the answers"},
-                asio::redirect_error(awaiting, error));
+            const websocket::close_reason reason{websocket::close_code::policy_error,
+                                                 "too many requests without reading the answers"};
+            co_await connection->socket.async_close(reason, asio::redirect_error(awaiting, error));
             break;
         }
         if (!message) {
@@ -241,8 +241,10 @@ Task<> WebServer::State::serve_requests(Stream& stream) {
                                    "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
         } else {
             stream.expires_never();
-            auto answered = co_await answer({std::string{plain(request.method_string())}, target->path(),
-                                             std::string{target->encoded_query()}, std::move(request.body())});
+            // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
+            HttpRequest asked{std::string{plain(request.method_string())}, target->path(),
+                              std::string{target->encoded_query()}, std::move(request.body())};
+            auto answered = co_await answer(std::move(asked));
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
             response.set(http::field::cache_control, answered.cache_control);
