@@ -6,6 +6,8 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <fmt/format.h>
 #include <utility>
 
@@ -13,6 +15,23 @@ namespace aeolis::server {
 namespace {
 
 constexpr const char* firing_packet_name = "TimepointFired";
+
+// Moments that only the computer knows, by the event report that tells them. All others the world sees itself.
+constexpr std::array reported_moments{"GUIDANCE_START",          "HEADING_ALIGNMENT",           "RADAR_LOCK",
+                                      "POWERED_APPROACH_START",  "CONSTANT_VELOCITY_START",     "CONSTANT_DECELERATION_START",
+                                      "TOUCHDOWN"};
+
+std::vector<simulation::EventReportName> event_reports(const dictionary::Dictionary& dictionary) {
+    std::vector<simulation::EventReportName> reports;
+    for (const std::string name : reported_moments) {
+        const auto* event = dictionary.event(name);
+        if (event == nullptr) continue;
+        std::string moment = name;
+        std::ranges::transform(moment, moment.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        reports.push_back({dictionary.packets[event->packet].apid, event->id, moment});
+    }
+    return reports;
+}
 
 const char* name_of(simulation::Outcome outcome) {
     using simulation::Outcome;
@@ -27,12 +46,25 @@ const char* name_of(simulation::Outcome outcome) {
     return "running";
 }
 
+/// Where the recording tells of decisions that the truth cannot see: the event of the same name in capitals.
+std::vector<simulation::EventReportName> event_reports(const dictionary::Dictionary& dictionary) {
+    std::vector<simulation::EventReportName> reports;
+    for (const std::string name : simulation::decided_on_board) {
+        std::string capitals = name;
+        std::ranges::transform(capitals, capitals.begin(),
+                               [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+        if (const dictionary::Event* event = dictionary.event(capitals))
+            reports.push_back({dictionary.packets[event->packet].apid, event->id, name});
+    }
+    return reports;
+}
+
 } // namespace
 
 Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                      const dictionary::Dictionary& dictionary)
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
-      landing_(scenario, seed, case_number),
+      landing_(scenario, seed, case_number, event_reports(dictionary)),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
       script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)), decommutator_(dictionary) {
     std::ranges::stable_sort(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
