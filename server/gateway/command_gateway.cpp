@@ -70,7 +70,7 @@ CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& reque
     for (const auto& argument : request.arguments()) arguments.push_back({argument.name(), argument.value()});
     if (request.from_solution()) arguments = commands::fill_from_solution(*command, arguments, solution_);
     auto packet = commands::encode(*command, arguments, count_);
-    if (!packet) return refuse(command->name + ": " + packet.error().message);
+    if (!packet) return refuse(packet.error().message);
 
     // What ground does not know is no reason to refuse: flight holds the same conditions and decides by what it knows.
     auto preconditions = commands::check(dictionary_, *command, latest(now));
@@ -83,7 +83,7 @@ CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& reque
     });
     const auto authorised =
         commands::authorise(*command, {request.armed(), request.confirmation()}, preconditions);
-    if (!authorised) return refuse(command->name + ": " + authorised.error().message);
+    if (!authorised) return refuse(authorised.error().message);
 
     const auto* report = commands::read_back_packet(dictionary_, *command);
     const auto held = commands::decode(*command, *packet); // as encoded: defaults are in it

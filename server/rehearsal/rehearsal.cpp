@@ -6,8 +6,6 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <fmt/format.h>
 #include <utility>
 
@@ -15,23 +13,6 @@ namespace aeolis::server {
 namespace {
 
 constexpr const char* firing_packet_name = "TimepointFired";
-
-// Moments that only the computer knows, by the event report that tells them. All others the world sees itself.
-constexpr std::array reported_moments{"GUIDANCE_START",          "HEADING_ALIGNMENT",           "RADAR_LOCK",
-                                      "POWERED_APPROACH_START",  "CONSTANT_VELOCITY_START",     "CONSTANT_DECELERATION_START",
-                                      "TOUCHDOWN"};
-
-std::vector<simulation::EventReportName> event_reports(const dictionary::Dictionary& dictionary) {
-    std::vector<simulation::EventReportName> reports;
-    for (const std::string name : reported_moments) {
-        const auto* event = dictionary.event(name);
-        if (event == nullptr) continue;
-        std::string moment = name;
-        std::ranges::transform(moment, moment.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-        reports.push_back({dictionary.packets[event->packet].apid, event->id, moment});
-    }
-    return reports;
-}
 
 const char* name_of(simulation::Outcome outcome) {
     using simulation::Outcome;

@@ -162,15 +162,13 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
     }
     digest_ = rehearsal.digest();
     deliver(rehearsal, Clock::now());
-    const bool ended = rehearsal.finished();
-    const auto finished =
-        pipeline_.finish({ended || rehearsal.outcome() != "running" ? rehearsal.outcome() : "stopped",
-                          ended ? rehearsal.outcome_reason() : "stopped by the controller", digest_, wall_clock_text()});
     finished_ = true;
+    const std::string reason = rehearsal.finished() ? rehearsal.outcome_reason() : "stopped by the controller";
+    const auto finished = pipeline_.finish({outcome(rehearsal), reason, digest_, wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_id_.value, finished.error().message);
     for (const auto& refusal : rehearsal.script_refusals())
         spdlog::warn("run {}: scripted command refused: {}", run_id_.value, refusal);
-    spdlog::info("run {} ends: {} {}", run_id_.value, rehearsal.outcome(), rehearsal.outcome_reason());
+    spdlog::info("run {} ends: {} {}", run_id_.value, outcome(rehearsal), reason);
     tell(rehearsal, Clock::now(), true);
 }
 
@@ -219,6 +217,11 @@ void RehearsalRunner::tell(const Rehearsal& rehearsal, Clock::time_point now, bo
     if (changed) callbacks_.on_state(state(rehearsal));
 }
 
+std::string RehearsalRunner::outcome(const Rehearsal& rehearsal) const {
+    const auto outcome = rehearsal.outcome();
+    return finished_ && outcome == "running" ? "stopped" : outcome;
+}
+
 std::string RehearsalRunner::state_word() const {
     if (finished_) return "finished";
     return paused_ ? "paused" : "running";
@@ -232,7 +235,7 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     state.set_venue(start_.venue);
     state.set_seed(seed_);
     state.set_state(state_word());
-    state.set_outcome(stopped_ && rehearsal.outcome() == "running" ? "stopped" : rehearsal.outcome());
+    state.set_outcome(outcome(rehearsal));
     state.set_pace(pace_);
     state.set_attained_pace(attained_pace_);
     state.set_started(start_.started);

@@ -65,6 +65,7 @@ class RehearsalRunner {
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);
     v1::RunState state(const Rehearsal& rehearsal) const;
     std::string state_word() const;
+    std::string outcome(const Rehearsal& rehearsal) const; ///< "stopped" when it was cut short
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;
