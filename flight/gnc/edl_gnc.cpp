@@ -50,6 +50,7 @@ void EdlGnc::set_solution(const Solution& solution, Sclk now) {
     state.q_MB = strapdown_.state().q_MB;
     strapdown_.start(state);
     navigating_ = true;
+    navigated_to_ = now;
     measure(now);
 }
 
@@ -68,7 +69,10 @@ void EdlGnc::on(const RadarSolution& solution) {
 
 void EdlGnc::navigate(const DeviceInputs& in) {
     if (!navigating_) return;
-    if (in.imu.empty()) strapdown_.coast(cycle_s);
+    const double passed_s = in.now - navigated_to_;
+    if (passed_s <= 0.0) return; // a solution was just taken in, as of now: these increments lie before it
+    navigated_to_ = in.now;
+    if (in.imu.empty()) strapdown_.coast(passed_s);
     const bool in_air = measured_.altitude_m < no_air_above_m;
     for (const ImuSample& sample : in.imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
@@ -184,8 +188,11 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
         fire(Trigger::heatshield, triggers::heatshield(m.speed_mps, solution_.heatshield_speed_mps, since_parachute_s),
              out);
     if (!configuration.heatshield_gone) return;
-    fire(Trigger::engine_priming,
-         triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m), out);
+    // Inertial altitude alone may be kilometres off by now; it has to do only when the radar has had its time in vain.
+    const double since_heatshield_s = configuration.heatshield_time ? now - *configuration.heatshield_time : 0.0;
+    if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s)
+        fire(Trigger::engine_priming,
+             triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m), out);
     const double needed_m = triggers::backshell_altitude_needed_m(solution_.backshell_altitude_m, m.descent_rate_mps);
     const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);
     if (configuration.engines_primed)

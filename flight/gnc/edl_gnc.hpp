@@ -193,7 +193,8 @@ class EdlGnc {
     Solution solution_;
     Vector3 target_M_ = Vector3::UnitX();
     bool navigating_ = false;
-    std::optional<CruiseAttitude> cruise_attitude_;  ///< to be taken at the end of the next cycle's increments
+    std::optional<CruiseAttitude> cruise_attitude_; ///< to be taken at the end of the next cycle's increments
+    Sclk navigated_to_;
     Strapdown strapdown_;
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;

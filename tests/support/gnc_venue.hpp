@@ -159,7 +159,8 @@ class GncVenue {
     bool running() const { return world_.outcome() == simulation::Outcome::running; }
 
     void step() {
-        const flight::DeviceInputs& in = world_.sense();
+        inputs_ = world_.sense();
+        const flight::DeviceInputs& in = inputs_;
         commands_.out.begin_cycle();
         commands_.now = in.now;
         act();
@@ -186,6 +187,8 @@ class GncVenue {
     const simulation::World& world() const { return world_; }
     const flight::gnc::EdlGnc& gnc() const { return gnc_; }
     const flight::gnc::Output& told() const { return told_; }
+    const flight::gnc::Configuration& configuration() const { return commands_.configuration; }
+    const flight::DeviceInputs& last_inputs() const { return inputs_; }
     const std::vector<Event>& events() const { return events_; }
     const Event* event(flight::gnc::Trigger trigger) const {
         for (const Event& event : events_)
@@ -243,6 +246,7 @@ class GncVenue {
     simulation::World world_;
     flight::gnc::EdlGnc gnc_;
     flight::gnc::RadarBatch batch_;
+    flight::DeviceInputs inputs_;
     VenueCommands commands_;
     flight::gnc::Output told_;
     std::array<std::optional<Sclk>, anchor_count> anchors_{};

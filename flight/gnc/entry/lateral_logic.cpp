@@ -4,8 +4,8 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double deadband_0_m = 1200.0;    // ours, tuned
-constexpr double deadband_2_s2pm = 1.6e-4; // ours, tuned
+constexpr double deadband_0_m = 3500.0;    // ours, tuned
+constexpr double deadband_2_s2pm = 1.8e-4; // ours, tuned
 
 } // namespace
 

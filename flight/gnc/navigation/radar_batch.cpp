@@ -7,7 +7,7 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr std::uint16_t beams_min = 12;     // two rounds of six; ours
+constexpr std::uint16_t beams_min = 12;     // in a quarter of a second, of thirty; ours
 constexpr double cosine_min = 0.2588;       // 75°: below that range says little of altitude; ours
 constexpr double quarters_per_second = 4.0; // bins
 
@@ -40,32 +40,31 @@ void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion
 }
 
 std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
-    const std::int64_t newest = quarter_of(now);
-    const auto oldest = newest - static_cast<std::int64_t>(bins_.size());
+    const std::int64_t newest = quarter_of(now); // it is not complete yet
+    const auto oldest = newest - static_cast<std::int64_t>(bins_.size()) + 1;
     RadarSolution solution;
-    Matrix3 normal = Matrix3::Zero();
-    Vector3 right = Vector3::Zero();
-    double time_sum_s = 0.0;
+    Vector3 v_sum = Vector3::Zero();
+    double altitude_sum_m = 0.0, time_sum_s = 0.0, bins = 0.0;
     Sclk first = now, last{0.0};
     for (const Bin& bin : bins_) {
-        if (bin.beams == 0 || bin.quarter <= oldest || bin.quarter > newest) continue;
-        normal += bin.normal;
-        right += bin.right;
-        solution.altitude_m += bin.altitude_sum_m;
+        if (bin.beams < beams_min || bin.quarter < oldest || bin.quarter >= newest) continue;
+        const double count = bin.beams;
+        // Directions that span space: the determinant of their mean square is far from nil (0.004 with MSL's beams).
+        if (!((bin.normal / count).determinant() > 1.0e-4)) continue;
+        // Each quarter is solved by itself, for while the vehicle turns and brakes the sum of all would mix the two.
+        v_sum += bin.normal.inverse() * bin.right;
+        altitude_sum_m += bin.altitude_sum_m / count;
         // Times relative to `newest` keep the sum small and so exact enough.
-        time_sum_s += bin.time_sum_s + static_cast<double>(bin.quarter - newest) / quarters_per_second * bin.beams;
+        time_sum_s += bin.time_sum_s / count + static_cast<double>(bin.quarter - newest) / quarters_per_second;
         solution.beams = static_cast<std::uint16_t>(solution.beams + bin.beams);
         first = std::min(first, bin.first);
         last = std::max(last, bin.last);
+        bins += 1.0;
     }
-    if (solution.beams < beams_min) return std::nullopt;
-    const double count = solution.beams;
-    // Three directions that span space: the determinant of their mean square is far from nil (0.004 with MSL's beams).
-    if (!((normal / count).determinant() > 1.0e-4)) return std::nullopt;
-    const Vector3 v_M = normal.inverse() * right;
-    solution.v_MB_M_mps = to_array(v_M);
-    solution.altitude_m /= count;
-    solution.time = {static_cast<double>(newest) / quarters_per_second + time_sum_s / count};
+    if (bins == 0.0) return std::nullopt;
+    solution.v_MB_M_mps = to_array(Vector3(v_sum / bins));
+    solution.altitude_m = altitude_sum_m / bins;
+    solution.time = {static_cast<double>(newest) / quarters_per_second + time_sum_s / bins};
     solution.span_s = last - first;
     return solution;
 }

@@ -11,7 +11,9 @@
 
 // Landing radar beams of the last 5 s made into one altitude and one velocity. EdlBg runs it. R25
 //
-//   altitude: mean of  −range · (d_M · up)       velocity: least squares of  d_M · v = −range rate
+//   in each quarter of a second   altitude = mean of −range · (d_M · up)
+//                                 velocity = least squares of d_M · v = −range rate
+//   then the mean over the quarters
 //
 // Frame    beams in B, turned into M by the navigated attitude at the measurement; up is the local vertical
 // In       beams as they come (six at 20 Hz)        Out   one solution when asked, about once a second
@@ -35,7 +37,8 @@ class RadarBatch {
     /// The beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
     void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
 
-    /// The average of what came in the last 5 s; none with fewer than 12 measurements or all in one plane.
+    /// The average over the last whole quarters, 4.75 s; a quarter with fewer than 12 measurements or all in one plane
+    /// is left out. None when all are.
     std::optional<RadarSolution> solve(Sclk now) const;
 
     void clear() { bins_ = {}; }

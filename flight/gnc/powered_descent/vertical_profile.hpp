@@ -12,7 +12,8 @@
 // Valid    90 … 0.75 m/s; net decelerations are kept within 1 … 6 m/s², what thrust of [facts] Vehicle can give
 namespace aeolis::flight::gnc::powered_descent {
 
-inline constexpr double stage_height_at_touchdown_m = 8.5; ///< bridle 7.5 m [facts]; 1 m from its end to the wheels is ours
+inline constexpr double stage_height_at_touchdown_m =
+    8.5; ///< bridle 7.5 m [facts]; 1 m from its end to the wheels is ours
 inline constexpr double constant_velocity_mps = 32.0;
 inline constexpr double sky_crane_mps = 0.75;
 inline constexpr double approach_end_altitude_m = 235.0 + stage_height_at_touchdown_m;

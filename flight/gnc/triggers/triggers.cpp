@@ -62,8 +62,7 @@ double backshell_altitude_needed_m(double backshell_altitude_m, double descent_r
 }
 
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m) {
-    const double needed_m = backshell_altitude_needed_m(backshell_altitude_m, descent_rate_mps);
-    const double to_backshell_s = (altitude_m - needed_m) / std::max(descent_rate_mps, 1.0);
+    const double to_backshell_s = (altitude_m - backshell_altitude_m) / std::max(descent_rate_mps, 1.0);
     return list(at_most(Quantity::time_to_backshell_s, to_backshell_s, priming_lead_s),
                 at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0));
 }

@@ -13,12 +13,15 @@
 namespace aeolis::flight::gnc::triggers {
 
 inline constexpr double guidance_start_drag_mps2 = 1.96; ///< 0.2 g, filtered [facts]
-inline constexpr double sufr_lead_s = 17.0;              ///< from its start to the parachute: 255.9 − 239 [facts]
-inline constexpr std::uint32_t parachute_cycles = 3;     ///< persistence; ours
-inline constexpr std::uint32_t backshell_cycles = 3;     ///< persistence; ours
-inline constexpr double heatshield_delay_s = 20.0;       ///< after the mortar [facts]
-inline constexpr double priming_lead_s = 16.0;           ///< before backshell separation [facts]
-inline constexpr double sky_crane_settling_s = 2.5;      ///< from throttle-down to rover separation [facts]
+/// From the start of SUFR to the parachute: 16.9 s [facts], and a second because drag grows as it straightens up
+/// (ours).
+inline constexpr double sufr_lead_s = 18.0;
+inline constexpr std::uint32_t parachute_cycles = 3; ///< persistence; ours
+inline constexpr std::uint32_t backshell_cycles = 3; ///< persistence; ours
+inline constexpr double heatshield_delay_s = 20.0;   ///< after the mortar [facts]
+inline constexpr double priming_lead_s = 15.5;       ///< before backshell separation: 15 … 16 s [facts]
+inline constexpr double radar_patience_s = 60.0;     ///< after heatshield separation, without a lock; ours
+inline constexpr double sky_crane_settling_s = 2.5;  ///< from throttle-down to rover separation [facts]
 
 /// Counts how long a condition has held without a break.
 class Persistence {
@@ -42,6 +45,7 @@ Conditions heatshield(double speed_mps, double heatshield_speed_mps, double sinc
 /// the altitude of ground's solution; faster, higher by what free fall and the approach then need more.
 double backshell_altitude_needed_m(double backshell_altitude_m, double descent_rate_mps);
 
+/// Time is counted to the altitude of ground's solution: by then the descent rate is near its design value.
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);
 Conditions backshell(double altitude_m, double descent_rate_mps, double backshell_altitude_m,
                      std::uint32_t cycles_held);
