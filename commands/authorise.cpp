@@ -18,7 +18,7 @@ Result<void> authorise(const dictionary::Command& command, const Intent& intent,
     }
     std::string failing;
     for (const PreconditionState& condition : preconditions)
-        if (condition.state != PreconditionState::State::holds)
+        if (condition.state == PreconditionState::State::fails)
             failing += (failing.empty() ? "" : "; ") + condition.text;
     if (!failing.empty()) return Error{command.name + " must not be sent now: " + failing};
     return {};

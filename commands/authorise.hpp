@@ -18,7 +18,8 @@ struct Intent {
 };
 
 /// Whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or its
-/// name was not typed exactly, or when a precondition fails or is not known. R23
+/// name was not typed exactly, or when a precondition fails. One that ground does not know refuses nothing: flight
+/// holds the same conditions and decides by what it knows; the caller tells the controller. R23
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
                        std::span<const PreconditionState> preconditions);
 
