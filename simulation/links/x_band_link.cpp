@@ -9,7 +9,7 @@ namespace {
 constexpr int symbol_ticks = 640;
 constexpr double symbol_s = 10.0;                          // [facts]
 constexpr double modulation_index_rad = 48.0 * degree_rad; // ours
-constexpr double carrier_lock_dbhz = 15.8;                 // [limits-tones]
+constexpr double carrier_lock_dbhz = 15.8;                 // ours, measured on a search of our own
 constexpr double least_likelihood = 0.9;                   // ours
 
 } // namespace

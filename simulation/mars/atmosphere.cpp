@@ -14,7 +14,7 @@ struct Row {
 };
 
 // clang-format off
-/// Gale in the season of the landing, from a general circulation model. [facts-gale-atmosphere]
+/// Gale in the season of the landing, from a general circulation model. [gale-atmosphere]
 constexpr std::array<Row, 35> gale{{
     {0,        194.541, 0.0195581    },
     {7352.94,  218.893, 0.00938476   },
@@ -55,7 +55,7 @@ constexpr std::array<Row, 35> gale{{
 // clang-format on
 
 // Square of the speed of sound by temperature: ratio of specific heats × gas constant, as the Mach numbers of the
-// published trajectory have it, within 0.3 %. [facts-od137]
+// published trajectory have it, within 0.3 %. [od137]
 constexpr double sound_m2ps2K = 252.0;
 constexpr double bottom_m = -2000.0;
 constexpr double spacing_m = 1000.0;

@@ -3,7 +3,7 @@
 #include "simulation/mars/mars.hpp"
 
 // Earth as seen from the landing: a fixed direction in inertial space and one relative speed, for the minutes around
-// entry. Fitted by us to the published geometry (elevations within 0.01°, range rate within 12 m/s). [facts-od137]
+// entry. Fitted by us to the published geometry (elevations within 0.01°, range rate within 12 m/s). [od137]
 namespace aeolis::simulation {
 
 /// Unit vector from Mars to Earth in M, `e_s` seconds from entry interface at the scenario's reference entry.

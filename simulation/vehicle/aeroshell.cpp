@@ -18,7 +18,7 @@ struct Row {
 };
 
 // clang-format off
-/// 70° sphere-cone against Mach and total angle of attack. [facts-aeroshell-aerodynamics]
+/// 70° sphere-cone against Mach and total angle of attack. [sphere-cone-aerodynamics]
 constexpr std::array<Row, 33> table{{
     {0.4,  {{0, 0.0362, 0.0729, 0.1051, 0.1894, 0.2672}}, {{1.0441, 1.0464, 1.0453, 1.0398, 1.0311, 1.0112}}},
     {0.6,  {{0, 0.0382, 0.0764, 0.1096, 0.1955, 0.2758}}, {{1.0943, 1.0949, 1.0903, 1.0926, 1.0779, 1.0562}}},
@@ -59,7 +59,7 @@ constexpr std::array<Row, 33> table{{
 struct TrimRow {
     double mach, angle_deg;
 };
-/// Means over the published attitude, which swings by a degree or two about them. [facts-od137]
+/// Means over the published attitude, which swings by a degree or two about them. [od137]
 constexpr std::array<TrimRow, 12> trim{{
     {2.0, 21.5},
     {2.25, 20.9},

@@ -16,10 +16,10 @@ AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad)
 
 inline constexpr double aeroshell_area_m2 = 15.9; // [facts]: 4.5 m across
 
-/// Angle at which it flies by itself, from its offset centre of mass, before the balance masses go. [facts-od137]
+/// Angle at which it flies by itself, from its offset centre of mass, before the balance masses go. [od137]
 double trim_angle_rad(double mach);
 
-/// The same after all balance masses are gone: the offset is nearly taken out. [facts-od137] 2 to 3°
+/// The same after all balance masses are gone: the offset is nearly taken out. [od137] 2 to 3°
 inline constexpr double balanced_trim_angle_rad = 2.5 * 0.017453292519943295;
 
 } // namespace aeolis::simulation

@@ -4,7 +4,7 @@ namespace aeolis::simulation {
 
 /// The disk-gap-band parachute: when it opens after the mortar, and its drag area with the vehicle under it.
 ///
-/// Times from the published flight: line stretch 1.12 s after the mortar, first peak 1.8 s after. [facts-od137]
+/// Times from the published flight: line stretch 1.12 s after the mortar, first peak 1.8 s after. [od137]
 /// The factor by Mach and the overshoot at inflation are ours, chosen so that the published trajectory's deceleration
 /// comes out: drag area over its terminal value 1.27 at Mach 1.6, dip at Mach 1, 315 m² at the first peak.
 inline constexpr double line_stretch_s = 1.12;

@@ -7,7 +7,7 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [facts-od137] 2 rpm
+constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [od137] 2 rpm
 constexpr double powered_drag_area_m2 = 5.0;                     // ours: what free fall at backshell separation shows
 constexpr double air_ends_m = 250000.0;
 

@@ -19,7 +19,7 @@ TEST_CASE("the aeroshell's coefficients are the table's where the table stands",
 
 TEST_CASE("lift over drag at trim is what the published trajectory flew, within six percent",
           "[simulation][aeroshell]") {
-    // Mach and lift over drag at E+60, 80, 90, 100, 120, 160 and 200 s. [facts-od137]
+    // Mach and lift over drag at E+60, 80, 90, 100, 120, 160 and 200 s. [od137]
     const std::pair<double, double> flown[] = {{27.3, 0.241}, {19.7, 0.245}, {14.3, 0.254}, {10.5, 0.268},
                                                {6.56, 0.286}, {3.77, 0.31},  {2.65, 0.32}};
     for (const auto& [mach, lift_to_drag] : flown) {

@@ -103,7 +103,7 @@ TEST_CASE("a full recorder refuses whole packets and counts them", "[simulation]
 }
 
 TEST_CASE("tone decisions err as theory says for 256 non-coherent tones", "[simulation][tones]") {
-    // Tone power to noise density for a symbol error of 1e-2 and 1e-3 in 10 s: 2.36 and 3.53 dB-Hz. [limits-tones]
+    // Tone power to noise density for a symbol error of 1e-2 and 1e-3 in 10 s: 2.36 and 3.53 dB-Hz. [proakis-digital-communications]
     Random random{7, 0, Stream::x_band};
     const auto errors = [&](double c_n0_dbhz, int symbols) {
         int wrong = 0;
@@ -169,7 +169,7 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
 }
 
 TEST_CASE("Earth stands where the published geometry has it", "[simulation][earth]") {
-    // Elevation at entry 9.05°, one-way Doppler at 8.4 GHz −451 kHz at E+30 s. [facts-od137]
+    // Elevation at entry 9.05°, one-way Doppler at 8.4 GHz −451 kHz at E+30 s. [od137]
     const Vector3 entry = place(-3.9226 * degree_rad, 126.703 * degree_rad, 3522200.0);
     CHECK(earth_elevation_rad(entry, 0.0) / degree_rad == Approx(9.05).margin(0.05));
     const Vector3 site = place(-4.6019 * degree_rad, 137.4102 * degree_rad, 3391148.0);

@@ -65,7 +65,7 @@ class TruthPilot {
             out_.pyros.push_back(PyroId::cruise_balance_2);
         }
         if (once("turn", truth.e_s >= -400.0)) out_.attitude.mode = Mode::entry_bank;
-        // Roughly the bank of [facts-od137].
+        // Roughly the bank of [od137].
         double bank_deg = 72.0;
         if (truth.e_s > 72.0) bank_deg = -48.0;
         if (truth.e_s > 98.0) bank_deg = 46.0;

@@ -70,7 +70,7 @@ TEST_CASE("under the parachute it falls at the terminal speed of its drag area",
 TEST_CASE("from the published mortar state the parachute takes the published time and speeds",
           "[simulation][parachute]") {
     // Mortar at E+255.9 s: 11.9 km, 404.6 m/s, 21.55° down; heatshield 21.4 s later; 1.662 km 119.07 s later.
-    // [facts-od137]
+    // [od137]
     Vehicle vehicle = vehicle_at(11900.0, 404.6, 21.55 * degree_rad);
     vehicle.fire(flight::PyroId::parachute_mortar, 0.0);
     fly(vehicle, 0.0, 1.8);

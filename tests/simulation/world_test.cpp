@@ -21,7 +21,7 @@ TEST_CASE("a world flown by its truth goes through every moment of a landing", "
         CHECK(pilot.events.count(name) == 1);
     CHECK(pilot.events.count("bank_reversal_4") == 0);
 
-    // Bands around the published flight, which had another bank history. [facts-od137]
+    // Bands around the published flight, which had another bank history. [od137]
     CHECK(std::abs(pilot.events["entry_interface"].e_s) <= 1.0 / 64);
     CHECK(pilot.events["entry_interface"].speed_mps == Approx(5845.2).margin(0.1));
     CHECK(pilot.world.peak_deceleration_mps2() == Approx(121.1).epsilon(0.08));
@@ -131,7 +131,7 @@ TEST_CASE("ground's solution departs from the truth by its knowledge error, and 
 }
 
 TEST_CASE("in late cruise the spin axis points as published, 21.5 degrees from the velocity", "[simulation][world]") {
-    // [facts-od137] at E−550 s
+    // [od137] at E−550 s
     const World world{tests::undisturbed_scenario(550.0), 1};
     CHECK(vector3(world.truth().v_MB_M_mps).norm() == Approx(5171.0).margin(5.0));
     const auto q = world.inspect().q_MB;
