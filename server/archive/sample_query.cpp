@@ -139,7 +139,7 @@ bool earlier(const Sample& a, const Sample& b) {
 std::vector<Sample> merged(std::vector<Sample> realtime, std::vector<Sample> recorded) {
     for (auto* samples : {&realtime, &recorded})
         if (!std::is_sorted(samples->begin(), samples->end(), earlier))
-            std::stable_sort(samples->begin(), samples->end(), earlier);
+            std::sort(samples->begin(), samples->end(), earlier);
     if (realtime.empty()) return recorded;
     if (recorded.empty()) return realtime;
     std::vector<Sample> all(realtime.size() + recorded.size());
