@@ -47,8 +47,8 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await shows('command-review', /filled from ground/);
         await page.keyboard.press('Enter');
         await shows('command-message', /EDL_SET_PARAMETERS is #1/);
-        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
-        await shows('waiting', /do edl/);
+        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'radiated'), /ok/);
+        await shows('waiting', /type “do edl”/);
 
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
@@ -60,10 +60,10 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await page.keyboard.type('EDL_DO_EDL');
         await page.keyboard.press('Enter');
         await shows('command-message', /EDL_DO_EDL is #2/);
-        await waitFor(() => stage(page, 'EDL_DO_EDL', 'executed'), /ok/);
         await page.keyboard.press('Escape');
 
         await pace(page, 100);
+        await shows('waiting', /Waiting for coolant vent/);
         await shows('timepoints-fired', /^[1-9]/);
         await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > -60, 30_000);
         await pace(page, 20);

@@ -37,14 +37,20 @@ export const LAYOUT = {
     'propellant_kg', 'timepoint_index', 'timepoint_state', 'tone_current', 'uhf_queue_octets', 'nvm_used_octets',
   ],
 
-  /** What begins a landing, with words for someone who opened the page five minutes ago. */
+  /** What begins a landing, in words for someone who opened the page five minutes ago. `tone` says that it was taken. */
   firstSteps: [
     {
       command: 'EDL_SET_PARAMETERS',
       words: 'set edl parameters',
+      tone: 'parameters_accepted',
       why: 'tells the vehicle where it is and where to land; the form is filled from ground’s navigation solution',
     },
-    { command: 'EDL_DO_EDL', words: 'do edl', why: 'starts the timeline on board; from then on it flies alone' },
+    {
+      command: 'EDL_DO_EDL',
+      words: 'do edl',
+      tone: 'edl_enabled',
+      why: 'starts the timeline on board; from then on the vehicle flies alone',
+    },
   ],
 
   /** Seconds from entry that the timeline shows when nothing else is chosen. */

@@ -41,7 +41,7 @@ let posting = false;
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
-let stopAt = 0; // sequence number the first step ends at
+let stopAt = 0; // what the run had when the subscription began: from there on it is live
 let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
 
 function say(next: StreamState): void {
@@ -118,7 +118,7 @@ function receive(bytes: Uint8Array): void {
       if (run === 0) say('live');
       const fresh = run !== currentRun || step === 'facts';
       if (run !== currentRun) restart(run);
-      if (step === 'facts') stopAt = Number(welcome.lastSeq);
+      stopAt = Number(welcome.lastSeq);
       post({ type: 'run', run: welcome.runState, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
       break;
@@ -156,7 +156,7 @@ function receiveBatch(batch: Batch): void {
   if (verdict === 'repeats') return;
   collector.add(batch);
   if (step === 'facts' && check.completeThrough >= stopAt) goOnWithSamples();
-  else if (step === 'samples' && state !== 'live' && !batch.history) say('live');
+  else if (step === 'samples' && state !== 'live' && check.completeThrough >= stopAt) say('live');
   if (step === 'samples' && historyDue) {
     historyDue = false;
     void fetchHistory();

@@ -38,7 +38,7 @@ export function waitingFor(
 ): Waiting {
   if (!store.going && cutoff === Infinity) return ended(store);
   const begun = [...store.firings.values()].some((pair) => pair.live || pair.recorded);
-  const accepted = stepDone(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1]?.command ?? '');
+  const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1]) !== undefined;
   if (!begun && !accepted) return beginning(store, dictionary);
   const next = nextTimepoint(store, plan, cutoff);
   if (!next) {
@@ -63,31 +63,42 @@ function ended(store: RunStore): Waiting {
   };
 }
 
-/** Whether a command was carried out, by the vehicle's own word. */
-export function stepDone(store: RunStore, command: string): boolean {
-  return [...store.commands.values()].some((row) =>
-    row.name === command && ['executed', 'verified'].some((stage) => row.stages.get(stage)?.status === 'ok'));
+type FirstStep = (typeof LAYOUT.firstSteps)[number];
+
+/** By which word of the vehicle a step is known to be done: its answer to the command, or the tone that says so. */
+export function stepEvidence(store: RunStore, step: FirstStep | undefined): string | undefined {
+  if (!step) return undefined;
+  for (const row of store.commands.values()) {
+    const stage = ['verified', 'executed'].find((name) => row.stages.get(name)?.status === 'ok');
+    if (row.name === step.command && stage !== undefined) return stage;
+  }
+  const tone = store.tones.find(({ fact }) => fact.name === step.tone);
+  return tone && `by tone ${tone.fact.tone}`;
 }
 
 function beginning(store: RunStore, dictionary: Dictionary): Waiting {
   const steps = LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
-  const missing = steps.find((step) => !stepDone(store, step.command));
+  const missing = steps.find((step) => stepEvidence(store, step) === undefined && sending(store, step) === undefined);
   return {
     kind: 'begin',
-    title: missing ? `Press / and type “${missing.words}”` : 'The commands are on their way',
-    words: missing ? `It ${missing.why}.` : 'Flight has not answered yet.',
-    lines: steps.map((step) => ({
-      words: step.words, value: stepDone(store, step.command) ? 'done' : sentWords(store, step.command),
-      holds: stepDone(store, step.command),
-    })),
+    title: missing ? `Press / and type “${missing.words}”` : 'Sent. Waiting for the vehicle’s answer',
+    words: missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, or by UHF once that is on.',
+    lines: steps.map((step) => {
+      const evidence = stepEvidence(store, step);
+      return { words: step.words, value: evidence ?? sending(store, step) ?? failure(store, step) ?? 'to be sent', holds: evidence !== undefined };
+    }),
   };
 }
 
-function sentWords(store: RunStore, command: string): string {
-  const row = [...store.commands.values()].findLast((candidate) => candidate.name === command);
-  if (!row) return 'to be sent';
-  const failed = [...row.stages.values()].find((stage) => stage.status === 'failed');
-  return failed ? `failed: ${failed.evidence}` : 'on its way';
+const newest = (store: RunStore, step: FirstStep) => [...store.commands.values()].findLast((row) => row.name === step.command);
+
+function failure(store: RunStore, step: FirstStep): string | undefined {
+  const failed = [...(newest(store, step)?.stages.values() ?? [])].find((stage) => stage.status === 'failed');
+  return failed && `failed: ${failed.evidence}`;
+}
+
+function sending(store: RunStore, step: FirstStep): string | undefined {
+  return newest(store, step) && failure(store, step) === undefined ? 'sent' : undefined;
 }
 
 function conditions(store: RunStore, dictionary: Dictionary, next: TimepointRow, cutoff: number): Line[] {

@@ -1,7 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
-import { aDictionary, aPlan, aRun, aStore, explanation, firing, samples, stage } from '../testing/fixtures';
+import { aDictionary, aPlan, aRun, aStore, explanation, firing, samples, stage, tone } from '../testing/fixtures';
 import { waitingFor } from './model';
 
 const commanded = [
@@ -13,6 +13,12 @@ describe('waiting for', () => {
   it('tells a newcomer what to press first, and then what next', () => {
     expect(waitingFor(aStore(), aDictionary, aPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
     expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+  });
+  it('takes a tone for an answer where no packet comes', () => {
+    const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) => stage({ command: BigInt(i + 1), name, stage: 'radiated', status: 'ok' }));
+    const waiting = waitingFor(aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]), aDictionary, aPlan, Infinity);
+    expect(waiting.title).toContain('Waiting for the vehicle');
+    expect(waiting.lines.map((line) => [line.value, line.holds])).toEqual([['by tone 5', true], ['sent', false]]);
   });
   it('says why a command failed', () => {
     const store = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' })]);
