@@ -1,0 +1,143 @@
+#include "flight/gnc/edl_gnc.hpp"
+#include "flight/gnc/mars.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cstring>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+using namespace aeolis::flight::gnc;
+
+namespace {
+
+Solution above_gale() {
+    Solution solution;
+    solution.epoch = {1000.0};
+    solution.p_MoB_M_m = to_array(Vector3(3391148.0 + 150000.0, 0.0, 0.0));
+    solution.v_MB_M_mps = {-1600.0, 5600.0, 0.0};
+    solution.target_longitude_rad = 0.18;
+    solution.target_radius_m = 3391148.0;
+    return solution;
+}
+
+DeviceInputs inputs_at(Sclk now, std::uint32_t& count, const Vector3& force_B) {
+    DeviceInputs in;
+    in.now = now;
+    const auto until = static_cast<std::uint32_t>((now.seconds - 1000.0) * 200.0);
+    while (count < until)
+        in.imu.push_back({++count, to_array(Vector3(force_B * imu_period_s)), {}});
+    return in;
+}
+
+} // namespace
+
+TEST_CASE("without a solution nothing is decided and nothing commanded", "[gnc][R27]") {
+    EdlGnc gnc(Load{});
+    Output out;
+    Configuration configuration;
+    configuration.enabled = configuration.guidance_armed = true;
+    std::uint32_t count = 0;
+    gnc.cycle(inputs_at({1000.015625}, count, Vector3::Zero()), configuration, out);
+    CHECK(out.mode == Mode::off);
+    CHECK(out.triggers.empty());
+    CHECK(out.attitude.mode == AttitudeCommand::Mode::idle);
+    CHECK_FALSE(out.engines.ignited);
+}
+
+TEST_CASE("an old solution is brought up to now", "[gnc][R23]") {
+    EdlGnc gnc(Load{});
+    Output out;
+    gnc.set_solution(above_gale(), {1020.0});
+    DeviceInputs in;
+    in.now = {1020.0};
+    gnc.cycle(in, {}, out);
+    NavigatedState state;
+    state.p_MoB_M = to_vector(above_gale().p_MoB_M_m);
+    state.v_MB_M = to_vector(above_gale().v_MB_M_mps);
+    CHECK((to_vector(out.p_MoB_M_m) - propagate(state, 20.0).p_MoB_M).norm() < 1e-6);
+}
+
+TEST_CASE("drag starts entry guidance once, and explains it", "[gnc][R17][R38]") {
+    EdlGnc gnc(Load{});
+    Solution solution = above_gale();
+    solution.p_MoB_M_m = to_array(Vector3(3391148.0 + 65000.0, 0.0, 0.0));
+    gnc.set_solution(solution, {1000.0});
+    Configuration configuration;
+    configuration.enabled = configuration.cruise_stage_gone = configuration.guidance_armed = true;
+    Output out;
+    std::uint32_t count = 0;
+    int started = 0;
+    for (int tick = 1; tick <= 640; ++tick) {
+        const double drag = 0.3 * tick / 64.0;
+        gnc.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, drag * Vector3(1600, -5600, 0).normalized()),
+                  configuration, out);
+        for (const Trigger trigger : out.triggers) {
+            if (trigger != Trigger::guidance_start) continue;
+            ++started;
+            REQUIRE(out.conditions.size() == 1);
+            CHECK(out.conditions[0].quantity == static_cast<std::uint16_t>(Quantity::drag_mps2));
+            CHECK(out.conditions[0].value >= 1.96);
+            CHECK(drag > 1.96); // filtered: later than the raw drag
+            CHECK(drag < 2.3);
+        }
+    }
+    CHECK(started == 1);
+    CHECK(gnc.mode() == Mode::range_control);
+}
+
+TEST_CASE("before guidance starts the lift is held sideways", "[gnc][R27]") {
+    EdlGnc gnc(Load{});
+    gnc.set_solution(above_gale(), {1000.0});
+    Configuration configuration;
+    configuration.enabled = true;
+    Output out;
+    std::uint32_t count = 0;
+    gnc.cycle(inputs_at({1000.015625}, count, Vector3::Zero()), configuration, out);
+    CHECK(out.mode == Mode::approach);
+    CHECK(out.attitude.mode == AttitudeCommand::Mode::idle);
+    configuration.turning_to_entry = true;
+    gnc.cycle(inputs_at({1000.03125}, count, Vector3::Zero()), configuration, out);
+    CHECK(out.attitude.mode == AttitudeCommand::Mode::entry_bank);
+    CHECK(out.bank_command_deg >= 72.0); // [facts]: +74 … 80
+    CHECK(out.bank_command_deg <= 80.0);
+}
+
+TEST_CASE("a copy given the same inputs goes on the same, bit for bit", "[gnc][R27]") {
+    EdlGnc one(Load{});
+    one.set_solution(above_gale(), {1000.0});
+    Configuration configuration;
+    configuration.enabled = configuration.guidance_armed = true;
+    Output out_one, out_two;
+    std::uint32_t count = 0;
+    for (int tick = 1; tick <= 64; ++tick)
+        one.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, Vector3(0.1, 0.2, 0.3)), configuration, out_one);
+    EdlGnc two = one;
+    std::uint32_t count_two = count;
+    for (int tick = 65; tick <= 256; ++tick) {
+        one.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, Vector3(0.3, 0.2, 0.1)), configuration, out_one);
+        two.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count_two, Vector3(0.3, 0.2, 0.1)), configuration, out_two);
+    }
+    CHECK(out_one.p_MoB_M_m == out_two.p_MoB_M_m);
+    CHECK(out_one.v_MB_M_mps == out_two.v_MB_M_mps);
+    CHECK(out_one.q_MB == out_two.q_MB);
+}
+
+TEST_CASE("in the air a new solution changes bounds, not the navigated state", "[gnc][R23]") {
+    EdlGnc gnc(Load{});
+    Solution solution = above_gale();
+    solution.p_MoB_M_m = to_array(Vector3(3391148.0 + 60000.0, 0.0, 0.0));
+    gnc.set_solution(solution, {1000.0});
+    Configuration configuration;
+    configuration.enabled = configuration.cruise_stage_gone = configuration.guidance_armed = true;
+    Output out;
+    std::uint32_t count = 0;
+    for (int tick = 1; tick <= 320; ++tick)
+        gnc.cycle(inputs_at(Sclk{1000.0} + tick / 64.0, count, 5.0 * Vector3(1600, -5600, 0).normalized()),
+                  configuration, out);
+    REQUIRE(gnc.mode() == Mode::range_control);
+    const auto before = out.p_MoB_M_m;
+    solution.p_MoB_M_m[0] += 1.0e6;
+    gnc.set_solution(solution, {1005.0});
+    gnc.cycle(inputs_at({1005.015625}, count, Vector3::Zero()), configuration, out);
+    CHECK((to_vector(out.p_MoB_M_m) - to_vector(before)).norm() < 200.0);
+}

@@ -1,0 +1,30 @@
+#include "flight/gnc/entry/lateral_logic.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis::flight::gnc;
+
+TEST_CASE("the deadband shrinks with velocity and is halved when lift is saturated", "[gnc][R27]") {
+    CHECK(crossrange_deadband_m(5000.0, false) > crossrange_deadband_m(2000.0, false));
+    CHECK(crossrange_deadband_m(2000.0, true) == Approx(0.5 * crossrange_deadband_m(2000.0, false)));
+}
+
+TEST_CASE("bank reverses when the target has left the deadband on the side away from lift", "[gnc][R27]") {
+    LateralLogic logic;
+    logic.start(1);
+    const double edge_m = crossrange_deadband_m(3000.0, false);
+    CHECK_FALSE(logic.on(+2.0 * edge_m, 3000.0, false, true)); // lift already turns towards it
+    CHECK_FALSE(logic.on(-0.99 * edge_m, 3000.0, false, true));
+    CHECK(logic.on(-1.01 * edge_m, 3000.0, false, true));
+    CHECK(logic.sign() == -1);
+    CHECK(logic.reversals() == 1);
+    CHECK_FALSE(logic.on(-1.01 * edge_m, 3000.0, false, true));
+    CHECK(logic.on(+1.01 * edge_m, 3000.0, false, true));
+    CHECK(logic.reversals() == 2);
+}
+
+TEST_CASE("no reversal is asked for before the last one is flown", "[gnc][R27]") {
+    LateralLogic logic;
+    logic.start(1);
+    CHECK_FALSE(logic.on(-1.0e6, 3000.0, false, false));
+    CHECK(logic.reversals() == 0);
+}

@@ -1,0 +1,82 @@
+#include "flight/gnc/navigation/radar_filter.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight::gnc;
+
+namespace {
+
+/// A descent at a steady rate whose navigation is wrong by a constant; radar averages of the truth over 5 s.
+struct Descent {
+    RadarFilter filter;
+    double rate_mps = 80.0, truth_m = 9000.0;
+    double error_m = 0.0, error_mps = 0.0;
+    std::int64_t ticks = 0;
+
+    Vector3 navigated_v() const { return -(rate_mps - error_mps) * Vector3::UnitX(); }
+    void fly(double seconds) {
+        for (int i = 0; i < seconds * 64; ++i) {
+            ++ticks;
+            truth_m -= rate_mps / 64;
+            error_m += error_mps / 64;
+            filter.remember(Sclk::from_ticks(ticks), truth_m + error_m, navigated_v());
+        }
+    }
+    bool update(double wrong_m = 0.0) {
+        const Sclk now = Sclk::from_ticks(ticks);
+        const RadarSolution solution{now - 2.5, 5.0, truth_m + 2.5 * rate_mps + wrong_m, {-rate_mps, 0, 0}, 600};
+        const auto correction = filter.on(solution, now, Vector3::UnitX());
+        if (!correction) return false;
+        error_m += correction->altitude_m;
+        error_mps += correction->v_M_mps.x();
+        return true;
+    }
+};
+
+} // namespace
+
+TEST_CASE("the first solution takes out kilometres of error, delay or not", "[gnc][R25]") {
+    Descent descent;
+    descent.error_m = -1500.0;
+    descent.error_mps = 8.0;
+    descent.fly(6.0);
+    CHECK_FALSE(descent.filter.locked());
+    REQUIRE(descent.update());
+    CHECK(descent.filter.locked());
+    CHECK(std::abs(descent.error_m) < 0.5);
+    CHECK(std::abs(descent.error_mps) < 1e-9);
+}
+
+TEST_CASE("corrections once a second of averages over five do not ring", "[gnc][R25]") {
+    Descent descent;
+    descent.fly(6.0);
+    REQUIRE(descent.update());
+    descent.error_m += 20.0; // a step that the filter's past does not know of
+    double largest_undershoot_m = 0.0;
+    for (int i = 0; i < 30; ++i) {
+        descent.fly(1.0);
+        descent.update();
+        largest_undershoot_m = std::min(largest_undershoot_m, descent.error_m);
+    }
+    CHECK(std::abs(descent.error_m) < 0.5);
+    CHECK(largest_undershoot_m > -4.0);
+}
+
+TEST_CASE("a wild solution is refused, five in a row are believed", "[gnc][R25]") {
+    Descent descent;
+    descent.fly(6.0);
+    REQUIRE(descent.update());
+    for (int i = 0; i < 5; ++i) {
+        descent.fly(1.0);
+        CHECK_FALSE(descent.update(2000.0));
+    }
+    CHECK(descent.filter.refused() == 5);
+    descent.fly(1.0);
+    CHECK(descent.update(2000.0));
+}
+
+TEST_CASE("without a past that covers it a solution is not used", "[gnc][R25]") {
+    Descent descent;
+    descent.fly(1.0);
+    CHECK_FALSE(descent.update());
+}

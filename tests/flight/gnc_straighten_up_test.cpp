@@ -1,0 +1,11 @@
+#include "flight/gnc/sufr/straighten_up.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis::flight::gnc;
+
+TEST_CASE("bank comes to lift up from either side at 10°/s and stays there", "[gnc][R27]") {
+    CHECK(sufr::bank_rad(0.0, 0.5) == 0.5);
+    CHECK(sufr::bank_rad(1.0, 0.5) == Approx(0.5 - sufr::roll_rate_rps));
+    CHECK(sufr::bank_rad(1.0, -0.5) == Approx(-0.5 + sufr::roll_rate_rps));
+    CHECK(sufr::bank_rad(5.0, -0.5) == Approx(0.0).margin(1e-12));
+}

@@ -1,0 +1,43 @@
+#include "flight/gnc/powered_descent/thrust_allocation.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis::flight::gnc;
+using namespace aeolis::flight::gnc::powered_descent;
+
+namespace {
+constexpr double largest_N = 3603.0;
+const Vector3 up = Vector3::UnitX();
+double sum_N(const Thrust& thrust) {
+    double sum = 0.0;
+    for (const double throttle : thrust.throttle)
+        sum += throttle * largest_N;
+    return sum;
+}
+} // namespace
+
+TEST_CASE("eight engines share the thrust that mass and acceleration need", "[gnc][R27]") {
+    const Thrust thrust = allocate({6.9, 2.0, -1.0}, up, 2200.0, 8, largest_N);
+    CHECK(thrust.magnitude_N == Approx(2200.0 * Vector3(6.9, 2.0, -1.0).norm()));
+    CHECK(sum_N(thrust) == Approx(thrust.magnitude_N));
+    CHECK((thrust.direction_M - Vector3(6.9, 2.0, -1.0).normalized()).norm() < 1e-12);
+}
+
+TEST_CASE("of four engines every other one runs", "[gnc][R27]") {
+    const Thrust thrust = allocate(3.71 * up, up, 2040.0, 4, largest_N);
+    for (std::size_t i = 0; i < 8; ++i)
+        CHECK((thrust.throttle[i] > 0.0) == (i % 2 == 0));
+    CHECK(sum_N(thrust) == Approx(2040.0 * 3.71));
+}
+
+TEST_CASE("an engine gives 400 to 3060 N", "[gnc][R27]") {
+    CHECK(allocate(100.0 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 3060.0));
+    CHECK(allocate(0.01 * up, up, 2200.0, 8, largest_N).magnitude_N == Approx(8 * 400.0));
+}
+
+TEST_CASE("the sidestep gives way before lift does, and tilt stays within 60°", "[gnc][R27]") {
+    const Thrust steep = allocate({7.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
+    CHECK(steep.direction_M.dot(up) * steep.magnitude_N / 2200.0 == Approx(7.0));
+    const Thrust flat = allocate({1.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
+    CHECK(flat.direction_M.dot(up) >= 0.5 - 1e-9);
+    CHECK((allocate(Vector3::Zero(), up, 2200.0, 8, largest_N).direction_M - up).norm() < 1e-12);
+}

@@ -1,0 +1,53 @@
+#include "flight/gnc/triggers/triggers.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis::flight::gnc;
+using namespace aeolis::flight::gnc::triggers;
+
+TEST_CASE("entry guidance starts at 0.2 g of drag", "[gnc][R17]") {
+    CHECK_FALSE(all_hold(guidance_start(1.95)));
+    CHECK(all_hold(guidance_start(1.96)));
+}
+
+TEST_CASE("the parachute needs the speed and three cycles of it", "[gnc][R17]") {
+    CHECK_FALSE(all_hold(parachute(405.1, 405.0, 3)));
+    CHECK_FALSE(all_hold(parachute(404.9, 405.0, 2)));
+    CHECK(all_hold(parachute(404.9, 405.0, 3)));
+    CHECK(parachute(404.9, 405.0, 3).size() == 2);
+}
+
+TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {
+    Persistence persistence;
+    CHECK(persistence.on(true) == 1);
+    CHECK(persistence.on(true) == 2);
+    CHECK(persistence.on(false) == 0);
+    CHECK(persistence.on(true) == 1);
+}
+
+TEST_CASE("straightening up begins its lead time before the parachute's speed", "[gnc][R17]") {
+    // OD137: 453 m/s at E+239, slowing at 2.8 m/s² [facts]
+    CHECK(all_hold(sufr_start(453.0, 2.8, 405.0)));
+    CHECK_FALSE(all_hold(sufr_start(460.0, 2.8, 405.0)));
+    CHECK_FALSE(all_hold(sufr_start(453.0, -1.0, 405.0)));  // it gains speed
+    CHECK_FALSE(all_hold(sufr_start(600.0, 100.0, 405.0))); // far above a straight line means nothing
+}
+
+TEST_CASE("the heatshield stays on for twenty seconds after the mortar", "[gnc][R17]") {
+    CHECK_FALSE(all_hold(heatshield(120.0, 142.0, 19.9)));
+    CHECK_FALSE(all_hold(heatshield(143.0, 142.0, 25.0)));
+    CHECK(all_hold(heatshield(142.0, 142.0, 20.0)));
+}
+
+TEST_CASE("the backshell goes at ground's altitude at 79.1 m/s, earlier when faster", "[gnc][R17]") {
+    CHECK(backshell_altitude_needed_m(1660.0, 79.1) == Approx(1660.0));
+    CHECK(backshell_altitude_needed_m(1660.0, 80.1) - 1660.0 == Approx(31.6).epsilon(0.02));
+    CHECK_FALSE(all_hold(backshell(1661.0, 79.1, 1660.0, 3)));
+    CHECK_FALSE(all_hold(backshell(1659.0, 79.1, 1660.0, 2)));
+    CHECK(all_hold(backshell(1659.0, 79.1, 1660.0, 3)));
+}
+
+TEST_CASE("engines are primed a quarter of a minute before the backshell goes", "[gnc][R17]") {
+    CHECK(all_hold(engine_priming(1660.0 + 82.0 * 15.4, 82.0, 1660.0)));
+    CHECK_FALSE(all_hold(engine_priming(1660.0 + 82.0 * 15.6, 82.0, 1660.0)));
+    CHECK_FALSE(all_hold(engine_priming(1000.0, -3.0, 1660.0))); // it climbs
+}
