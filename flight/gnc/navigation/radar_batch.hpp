@@ -19,7 +19,7 @@
 // In       beams as they come (six at 20 Hz)        Out   one solution when asked, about once a second
 // Memory   sums of twenty quarters of a second
 // Valid    flat ground below; beams within 75° of the vertical, others are left out
-// Source   [facts] Vehicle: six beams at 20 Hz, averages over 5 s [seed]; the form is ours
+// Source   [facts] Vehicle: six beams at 20 Hz, averages over 5 s [msl-edl-fsw-paper]; the form is ours
 namespace aeolis::flight::gnc {
 
 /// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
