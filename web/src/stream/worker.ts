@@ -121,6 +121,7 @@ function receive(bytes: Uint8Array): void {
       stopAt = Number(welcome.lastSeq);
       post({ type: 'run', run: welcome.runState, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
+      if (run !== 0 && step === 'samples' && check.completeThrough >= stopAt) say('live'); // nothing was missed
       break;
     }
     case 'batch':
