@@ -57,9 +57,11 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
                                           .triggered_sclk = firing.triggered.seconds,
                                           .fired_sclk = firing.fired.seconds,
                                           .verdict = firing.verdict});
-        if (firing.verdict == FiringVerdict::timed_out)
-            out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
+        if (firing.verdict != FiringVerdict::timed_out) continue;
+        out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
+        out.send(ModuleId::mfsk, ToneRequest{tone::timepoint_timed_out, now});
     }
+    if (!firings.empty() && timeline_.finished()) out.event(evr::TIMELINE_COMPLETE{});
 }
 
 void EdlMain::run_gnc(Sclk now, Outbox& out) {

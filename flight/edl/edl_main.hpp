@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/edl/gnc_triggers.hpp"
+#include "flight/edl/decisions.hpp"
 #include "flight/edl/phase.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"

@@ -1,16 +1,18 @@
 #include "simulation/landing.hpp"
 
-#include "common/bytes.hpp"
 #include "generated/dictionary_flight.hpp"
 #include "simulation/devices/recorder.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/telecommands.hpp"
 
 #include <algorithm>
 #include <set>
 
 using namespace aeolis;
 using namespace aeolis::simulation;
+using aeolis::test::do_edl;
+using aeolis::test::set_parameters;
 
 namespace {
 
@@ -21,31 +23,6 @@ std::vector<EventReportName> event_reports() {
             named(evr::HEADING_ALIGNMENT::apid, evr::HEADING_ALIGNMENT::id, "heading_alignment"),
             named(evr::RADAR_LOCK::apid, evr::RADAR_LOCK::id, "radar_lock"),
             named(evr::TOUCHDOWN::apid, evr::TOUCHDOWN::id, "touchdown")};
-}
-
-std::vector<std::uint8_t> set_parameters(const NavigationSolution& solution) {
-    std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SET_PARAMETERS::argument_octets);
-    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
-    arguments.put(solution.solution_id, 16);
-    arguments.put_double(solution.epoch.seconds);
-    for (const double value : solution.p_MoB_M_m)
-        arguments.put_double(value);
-    for (const double value : solution.v_MB_M_mps)
-        arguments.put_double(value);
-    arguments.put_double(solution.entry.seconds);
-    arguments.put_double(solution.target.latitude_deg);
-    arguments.put_double(solution.target.longitude_deg);
-    arguments.put_double(solution.target.radius_m);
-    for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.0F})
-        arguments.put_float(value);
-    seal_tc_packet(packet, Apid{1}, 0, flight::command::EDL_SET_PARAMETERS::opcode);
-    return packet;
-}
-
-std::vector<std::uint8_t> do_edl() {
-    std::vector<std::uint8_t> packet(tc_overhead_octets);
-    seal_tc_packet(packet, Apid{1}, 1, flight::command::EDL_DO_EDL::opcode);
-    return packet;
 }
 
 /// What came of a landing that was commanded `ticks` after its start.

@@ -1,4 +1,4 @@
-#include "flight/edl/gnc_triggers.hpp"
+#include "flight/edl/decisions.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,47 @@
+#include "flight/timeline/actions.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+struct Fixture {
+    test::OutboxRecorder recorder;
+    gnc::Configuration configuration;
+    ActionContext context{recorder.out, configuration};
+};
+}  // namespace
+
+TEST_CASE("the mortar's action fires the mortar and tells GNC of the parachute and its time", "[timeline][R17][R26]") {
+    Fixture f;
+    actions::fire_parachute_mortar(f.context);
+    REQUIRE(f.recorder.sent<FirePyro>().size() == 1);
+    CHECK(f.recorder.sent<FirePyro>()[0].pyro == PyroId::parachute_mortar);
+    CHECK(f.configuration.parachute_out);
+    CHECK(f.configuration.parachute_time == f.context.now());
+}
+
+TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone", "[timeline][R26]") {
+    Fixture f;
+    actions::vent_coolant(f.context);
+    actions::cut_cruise_cables(f.context);
+    CHECK_FALSE(f.configuration.cruise_stage_gone);
+    actions::fire_cruise_stage_separation(f.context);
+    CHECK(f.configuration.cruise_stage_gone);
+    CHECK(f.recorder.sent<FirePyro>().size() == 3);
+}
+
+TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
+    Fixture f;
+    actions::power_on_radar(f.context);
+    actions::start_uhf(f.context);
+    actions::select_entry_antenna(f.context);
+    const auto switches = f.recorder.sent<SetSwitch>();
+    REQUIRE(switches.size() == 3);
+    CHECK(switches[0].id == SwitchId::radar);
+    CHECK(switches[1].id == SwitchId::uhf);
+    CHECK(switches[2].id == SwitchId::entry_antenna);
+    CHECK(f.context.awaited() == ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna)});
+}

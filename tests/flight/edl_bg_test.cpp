@@ -1,0 +1,69 @@
+#include "flight/edl_bg/edl_bg.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+struct Fixture {
+    EdlBg bg;
+    test::OutboxRecorder recorder{ModuleId::edl_bg};
+    template <typename M>
+    void handle(const M& message, double at_s) {
+        recorder.begin(ModuleId::edl_bg, Sclk{at_s});
+        bg.on(message, recorder.out);
+    }
+};
+
+command::EDL_SET_PARAMETERS parameters() {
+    command::EDL_SET_PARAMETERS p;
+    p.epoch_sclk = 900.0;
+    p.entry_sclk = 2000.0;
+    p.position_x_m = 9.0e6;
+    p.velocity_x_mps = -5000.0;
+    return p;
+}
+
+}  // namespace
+
+TEST_CASE("parameters go on to Edl when they are possible together", "[edl_bg][R25]") {
+    Fixture f;
+    f.handle(SetParametersCommand{{}, parameters()}, 1000.0);
+    CHECK(f.recorder.sent<ParametersUpdate>().size() == 1);
+}
+
+TEST_CASE("parameters that cannot be true are refused: under the ground, entry in the past", "[edl_bg][R23]") {
+    Fixture f;
+    auto underground = parameters();
+    underground.position_x_m = 1.0e6;
+    f.handle(SetParametersCommand{{}, underground}, 1000.0);
+    CHECK(f.recorder.sent<ParametersUpdate>().empty());
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    f.handle(SetParametersCommand{{}, parameters()}, 2000.0);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+}
+
+TEST_CASE("radar solutions go to the filter once a second, and not before the radar gave beams", "[edl_bg][R25]") {
+    Fixture f;
+    int solutions = 0;
+    // Straight down at 80 m/s, six beams in a cone of 20 degrees from 5 km: 0.9397 is cos 20°.
+    for (int tick = 0; tick < 64 * 10; ++tick) {
+        const double now_s = 1000.0 + tick / 64.0;
+        f.handle(ClockTick{Sclk{now_s}}, now_s);
+        solutions += static_cast<int>(f.recorder.sent<gnc::RadarSolution>().size());
+        if (tick < 64) CHECK(solutions == 0);
+        RadarReturns returns{Sclk{now_s}, {}};
+        const double along = 0.9396926207859084, across = 0.3420201433256687;
+        returns.beams.push_back({0, {across, 0, along}, true, 5000.0 / along, -80.0 * along});
+        returns.beams.push_back({1, {-across, 0, along}, true, 5000.0 / along, -80.0 * along});
+        returns.beams.push_back({2, {0, across, along}, true, 5000.0 / along, -80.0 * along});
+        f.handle(returns, now_s);
+        // B's z points down: a half turn about x brings it to M's z, which is up here.
+        f.handle(NavigatedAttitude{{0, 1, 0, 0}, {0, 0, 1}, false}, now_s);
+    }
+    CHECK(solutions >= 8);
+    CHECK(solutions <= 10);
+}

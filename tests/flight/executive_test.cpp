@@ -1,0 +1,114 @@
+#include "flight/kernel/executive.hpp"
+
+#include "tests/support/catch.hpp"
+
+#include <cstring>
+#include <memory>
+#include <random>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+struct Fixture {
+    std::unique_ptr<ComputerState> state = std::make_unique<ComputerState>(Load{}, Sclk{1000.0});
+    std::unique_ptr<DeviceOutputs> out = std::make_unique<DeviceOutputs>();
+    DeviceInputs in;
+    std::int64_t ticks = 64000;
+
+    Fixture() { in.nvm_capacity_octets = 1U << 30; }
+    void cycle() {
+        in.now = Sclk::from_ticks(++ticks);
+        Executive{*state}.cycle(in, *out);
+        in.uplink.clear();
+    }
+};
+
+/// A message of the type that stands at `Index` of the variant, all of its octets random where that is a value.
+template <std::size_t Index = 0>
+Message message_of(std::size_t type) {
+    if constexpr (Index < std::variant_size_v<Message>) {
+        if (type == Index) return std::variant_alternative_t<Index, Message>{};
+        return message_of<Index + 1>(type);
+    } else {
+        return ClockTick{};
+    }
+}
+
+}  // namespace
+
+TEST_CASE("all mail is handled by the end of a cycle", "[executive][R3]") {
+    Fixture f;
+    for (int i = 0; i < 640; ++i) f.cycle();
+    for (const auto& mailbox : f.state->mailboxes) CHECK(mailbox.empty());
+    CHECK(f.state->sync.cycles() == 640);
+}
+
+TEST_CASE("every module handles every message, whether it expects it or not", "[executive][R4]") {
+    for (std::size_t module = 0; module < module_count; ++module)
+        for (std::size_t type = 0; type < std::variant_size_v<Message>; ++type) {
+            Fixture f;
+            f.cycle();
+            REQUIRE(f.state->mailboxes[module].try_push(message_of(type)));
+            INFO("module " << module << ", message " << type);
+            REQUIRE_NOTHROW(f.cycle());
+            REQUIRE_NOTHROW(f.cycle());
+        }
+}
+
+TEST_CASE("an unexpected message is counted and reported", "[executive][R4]") {
+    Fixture f;
+    REQUIRE(f.state->mailboxes[static_cast<std::size_t>(ModuleId::imu)].try_push(DoEdlCommand{}));
+    f.cycle();
+    CHECK(f.state->unexpected_messages == 1);
+    f.cycle();
+    CHECK(f.state->unexpected_messages == 1);
+}
+
+TEST_CASE("a full mailbox is counted, and the computer goes on", "[executive][R6]") {
+    Fixture f;
+    for (int i = 0; i < 100; ++i) f.state->next_cycle.push_back({ModuleId::mfsk, ModuleId::edl_bg, ClockTick{}});
+    f.cycle();
+    CHECK(f.state->mailbox_overflows > 0);
+    const auto before = f.state->mailbox_overflows;
+    f.cycle();
+    CHECK(f.state->mailbox_overflows == before);
+}
+
+TEST_CASE("what a module outside the rate group sends is delivered at the start of the next cycle", "[executive][R18]") {
+    Fixture f;
+    REQUIRE(f.state->mailboxes[static_cast<std::size_t>(ModuleId::mfsk)].try_push(ToneRequest{ToneId{61}, Sclk{1000.0}}));
+    f.cycle();
+    const auto is_record = [](const Envelope& e) { return std::holds_alternative<Record>(e.message); };
+    CHECK(std::count_if(f.state->next_cycle.begin(), f.state->next_cycle.end(), is_record) > 0);
+    CHECK(f.out->tone == ToneId{61});
+}
+
+TEST_CASE("a computer is one value of fixed size with nothing that points into it", "[executive][R7][invariant2]") {
+    CHECK(sizeof(ComputerState) <= 4U * 1024 * 1024);
+    Fixture f;
+    for (int i = 0; i < 64; ++i) f.cycle();
+    const auto copy = std::make_unique<ComputerState>(*f.state);
+    // No aligned word of the copy may be an address inside the original.
+    const auto first = reinterpret_cast<std::uintptr_t>(f.state.get());
+    const auto last = first + sizeof(ComputerState);
+    const auto* octets = reinterpret_cast<const unsigned char*>(copy.get());
+    for (std::size_t at = 0; at + sizeof(std::uintptr_t) <= sizeof(ComputerState); at += sizeof(std::uintptr_t)) {
+        std::uintptr_t word = 0;
+        std::memcpy(&word, octets + at, sizeof word);
+        const bool points_inside = word >= first && word < last;
+        REQUIRE_FALSE(points_inside);
+    }
+}
+
+TEST_CASE("random messages to random modules never end the computer, only count", "[executive][R4]") {
+    std::mt19937 random{5};
+    Fixture f;
+    for (int round = 0; round < 20000; ++round) {
+        if (random() % 4 == 0) f.cycle();
+        (void)f.state->mailboxes[random() % module_count].try_push(message_of(random() % std::variant_size_v<Message>));
+    }
+    REQUIRE_NOTHROW(f.cycle());
+    CHECK(f.state->unexpected_messages > 1000);
+}

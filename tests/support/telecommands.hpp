@@ -1,0 +1,36 @@
+#pragma once
+
+#include "common/bytes.hpp"
+#include "common/space_packet.hpp"
+#include "generated/dictionary_flight.hpp"
+#include "simulation/landing.hpp"
+
+#include <span>
+#include <vector>
+
+// The two commands of a landing, packed field by field here and not by the encoder of commands/.
+namespace aeolis::test {
+
+inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolution& solution) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SET_PARAMETERS::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    arguments.put(solution.solution_id, 16);
+    arguments.put_double(solution.epoch.seconds);
+    for (const double value : solution.p_MoB_M_m) arguments.put_double(value);
+    for (const double value : solution.v_MB_M_mps) arguments.put_double(value);
+    arguments.put_double(solution.entry.seconds);
+    arguments.put_double(solution.target.latitude_deg);
+    arguments.put_double(solution.target.longitude_deg);
+    arguments.put_double(solution.target.radius_m);
+    for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.0F}) arguments.put_float(value);
+    seal_tc_packet(packet, Apid{1}, 0, flight::command::EDL_SET_PARAMETERS::opcode);
+    return packet;
+}
+
+inline std::vector<std::uint8_t> do_edl() {
+    std::vector<std::uint8_t> packet(tc_overhead_octets);
+    seal_tc_packet(packet, Apid{1}, 1, flight::command::EDL_DO_EDL::opcode);
+    return packet;
+}
+
+}  // namespace aeolis::test
