@@ -32,6 +32,7 @@ struct Flight {
         : world(scenario, seed), computer(load(scenario), world.sclk()) {
         world.set_nvm(0, 1U << 30);
         world.receive(test::set_parameters(world.solution()));
+        for (int cycle = 0; cycle < 64; ++cycle) step();
         world.receive(test::do_edl());
     }
     Flight(const Flight& other)
