@@ -163,7 +163,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
     digest_ = rehearsal.digest();
     deliver(rehearsal, Clock::now());
     finished_ = true;
-    const std::string reason = rehearsal.finished() ? rehearsal.outcome_reason() : "stopped by the controller";
+    const std::string reason = rehearsal.finished() ? rehearsal.outcome_reason() : "stopped before its end";
     const auto finished = pipeline_.finish({outcome(rehearsal), reason, digest_, wall_clock_text()});
     if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_id_.value, finished.error().message);
     for (const auto& refusal : rehearsal.script_refusals())

@@ -1,0 +1,169 @@
+#include "server/gateway/command_gateway.hpp"
+#include "common/bytes.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+constexpr Ert now{1'000'000'000};
+
+simulation::NavigationSolution solution() {
+    simulation::NavigationSolution known;
+    known.epoch = Sclk{397500515.0};
+    known.entry = Sclk{397501715.0};
+    known.p_MoB_M_m = {2.0e6, 7.0e6, 8.0e4};
+    known.v_MB_M_mps = {-3200.0, -3300.0, -280.0};
+    return known;
+}
+
+v1::CommandRequest request(const std::string& command) {
+    v1::CommandRequest made;
+    made.set_command(command);
+    made.set_request(7);
+    return made;
+}
+
+struct Station {
+    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution())};
+    std::vector<archive::StageRecord> stages;
+
+    CommandGateway::Submitted send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
+    std::string refusal(const v1::CommandRequest& asked) {
+        const auto submitted = send(asked);
+        CHECK_FALSE(submitted.reply.accepted());
+        CHECK(submitted.reply.command() == 0);
+        CHECK(submitted.reply.request() == 7);
+        CHECK(submitted.packet.empty());
+        CHECK(stages.empty());
+        return submitted.reply.reason();
+    }
+    const archive::StageRecord* latest(const std::string& stage) const {
+        const archive::StageRecord* found = nullptr;
+        for (const auto& each : stages)
+            if (each.stage == stage) found = &each;
+        return found;
+    }
+};
+
+/// A packet of the shipped dictionary with these raw values in the named fields, all else zero.
+std::vector<std::uint8_t> packet_of(const std::string& name,
+                                    const std::vector<std::pair<std::string, std::uint64_t>>& values) {
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto* packet = dictionary.packet(name);
+    REQUIRE(packet != nullptr);
+    std::vector<std::uint8_t> octets(packet->octets, 0);
+    const auto put = [&](const dictionary::Field& field, std::uint64_t value) {
+        for (unsigned bit = 0; bit < field.type.bits; ++bit)
+            if ((value >> (field.type.bits - 1 - bit)) & 1) {
+                const auto at = field.position_bits + bit;
+                octets[at / 8] = static_cast<std::uint8_t>(octets[at / 8] | (0x80U >> (at % 8)));
+            }
+    };
+    for (const auto& field : packet->fields)
+        for (const auto& [wanted, value] : values)
+            if (field.name == wanted) put(field, value);
+    if (packet->event) // the event's id stands first behind the secondary header
+        BitWriter{std::span{octets}.subspan(tm_data_offset_octets)}.put(packet->event->value, 16);
+    seal_tm_packet(octets, packet->apid, 0, Sclk{397500600.0}, dictionary.id);
+    return octets;
+}
+
+} // namespace
+
+TEST_CASE("the gateway refuses what must not be sent, with the reason", "[gateway][R44]") {
+    Station station;
+    CHECK_THAT(station.refusal(request("DO_A_BARREL_ROLL")), Catch::Contains("unknown command 'DO_A_BARREL_ROLL'"));
+    CHECK_THAT(station.refusal(request("EDL_SET_PARAMETERS")), Catch::Contains("is missing"));
+    CHECK_THAT(station.refusal(request("EDL_DO_EDL")), Catch::Contains("armed"));
+
+    auto armed = request("EDL_DO_EDL");
+    armed.set_armed(true);
+    armed.set_confirmation("edl_do_edl");
+    CHECK_THAT(station.refusal(armed), Catch::Contains("EDL_DO_EDL"));
+
+    auto outside = request("EDL_SET_PARAMETERS");
+    outside.set_from_solution(true);
+    auto& argument = *outside.add_arguments();
+    argument.set_name("parachute_speed_mps");
+    argument.set_value(1000.0);
+    CHECK_THAT(station.refusal(outside), Catch::Contains("parachute_speed_mps") && Catch::Contains("1000"));
+
+    auto unknown_argument = request("NO_OP");
+    unknown_argument.add_arguments()->set_name("volume");
+    CHECK_THAT(station.refusal(unknown_argument), Catch::Contains("volume"));
+}
+
+TEST_CASE("parameters come from ground's solution and leave the station as one packet", "[gateway][R44]") {
+    Station station;
+    auto asked = request("EDL_SET_PARAMETERS");
+    asked.set_from_solution(true);
+    const auto submitted = station.send(asked);
+    REQUIRE(submitted.reply.accepted());
+    CHECK(submitted.reply.command() == 1);
+    CHECK(submitted.reply.octets().size() == submitted.packet.size() * 2);
+    const auto telecommand = read_tc_packet(submitted.packet);
+    REQUIRE(telecommand);
+    CHECK(telecommand->primary.count == 0);
+    const auto held = commands::decode(*tests::shipped_dictionary().command("EDL_SET_PARAMETERS"), submitted.packet);
+    REQUIRE(held);
+    CHECK(std::ranges::find((*held), commands::NamedValue{"entry_sclk", 397501715.0}) != held->end());
+    for (const char* stage : {"queued", "authorised", "released", "radiated"}) {
+        INFO(stage);
+        REQUIRE(station.latest(stage) != nullptr);
+        CHECK(station.latest(stage)->status == "ok");
+    }
+    CHECK(station.stages.front().octets == submitted.packet);
+    CHECK_THAT(station.stages.front().arguments, Catch::Contains("entry_sclk=397501715"));
+    for (const char* stage : {"received", "accepted", "executed", "verified"}) {
+        INFO(stage);
+        REQUIRE(station.latest(stage) != nullptr);
+        CHECK(station.latest(stage)->status == "pending"); // nothing is green by default
+    }
+}
+
+TEST_CASE("a stage is reached by the event that shows it, for that command only", "[gateway][R44]") {
+    Station station;
+    REQUIRE(station.send(request("NO_OP")).reply.accepted());
+    REQUIRE(station.send(request("NO_OP")).reply.accepted());
+    const auto opcode = tests::shipped_dictionary().command("NO_OP")->opcode.value;
+    station.stages.clear();
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", opcode}, {"count", 1}}), true, now, station.stages);
+    REQUIRE(station.latest("accepted") != nullptr);
+    CHECK(station.latest("accepted")->status == "ok");
+    CHECK(station.latest("accepted")->command == 2);
+    CHECK(station.latest("received")->status == "ok"); // inferred, and says so
+    CHECK(std::ranges::none_of(station.stages, [](const auto& stage) { return stage.command == 1; }));
+}
+
+TEST_CASE("a precondition that is known not to hold refuses, with the value; what is not known is left to flight",
+          "[gateway][R23][R44]") {
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    SECTION("not known") {
+        Station station;
+        CHECK(station.send(go).reply.accepted());
+        CHECK_THAT(station.latest("authorised")->evidence, Catch::Contains("left to flight"));
+    }
+    SECTION("known") {
+        Station station;
+        station.gateway.receive(packet_of("EdlStatus", {}), true, now, station.stages); // no parameters on board
+        CHECK_THAT(station.refusal(go), Catch::Contains("parameters_received"));
+    }
+    SECTION("known from the recording only: that is the past") {
+        Station station;
+        station.gateway.receive(packet_of("EdlStatus", {}), false, now, station.stages);
+        CHECK(station.send(go).reply.accepted());
+    }
+}
+
+TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {
+    Station station;
+    REQUIRE(station.send(request("NO_OP")).reply.accepted());
+    station.gateway.pass(Ert{now.microseconds + 3600LL * 1'000'000}, station.stages);
+    CHECK(station.latest("accepted")->status == "unknown");
+    CHECK(station.latest("executed")->status == "unknown");
+}

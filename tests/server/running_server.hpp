@@ -1,0 +1,74 @@
+#pragma once
+
+#include "server/net/console_backend.hpp"
+#include "server/scenario/scenario_text.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <spdlog/spdlog.h>
+#include <thread>
+
+namespace aeolis::test {
+
+inline const std::filesystem::path shipped_scenarios = AEOLIS_SOURCE_DIR "/simulation/scenarios";
+
+/// A landing that begins close to entry, so that a test sees much in little time.
+inline simulation::Scenario shipped_scenario(const char* name) {
+    auto scenario = server::scenario_from_file(shipped_scenarios / (std::string{name} + ".textproto"));
+    REQUIRE(scenario);
+    return *scenario;
+}
+
+/// `aeolis serve` on a free port with an archive of its own, in this process.
+class RunningServer {
+  public:
+    RunningServer() {
+        open();
+        start_thread();
+    }
+    explicit RunningServer(const simulation::Scenario& scenario, double pace) {
+        open();
+        backend_->start(scenario, 1, pace);
+        start_thread();
+    }
+    ~RunningServer() { end(); }
+
+    std::uint16_t port() const { return port_; }
+    /// Ends it and opens the same archive again: as after a restart.
+    void restart() {
+        end();
+        open();
+        start_thread();
+    }
+    std::filesystem::path archive() const { return folder_ / "a.db"; }
+
+  private:
+    void open() {
+        spdlog::set_level(spdlog::level::err); // what a test provokes need not be read
+        server::ConsoleBackend::Settings settings;
+        settings.port = 0;
+        settings.archive = archive();
+        settings.scenarios = shipped_scenarios;
+        settings.web = folder_ / "web";
+        auto backend = server::ConsoleBackend::open(settings, tests::shipped_dictionary());
+        REQUIRE(backend);
+        backend_ = std::move(*backend);
+        port_ = backend_->port();
+    }
+    void start_thread() {
+        network_ = std::thread{[this] { backend_->run(); }};
+    }
+    void end() {
+        backend_->stop();
+        network_.join();
+        backend_.reset();
+    }
+
+    TemporaryFolder folder_;
+    std::unique_ptr<server::ConsoleBackend> backend_;
+    std::thread network_;
+    std::uint16_t port_ = 0;
+};
+
+} // namespace aeolis::test

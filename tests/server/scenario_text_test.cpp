@@ -1,0 +1,133 @@
+#include "server/scenario/scenario_text.hpp"
+#include "server/scenario/scenario_library.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <functional>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+const std::string least = "name: \"x\" entry_scet: \"2012-08-06T05:10:47.4\"\n";
+
+std::string error_of(const std::string& text) {
+    const auto scenario = scenario_from_text(text, "s.textproto");
+    REQUIRE_FALSE(scenario);
+    return scenario.error().message;
+}
+
+} // namespace
+
+TEST_CASE("a scenario of the least text has the defaults of the simulation", "[scenario]") {
+    const auto scenario = scenario_from_text(least, "s.textproto");
+    REQUIRE(scenario);
+    const simulation::Scenario usual;
+    CHECK(scenario->entry.speed_mps == usual.entry.speed_mps);
+    CHECK(scenario->masses.rover_kg == usual.masses.rover_kg);
+    CHECK(scenario->radio.uhf_rate_bps == usual.radio.uhf_rate_bps);
+    CHECK(scenario->entry_scet == *scet_from_text("2012-219T05:10:47.4"));
+}
+
+TEST_CASE("a wrong scenario text is told with file, line and column", "[scenario]") {
+    CHECK(error_of(least + "entry { sped_mps: 3 }") ==
+          "s.textproto:2:17: Message type \"aeolis.v1.EntryState\" has no field named \"sped_mps\".");
+    CHECK_THAT(error_of(least + "\nstart_before_entry_s: much"), Catch::StartsWith("s.textproto:3:23: "));
+    CHECK_THAT(error_of(least + "entry {"), Catch::StartsWith("s.textproto:2:8: "));
+    CHECK_THAT(error_of("name: \"a\" name: \"b\""), Catch::StartsWith("s.textproto:1:"));
+}
+
+TEST_CASE("an impossible value is told with file and field", "[scenario]") {
+    CHECK_THAT(error_of(least + "entry { speed_mps: -3 }"), Catch::StartsWith("s.textproto: entry.speed_mps: -3"));
+    CHECK(error_of(least + "masses { rover_kg: nan }") == "s.textproto: masses.rover_kg: nan is not a finite number");
+    CHECK(error_of(least + "density_scale { scale: 1 } density_scale { scale: inf }") ==
+          "s.textproto: density_scale[1].scale: inf is not a finite number");
+    CHECK(error_of("entry_scet: \"2012-08-06T05:10:47.4\"") == "s.textproto: name: missing");
+    CHECK(error_of("name: \"x\"") == "s.textproto: entry_scet: missing");
+    CHECK_THAT(error_of("name: \"x\" entry_scet: \"yesterday\""), Catch::StartsWith("s.textproto: entry_scet: 'yesterday' is"));
+    CHECK(error_of(least + "entry_sclk: 397501715.01") ==
+          "s.textproto: entry_sclk: 397501715.01 is not a multiple of 1/64 s");
+}
+
+TEST_CASE("each impossible value has a line of its own", "[scenario]") {
+    const auto text = error_of(least + "entry { speed_mps: -3 } masses { rover_kg: -1 }");
+    CHECK(std::count(text.begin(), text.end(), '\n') >= 1);
+    CHECK_THAT(text, Catch::Contains("\ns.textproto: "));
+}
+
+TEST_CASE("UTC is read by calendar and by day of year, and nothing else passes", "[scenario]") {
+    CHECK(scet_from_text("2000-01-01T12:00:00")->microseconds == 0);
+    CHECK(scet_from_text("2000-001T12:00:01.5")->microseconds == 1'500'000);
+    CHECK(*scet_from_text("2012-02-29T00:00:00.000001") == *scet_from_text("2012-060T00:00:00.000001"));
+    for (const char* wrong : {"", "2012", "2013-02-29T00:00:00", "2012-367T00:00:00", "2013-366T00:00:00",
+                              "2012-08-06 05:10:47", "2012-08-06T24:00:00", "2012-08-06T05:60:00", "2012-08-06T05:10:47.",
+                              "2012-08-06T05:10:47.1234567", "2012-08-06T05:10:47Z", "2012-000T00:00:00", "-012-08-06T05:10:47"})
+        CHECK_FALSE(scet_from_text(wrong).ok());
+}
+
+TEST_CASE("every field of the message reaches the simulation and comes back", "[scenario][R48]") {
+    v1::Scenario message;
+    // Each number of the schema is moved off its default by a little, so that one that were not carried would show.
+    const auto whole = scenario_to_message(*scenario_from_text(least, "s"));
+    auto moved = whole;
+    moved.add_density_scale()->set_altitude_m(5000.0);
+    moved.mutable_density_scale(0)->set_scale(1.25);
+    moved.mutable_radio()->set_light_time_s(828.0);
+    moved.mutable_radio()->set_uhf_loss_fraction(0.01);
+    moved.mutable_triggers()->set_parachute_speed_mps(400.0);
+    moved.mutable_triggers()->set_heatshield_speed_mps(140.0);
+    moved.mutable_triggers()->set_backshell_altitude_m(1700.0);
+    moved.set_telemetry_plan(v1::TELEMETRY_PLAN_WIDEBAND);
+    moved.set_steady_wind_east_mps(3.0);
+    auto& command = *moved.add_commands();
+    command.set_command("NO_OP");
+    command.set_send_before_entry_s(100.0);
+    command.set_from_solution(true);
+    auto& argument = *command.add_arguments();
+    argument.set_name("x");
+    argument.set_value(2.0);
+    const auto scenario = scenario_from_message(moved);
+    REQUIRE(scenario);
+    CHECK(scenario_to_message(*scenario).SerializeAsString() == moved.SerializeAsString());
+    const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
+    REQUIRE(again);
+    CHECK(scenario_to_message(*again).SerializeAsString() == moved.SerializeAsString());
+}
+
+TEST_CASE("no number of the schema is left out on the way to the simulation", "[scenario][R48]") {
+    const auto whole = scenario_to_message(*scenario_from_text(least, "s"));
+    const std::function<void(const google::protobuf::Message&, const std::string&)> check =
+        [&](const google::protobuf::Message& message, const std::string& name) {
+            const auto* descriptor = message.GetDescriptor();
+            for (int i = 0; i < descriptor->field_count(); ++i) {
+                const auto* field = descriptor->field(i);
+                if (field->is_repeated()) continue;
+                INFO(name << field->name());
+                if (field->has_presence()) CHECK(message.GetReflection()->HasField(message, field));
+                if (field->cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE)
+                    check(message.GetReflection()->GetMessage(message, field), name + field->name() + ".");
+            }
+        };
+    check(whole, "");
+}
+
+TEST_CASE("a scenario file that cannot be read is named", "[scenario]") {
+    CHECK(scenario_from_file("/nowhere/x.textproto").error().message == "/nowhere/x.textproto: cannot be opened");
+    CHECK(scenario_from_file("/tmp").error().message == "/tmp: is a directory, not a scenario");
+}
+
+TEST_CASE("the scenarios that ship can be flown, and a wrong name is told the right ones", "[scenario]") {
+    const ScenarioLibrary library{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
+    const auto list = library.list();
+    std::vector<std::string> names;
+    for (const auto& entry : list.scenarios()) {
+        names.push_back(entry.name());
+        CHECK_FALSE(entry.title().empty());
+        CHECK(library.scenario(entry.name())->name == entry.name());
+    }
+    CHECK_THAT(names, Catch::VectorContains(std::string{"nominal"}));
+    CHECK_THAT(names, Catch::VectorContains(std::string{"nominal_auto"}));
+    CHECK_THAT(names, Catch::VectorContains(std::string{"bench_wideband"}));
+    CHECK_THAT(library.scenario("../scenarios/nominal").error().message, Catch::Contains("there are: "));
+}

@@ -1,0 +1,169 @@
+#include "server/api/json.hpp"
+#include "tests/server/running_server.hpp"
+#include "tests/server/web_client.hpp"
+
+using namespace aeolis;
+using namespace aeolis::test;
+
+namespace {
+
+/// One client that follows everything and checks the chain of its batches.
+struct Follower {
+    Follower(std::uint16_t port, bool as_json, std::uint64_t after = 0)
+        : json(as_json), client(port, as_json ? "aeolis.v1.json" : "aeolis.v1.protobuf"), complete_through(after) {
+        REQUIRE(client.open());
+        v1::ClientMessage message;
+        message.mutable_subscribe()->set_after_seq(after);
+        message.mutable_subscribe()->set_all_channels(true);
+        send(message);
+    }
+    void send(const v1::ClientMessage& message) {
+        client.send(json ? server::to_json(message) : message.SerializeAsString(), !json);
+    }
+    bool read() {
+        const auto payload = client.receive();
+        if (!payload) return false;
+        last.Clear();
+        if (json) {
+            const auto parsed = server::from_json(*payload, last);
+            REQUIRE(parsed);
+        } else {
+            REQUIRE(last.ParseFromString(*payload));
+        }
+        if (last.has_batch()) {
+            CHECK(last.batch().after_seq() == complete_through);
+            complete_through = last.batch().complete_through();
+            history = history || last.batch().history();
+            for (const auto& item : last.batch().items()) seen.push_back(item.seq());
+        }
+        return true;
+    }
+    void read_through(std::uint64_t seq) {
+        while (complete_through < seq) REQUIRE(read());
+    }
+
+    bool json;
+    StreamClient client;
+    std::uint64_t complete_through;
+    bool history = false;
+    v1::ServerMessage last;
+    std::vector<std::uint64_t> seen;
+};
+
+void send_no_op(Follower& follower, std::uint64_t request) {
+    v1::ClientMessage message;
+    message.mutable_command()->set_command("NO_OP");
+    message.mutable_command()->set_request(request);
+    follower.send(message);
+    do REQUIRE(follower.read());
+    while (!follower.last.has_command_reply());
+    CHECK(follower.last.command_reply().accepted());
+    CHECK(follower.last.command_reply().request() == request);
+}
+
+std::vector<std::uint64_t> all_from(std::uint64_t first, std::uint64_t last) {
+    std::vector<std::uint64_t> numbers;
+    for (auto i = first; i <= last; ++i) numbers.push_back(i);
+    return numbers;
+}
+
+} // namespace
+
+TEST_CASE("exactly one offered subprotocol is echoed, or the upgrade is refused", "[stream][R42]") {
+    RunningServer server;
+    CHECK(StreamClient{server.port(), "aeolis.v1.json"}.subprotocol() == "aeolis.v1.json");
+    CHECK(StreamClient{server.port(), "aeolis.v1.protobuf"}.subprotocol() == "aeolis.v1.protobuf");
+    CHECK(StreamClient{server.port(), "chat, aeolis.v1.json, aeolis.v1.protobuf"}.subprotocol() == "aeolis.v1.json");
+    for (const char* none : {"", "chat", "aeolis.v2.json"}) {
+        StreamClient refused{server.port(), none};
+        CHECK_FALSE(refused.open());
+        CHECK(refused.status() == 400);
+    }
+}
+
+TEST_CASE("a client that comes back with after_seq has no gap and no double", "[stream][R42][R43]") {
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    std::uint64_t through = 0;
+    std::vector<std::uint64_t> seen;
+    {
+        Follower first{server.port(), true};
+        while (first.last.run_state().run() == 0 && first.last.welcome().run_state().run() == 0) REQUIRE(first.read());
+        send_no_op(first, 1);
+        first.read_through(10);
+        through = first.complete_through;
+        seen = first.seen;
+    }
+    Follower second{server.port(), false, through};
+    send_no_op(second, 2);
+    second.read_through(through + 8);
+    seen.insert(seen.end(), second.seen.begin(), second.seen.end());
+    CHECK(seen == all_from(1, second.complete_through));
+
+    server.restart(); // the run is over now, and all of it is in the archive
+    Follower third{server.port(), false};
+    third.read_through(second.complete_through);
+    CHECK(third.history);
+    CHECK(third.seen == all_from(1, third.complete_through));
+}
+
+TEST_CASE("a message that does not parse is refused and the stream goes on", "[stream]") {
+    RunningServer server;
+    for (const bool json : {true, false}) {
+        Follower client{server.port(), json};
+        client.client.send("{\"subscribe\": {\"after\": 1}}", !json);
+        client.client.send(json ? "no JSON" : "\xFF\xFF\xFF", !json);
+        int refusals = 0;
+        while (refusals < 2) {
+            REQUIRE(client.read());
+            if (client.last.has_refusal()) ++refusals;
+        }
+        v1::ClientMessage command;
+        command.mutable_command()->set_command("NO_OP");
+        client.send(command);
+        do REQUIRE(client.read());
+        while (!client.last.has_command_reply());
+        CHECK_THAT(client.last.command_reply().reason(), Catch::Contains("no run goes on"));
+    }
+}
+
+TEST_CASE("an over-long message closes its own connection with 'too big'", "[stream]") {
+    RunningServer server;
+    StreamClient client{server.port(), "aeolis.v1.json"};
+    REQUIRE(client.open());
+    client.send(std::string(server::WebServer::message_octets_max + 1, ' '), false);
+    CHECK_FALSE(client.receive());
+    CHECK(client.close_code() == 1009);
+    CHECK(web_request(server.port(), "GET", "/healthz").status == 200);
+}
+
+TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "[stream][R45]") {
+    RunningServer server;
+    Follower client{server.port(), true};
+    const auto read_until = [&](auto condition) {
+        do REQUIRE(client.read());
+        while (!condition(client.last));
+    };
+    v1::ClientMessage message;
+    auto& start = *message.mutable_control()->mutable_start();
+    start.set_scenario("nominal");
+    start.set_seed(5);
+    start.set_pace(10.0);
+    client.send(message);
+    read_until([](const auto& said) { return said.welcome().run_state().run() == 1; });
+    CHECK(client.last.welcome().run_state().seed() == 5);
+    client.complete_through = 0;
+    message.mutable_control()->set_pause(true);
+    client.send(message);
+    read_until([](const auto& said) { return said.run_state().state() == "paused"; });
+    message.mutable_control()->set_pause(false);
+    client.send(message);
+    read_until([](const auto& said) { return said.run_state().state() == "running"; });
+    message.mutable_control()->set_pace(200.0);
+    client.send(message);
+    read_until([](const auto& said) { return said.run_state().pace() == 200.0; });
+    message.mutable_control()->set_stop(true);
+    client.send(message);
+    read_until([](const auto& said) { return said.run_state().state() == "finished"; });
+    CHECK(client.last.run_state().outcome() == "stopped");
+    CHECK(client.last.run_state().digest().size() == 64);
+}
