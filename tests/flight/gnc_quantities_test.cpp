@@ -1,4 +1,5 @@
 #include "flight/gnc/quantities.hpp"
+#include "generated/dictionary_flight.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace aeolis::flight::gnc;
@@ -18,4 +19,25 @@ TEST_CASE("a decision without conditions is never now", "[gnc][R38]") {
     CHECK(all_hold(conditions));
     conditions.push_back(at_least(Quantity::speed_mps, 1.0, 2.0));
     CHECK_FALSE(all_hold(conditions));
+}
+
+TEST_CASE("GNC's quantities have the numbers of the dictionary", "[gnc][R38]") {
+    using Ground = aeolis::flight::Quantity;
+    const auto same = [](Quantity ours, Ground dictionary) {
+        return static_cast<unsigned>(ours) == static_cast<unsigned>(dictionary);
+    };
+    CHECK(same(Quantity::none, Ground::none));
+    CHECK(same(Quantity::speed_mps, Ground::speed_mps));
+    CHECK(same(Quantity::altitude_m, Ground::altitude_m));
+    CHECK(same(Quantity::drag_mps2, Ground::drag_mps2));
+    CHECK(same(Quantity::descent_rate_mps, Ground::descent_rate_mps));
+    CHECK(same(Quantity::time_since_parachute_s, Ground::time_since_parachute_s));
+    CHECK(same(Quantity::range_to_go_m, Ground::range_to_go_m));
+    CHECK(same(Quantity::crossrange_m, Ground::crossrange_m));
+    CHECK(same(Quantity::thrust_N, Ground::thrust_N));
+    CHECK(same(Quantity::time_to_parachute_s, Ground::time_to_parachute_s));
+    CHECK(same(Quantity::time_to_backshell_s, Ground::time_to_backshell_s));
+    CHECK(same(Quantity::cycles_held, Ground::cycles_held));
+    CHECK(same(Quantity::radar_beams, Ground::radar_beams));
+    CHECK(same(Quantity::time_in_mode_s, Ground::time_in_mode_s));
 }
