@@ -39,7 +39,9 @@ class Avionics {
     };
     void later(Pending reply, std::int64_t tick, std::int64_t delay_ticks);
 
-    std::array<bool, 6> on_{false, false, true, true, false, false};
+    // In cruise the IMU is on, and telemetry flows: the mission's came over X-band then, here the UHF link stands in for
+    // it from the start, so that ground sees the answers to its commands. Ours.
+    std::array<bool, 6> on_{false, true, true, true, false, false};
     std::array<bool, flight::pyro_count> fired_{};
     bool thrusters_enabled_ = true;
     FixedVector<Pending, 64> pending_;
