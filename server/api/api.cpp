@@ -95,13 +95,14 @@ void Api::handle_api(const HttpRequest& request, Respond respond) {
     if (first == "stream" && parts.size() == 1)
         return respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
                                            "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
-    respond(error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them",
-                                            request.path)));
+    respond(
+        error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", request.path)));
 }
 
 void Api::handle_run(const HttpRequest& request, const std::string& run, const std::string& what, Respond respond) {
     if (run != "latest" && !run_id(run))
-        return respond(error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
+        return respond(
+            error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
     if (what == "commands" && request.method == "POST") return post_command(request, run, std::move(respond));
     const auto* question = run_question(what);
     if (question == nullptr)
@@ -119,7 +120,8 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
         state.set_last_seq(parts_.hub.last_seq());
         return respond(json_response(state));
     }
-    ask(run, std::move(*query),
+    ask(
+        run, std::move(*query),
         [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
             return answer(dictionary, reader, id, asked);
         },
@@ -158,8 +160,8 @@ void Api::list_runs(Respond respond) {
 }
 
 void Api::list_scenarios(Respond respond) {
-    const bool taken = parts_.queries.ask(
-        [this, respond](archive::Reader&) { respond(json_response(parts_.scenarios.list())); });
+    const bool taken =
+        parts_.queries.ask([this, respond](archive::Reader&) { respond(json_response(parts_.scenarios.list())); });
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
@@ -171,7 +173,8 @@ void Api::rehearsals(const HttpRequest& request, bool current, Respond respond) 
         v1::RunList list;
         if (parts_.desk.current().run() != 0) *list.add_runs() = parts_.desk.current();
         if (!current) return respond(json_response(list));
-        if (list.runs().empty()) return respond(error_response(404, "no rehearsal was started since the server came up"));
+        if (list.runs().empty())
+            return respond(error_response(404, "no rehearsal was started since the server came up"));
         return respond(json_response(list.runs(0)));
     }
     if (!current && request.method == "POST") {
@@ -225,7 +228,8 @@ HttpResponse Api::metrics() const {
     write("stream_clients", "gauge", "WebSocket clients", count(parts_.hub.sessions()));
     write("stream_encodings_total", "counter", "batches encoded", count(hub.encodings));
     write("stream_shared_total", "counter", "batches sent in another client's encoding", count(hub.shared));
-    write("stream_archive_pages_total", "counter", "pages that clients read from the archive", count(hub.archive_pages));
+    write("stream_archive_pages_total", "counter", "pages that clients read from the archive",
+          count(hub.archive_pages));
     write("stream_refusals_total", "counter", "client messages that were refused", count(hub.refusals));
     write("queries_total", "counter", "questions to the archive", count(parts_.queries.asked()));
     write("queries_waiting", "gauge", "questions that wait for a query thread", count(parts_.queries.waiting()));

@@ -19,21 +19,30 @@ void add_labels(const dictionary::Type& type, google::protobuf::RepeatedPtrField
 const char* name_of(dictionary::Significance significance) {
     using dictionary::Significance;
     switch (significance) {
-    case Significance::none: return "none";
-    case Significance::watch: return "watch";
-    case Significance::warning: return "warning";
-    case Significance::distress: return "distress";
-    case Significance::critical: return "critical";
-    case Significance::severe: return "severe";
+    case Significance::none:
+        return "none";
+    case Significance::watch:
+        return "watch";
+    case Significance::warning:
+        return "warning";
+    case Significance::distress:
+        return "distress";
+    case Significance::critical:
+        return "critical";
+    case Significance::severe:
+        return "severe";
     }
     return "none";
 }
 
 const char* name_of(dictionary::ToneSet set) {
     switch (set) {
-    case dictionary::ToneSet::prime: return "prime";
-    case dictionary::ToneSet::second_chance: return "second_chance";
-    case dictionary::ToneSet::spare: return "spare";
+    case dictionary::ToneSet::prime:
+        return "prime";
+    case dictionary::ToneSet::second_chance:
+        return "second_chance";
+    case dictionary::ToneSet::spare:
+        return "spare";
     }
     return "spare";
 }
@@ -97,7 +106,8 @@ v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
         const auto carrier = carriers.find(channel.id);
         add_channel(channel, carrier == carriers.end() ? nullptr : carrier->second, reply);
     }
-    for (const auto& command : dictionary.commands) add_command(dictionary, command, reply);
+    for (const auto& command : dictionary.commands)
+        add_command(dictionary, command, reply);
     for (const auto& tone : dictionary.tones) {
         auto& added = *reply.add_tones();
         added.set_id(tone.id.value);

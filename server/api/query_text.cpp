@@ -19,7 +19,8 @@ Result<QueryText> QueryText::parse(std::string_view encoded, std::initializer_li
         if (name.empty() && !part.has_value) continue;
         if (std::ranges::find(known, name) == known.end()) {
             std::string names;
-            for (const auto each : known) names += (names.empty() ? "" : ", ") + std::string{each};
+            for (const auto each : known)
+                names += (names.empty() ? "" : ", ") + std::string{each};
             return Error{fmt::format("unknown parameter '{}'; known here: {}", name, names.empty() ? "none" : names)};
         }
         if (query.text(name)) return Error{fmt::format("parameter '{}' is given twice", name)};

@@ -16,13 +16,15 @@ Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::
 QueryThreads::QueryThreads(std::vector<archive::Reader> readers) : readers_(std::move(readers)) {
     for (auto& reader : readers_)
         threads_.emplace_back([this, &reader] {
-            while (auto job = jobs_.pop()) (*job)(reader);
+            while (auto job = jobs_.pop())
+                (*job)(reader);
         });
 }
 
 QueryThreads::~QueryThreads() {
     jobs_.close();
-    for (auto& thread : threads_) thread.join();
+    for (auto& thread : threads_)
+        thread.join();
 }
 
 bool QueryThreads::ask(Job job) {

@@ -71,8 +71,8 @@ HttpResponse channels(const dictionary::Dictionary&, archive::Reader& reader, ar
     series.channels = query.list("names");
     if (series.channels.empty()) return error_response(400, "names: which channels? names=altitude_m,speed_mps");
     if (series.channels.size() > archive::channels_max)
-        return error_response(400, fmt::format("names: {} channels, at most {} at once", series.channels.size(),
-                                               archive::channels_max));
+        return error_response(
+            400, fmt::format("names: {} channels, at most {} at once", series.channels.size(), archive::channels_max));
     const auto range = range_of(query);
     if (!range) return error_response(400, range.error().message);
     series.range = *range;
@@ -119,8 +119,8 @@ HttpResponse events(const dictionary::Dictionary&, archive::Reader& reader, arch
     archive::EventQuery events;
     events.levels = query.list("level");
     using dictionary::EventLevel;
-    constexpr std::array levels{EventLevel::fatal,       EventLevel::warning_hi,  EventLevel::warning_lo,
-                                EventLevel::command,     EventLevel::activity_hi, EventLevel::activity_lo,
+    constexpr std::array levels{EventLevel::fatal,     EventLevel::warning_hi,  EventLevel::warning_lo,
+                                EventLevel::command,   EventLevel::activity_hi, EventLevel::activity_lo,
                                 EventLevel::diagnostic};
     for (const auto& level : events.levels)
         if (std::ranges::none_of(levels, [&](EventLevel each) { return telemetry::name_of(each) == level; }))

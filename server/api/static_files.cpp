@@ -12,11 +12,16 @@ struct ContentType {
     const char* type;
 };
 constexpr std::array content_types{
-    ContentType{".html", "text/html; charset=utf-8"},  ContentType{".js", "text/javascript; charset=utf-8"},
-    ContentType{".css", "text/css; charset=utf-8"},    ContentType{".json", "application/json"},
-    ContentType{".map", "application/json"},           ContentType{".svg", "image/svg+xml"},
-    ContentType{".png", "image/png"},                  ContentType{".ico", "image/x-icon"},
-    ContentType{".woff2", "font/woff2"},               ContentType{".txt", "text/plain; charset=utf-8"},
+    ContentType{".html", "text/html; charset=utf-8"},
+    ContentType{".js", "text/javascript; charset=utf-8"},
+    ContentType{".css", "text/css; charset=utf-8"},
+    ContentType{".json", "application/json"},
+    ContentType{".map", "application/json"},
+    ContentType{".svg", "image/svg+xml"},
+    ContentType{".png", "image/png"},
+    ContentType{".ico", "image/x-icon"},
+    ContentType{".woff2", "font/woff2"},
+    ContentType{".txt", "text/plain; charset=utf-8"},
     ContentType{".yaml", "application/yaml"},
 };
 
@@ -27,7 +32,9 @@ const char* content_type_of(const std::filesystem::path& file) {
 }
 
 /// The build puts a hash into the names below assets/: such a file never changes.
-bool is_hashed(std::string_view path) { return path.starts_with("/assets/"); }
+bool is_hashed(std::string_view path) {
+    return path.starts_with("/assets/");
+}
 
 constexpr const char* not_built_page = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Aeolis</title>"
                                        "<body><h1>The console is not built</h1><p>This server runs, and its interface "

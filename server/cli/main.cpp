@@ -53,7 +53,8 @@ int main(int argc, char** argv) {
     serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
         ->capture_default_str();
     serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
-    serve_command->add_option("--scenario", serving.scenario, "start this rehearsal at once: a file, or a name that ships");
+    serve_command->add_option("--scenario", serving.scenario,
+                              "start this rehearsal at once: a file, or a name that ships");
     serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->capture_default_str();
     serve_command->add_option("--pace", serving.pace, "of that rehearsal: 1 … 1000, 0 as fast as it goes")
         ->check(CLI::Validator{[](std::string& text) {
@@ -70,7 +71,8 @@ int main(int argc, char** argv) {
     RehearseOptions rehearsing;
     rehearsing.shared = serving.shared;
     auto* rehearse_command = app.add_subcommand("rehearse", "one landing, without a console, as fast as it goes");
-    rehearse_command->add_option("--scenario", rehearsing.scenario, "a file, or the name of one that ships")->required();
+    rehearse_command->add_option("--scenario", rehearsing.scenario, "a file, or the name of one that ships")
+        ->required();
     rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")->capture_default_str();
     rehearse_command->add_option("--case", rehearsing.case_number, "another draw of the errors under the same seed")
         ->capture_default_str();
@@ -100,6 +102,8 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
+        const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr;
+        if (unknown) return failed(fmt::format("there is no command '{}' (aeolis --help)", argv[1]), 2);
         return failed(fmt::format("{} (aeolis --help)", error.what()), 2);
     } catch (const std::exception& error) {
         return failed(error.what());

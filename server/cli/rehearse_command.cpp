@@ -36,7 +36,8 @@ Result<void> fly_archived(Rehearsal& rehearsal, PipelineThread& pipeline) {
     };
     while (!rehearsal.finished()) {
         delivery.add(rehearsal.step());
-        for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
+        for (auto& stage : rehearsal.take_stages())
+            delivery.entries.emplace_back(std::move(stage));
         if (delivery.entries.size() >= delivery_entries && !hand_over()) return Error{pipeline.fault()};
     }
     if (!hand_over()) return Error{pipeline.fault()};

@@ -29,11 +29,19 @@ std::optional<Listen> listen_of(const std::string& text) {
     return listen;
 }
 
+std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
+    if (!scenario) return "Open it in a browser and start a rehearsal.";
+    const auto* const waits_for =
+        scenario->commands.empty() ? "waits for \"set edl parameters\" and \"do edl\"" : "sends its own commands";
+    return fmt::format("Open it in a browser: the rehearsal '{}' has begun and {}.", scenario->name, waits_for);
+}
+
 } // namespace
 
 int serve(const ServeOptions& options) {
     const auto listen = listen_of(options.listen);
-    if (!listen) return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
+    if (!listen)
+        return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
     const auto dictionary = loaded_dictionary(options.shared.dictionary);
     if (!dictionary) return failed(options.shared.dictionary.string() + ": the dictionary breaks the rules above");
     std::optional<simulation::Scenario> scenario;
@@ -55,10 +63,9 @@ int serve(const ServeOptions& options) {
     if (!backend) return failed(backend.error().message);
     if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
 
-    fmt::print("Aeolis is at http://{}:{}/\n  {}\n  archive {}; end with Ctrl-C\n", listen->address, (*backend)->port(),
-               scenario ? "Open it in a browser: the rehearsal '" + scenario->name +
-                              "' goes on and waits for \"set edl parameters\" and \"do edl\"."
-                        : std::string{"Open it in a browser and start a rehearsal."},
+    fmt::print("Aeolis is at http://{}:{}/\n  {}\n  archive {}; end with Ctrl-C\n",
+               listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
+               (*backend)->port(), what_to_do(scenario),
                std::filesystem::absolute(options.archive).lexically_normal().string());
     std::fflush(stdout);
 

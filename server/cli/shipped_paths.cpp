@@ -17,7 +17,8 @@ std::filesystem::path shipped(const std::string& folder) {
 
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory) {
     auto loaded = dictionary::load(directory);
-    for (const auto& finding : loaded.findings) fmt::print(stderr, "{}\n", finding.text());
+    for (const auto& finding : loaded.findings)
+        fmt::print(stderr, "{}\n", finding.text());
     return std::move(loaded.dictionary);
 }
 

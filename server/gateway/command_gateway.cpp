@@ -14,7 +14,8 @@ namespace {
 std::string hex_text(std::span<const std::uint8_t> octets) {
     std::string text;
     text.reserve(octets.size() * 2);
-    for (const auto octet : octets) fmt::format_to(std::back_inserter(text), "{:02x}", octet);
+    for (const auto octet : octets)
+        fmt::format_to(std::back_inserter(text), "{:02x}", octet);
     return text;
 }
 
@@ -67,7 +68,8 @@ CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& reque
     if (commands_ >= commands_max) return refuse(fmt::format("this run has had its {} commands", commands_max));
 
     std::vector<commands::NamedValue> arguments;
-    for (const auto& argument : request.arguments()) arguments.push_back({argument.name(), argument.value()});
+    for (const auto& argument : request.arguments())
+        arguments.push_back({argument.name(), argument.value()});
     if (request.from_solution()) arguments = commands::fill_from_solution(*command, arguments, solution_);
     auto packet = commands::encode(*command, arguments, count_);
     if (!packet) return refuse(packet.error().message);
@@ -81,15 +83,14 @@ CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& reque
     std::erase_if(preconditions, [](const commands::PreconditionState& condition) {
         return condition.state == commands::PreconditionState::State::unknown;
     });
-    const auto authorised =
-        commands::authorise(*command, {request.armed(), request.confirmation()}, preconditions);
+    const auto authorised = commands::authorise(*command, {request.armed(), request.confirmation()}, preconditions);
     if (!authorised) return refuse(authorised.error().message);
 
     const auto* report = commands::read_back_packet(dictionary_, *command);
     const auto held = commands::decode(*command, *packet); // as encoded: defaults are in it
-    auto& underway = underway_.emplace_back(Underway{
-        ++commands_, *packet, commands::arguments_text(held ? *held : arguments), report,
-        commands::CommandLifecycle{*command, count_, light_time_s_, report != nullptr}});
+    auto& underway = underway_.emplace_back(
+        Underway{++commands_, *packet, commands::arguments_text(held ? *held : arguments), report,
+                 commands::CommandLifecycle{*command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % commands::count_modulus);
 
     using commands::Stage;
@@ -103,11 +104,10 @@ CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& reque
                                not_known,
                            now, changes_);
     lifecycle.ground_stage(Stage::released, Status::ok, "nothing is ahead in the uplink queue", now, changes_);
-    lifecycle.ground_stage(
-        Stage::radiated, Status::ok,
-        fmt::format("{} octets left the station, count {}; at the vehicle {:.1f} s later", underway.packet.size(),
-                    lifecycle.count(), light_time_s_),
-        now, changes_);
+    lifecycle.ground_stage(Stage::radiated, Status::ok,
+                           fmt::format("{} octets left the station, count {}; at the vehicle {:.1f} s later",
+                                       underway.packet.size(), lifecycle.count(), light_time_s_),
+                           now, changes_);
     append(underway, changes_, stages);
 
     submitted.reply.set_accepted(true);
@@ -165,7 +165,8 @@ void CommandGateway::note_answer(Ert ert, std::vector<archive::StageRecord>& sta
                                   decoded_.header.time,
                                   ert};
     for (auto& underway : underway_) {
-        if (underway.lifecycle.command().opcode != answer.opcode || underway.lifecycle.count() != answer.count) continue;
+        if (underway.lifecycle.command().opcode != answer.opcode || underway.lifecycle.count() != answer.count)
+            continue;
         changes_.clear();
         underway.lifecycle.on(answer, changes_);
         append(underway, changes_, stages);

@@ -45,7 +45,8 @@ class CommandGateway {
     Submitted submit(const v1::CommandRequest& request, Ert now, std::vector<archive::StageRecord>& stages);
 
     /// A packet reached Earth, in real time or with the recording.
-    void receive(std::span<const std::uint8_t> packet, bool realtime, Ert ert, std::vector<archive::StageRecord>& stages);
+    void receive(std::span<const std::uint8_t> packet, bool realtime, Ert ert,
+                 std::vector<archive::StageRecord>& stages);
 
     /// Windows run out by Earth's clock.
     void pass(Ert now, std::vector<archive::StageRecord>& stages);

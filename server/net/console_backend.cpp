@@ -32,7 +32,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     if (chosen.archive.has_parent_path()) std::filesystem::create_directories(chosen.archive.parent_path(), ignored);
     auto archive = archive::Archive::open(chosen.archive);
     if (!archive) return archive.error();
-    for (const auto run : archive->interrupted()) spdlog::warn("run {} was cut off: marked interrupted", run.value);
+    for (const auto run : archive->interrupted())
+        spdlog::warn("run {} was cut off: marked interrupted", run.value);
     auto queries = QueryThreads::open(chosen.archive, dictionary);
     if (!queries) return queries.error();
     backend->queries_ = std::move(*queries);
@@ -46,9 +47,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
-    backend->api_ = std::make_unique<Api>(Api::Parts{dictionary, backend->scenarios_, *backend->queries_,
-                                                     *backend->desk_, *backend->hub_, *backend->pipeline_,
-                                                     backend->console_, [self] { return self->server_->connections(); }});
+    backend->api_ = std::make_unique<Api>(
+        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->hub_,
+                   *backend->pipeline_, backend->console_, [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
     return backend;
 }
@@ -101,7 +102,11 @@ void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, do
     });
 }
 
-void ConsoleBackend::run() { server_->run(); }
-void ConsoleBackend::stop() { server_->stop(); }
+void ConsoleBackend::run() {
+    server_->run();
+}
+void ConsoleBackend::stop() {
+    server_->stop();
+}
 
 } // namespace aeolis::server

@@ -10,7 +10,8 @@
 namespace aeolis::server {
 namespace {
 
-// Above this pace a client's rate counts against the wall clock too: at 100 × it would else get 100 times as much. Ours.
+// Above this pace a client's rate counts against the wall clock too: at 100 × it would else get 100 times as much.
+// Ours.
 constexpr double pace_without_further_thinning = 8.0;
 
 double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
@@ -27,7 +28,7 @@ bool begins_interval(double sclk, std::optional<double> previous, double interva
 
 Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
     return std::make_shared<const std::string>(format == StreamFormat::json ? to_json(message)
-                                                                           : message.SerializeAsString());
+                                                                            : message.SerializeAsString());
 }
 
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
@@ -84,7 +85,8 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
     } else {
         Held held{std::move(batch), {}};
         held.previous_sclk.reserve(held.batch->items.size());
-        for (const auto& item : held.batch->items) held.previous_sclk.push_back(spacing_.next(item));
+        for (const auto& item : held.batch->items)
+            held.previous_sclk.push_back(spacing_.next(item));
         held_items_ += held.batch->items.size();
         held_.push_back(std::move(held));
         while (held_items_ > items_max) {
@@ -126,7 +128,8 @@ void StreamHub::remove(StreamSession& session) {
 }
 
 void StreamHub::wake_all() {
-    for (auto* session : sessions_) session->wake();
+    for (auto* session : sessions_)
+        session->wake();
 }
 
 bool StreamHub::holds(archive::Sequence after) const {

@@ -15,7 +15,9 @@ StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<
     hub_.add(*this);
 }
 
-StreamSession::~StreamSession() { hub_.remove(*this); }
+StreamSession::~StreamSession() {
+    hub_.remove(*this);
+}
 
 void StreamSession::on_message(std::string_view payload) {
     v1::ClientMessage message;
@@ -26,7 +28,8 @@ void StreamSession::on_message(std::string_view payload) {
     }
     const auto self = weak_from_this();
     switch (message.message_case()) {
-    case v1::ClientMessage::kSubscribe: return subscribe(message.subscribe());
+    case v1::ClientMessage::kSubscribe:
+        return subscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
         return hub_.services().command(message.command(), [self](v1::CommandReply answer) {
             const auto session = self.lock();
@@ -40,7 +43,8 @@ void StreamSession::on_message(std::string_view payload) {
             const auto session = self.lock();
             if (session && !done) session->refuse(done.error().message);
         });
-    case v1::ClientMessage::MESSAGE_NOT_SET: break;
+    case v1::ClientMessage::MESSAGE_NOT_SET:
+        break;
     }
     refuse("the message says nothing: subscribe, command or control is wanted");
 }
@@ -75,18 +79,17 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
         return;
     }
     waiting_for_run_ = true;
-    hub_.services().read_run(
-        run, [self = weak_from_this(), run, after = subscribe.after_seq(),
-              subscription = subscription_](Result<v1::RunState> state) {
-            const auto session = self.lock();
-            if (!session || session->subscription_ != subscription) return;
-            session->waiting_for_run_ = false;
-            if (!state) return session->refuse(state.error().message);
-            session->subscribed_ = true;
-            session->older_run_ = std::move(*state);
-            session->follow(run, after);
-            session->wake_();
-        });
+    hub_.services().read_run(run, [self = weak_from_this(), run, after = subscribe.after_seq(),
+                                   subscription = subscription_](Result<v1::RunState> state) {
+        const auto session = self.lock();
+        if (!session || session->subscription_ != subscription) return;
+        session->waiting_for_run_ = false;
+        if (!state) return session->refuse(state.error().message);
+        session->subscribed_ = true;
+        session->older_run_ = std::move(*state);
+        session->follow(run, after);
+        session->wake_();
+    });
 }
 
 void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
@@ -183,7 +186,8 @@ Encoded StreamSession::from_page() {
     page_.reset();
     std::vector<ItemBefore> items;
     items.reserve(page.items.size());
-    for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item)});
+    for (const auto& item : page.items)
+        items.push_back({&item, page_spacing_.next(item)});
     double interval_s = shape_.max_rate_hz > 0.0 ? 1.0 / shape_.max_rate_hz : 0.0;
     if (was_live_ && follows_current()) interval_s = std::max(interval_s, catching_up_interval_s);
     v1::ServerMessage message;
@@ -220,8 +224,8 @@ void StreamSession::ask_archive() {
             }
             if (page->complete_through <= session->cursor_ && session->follows_current()) {
                 session->stalled_ = true;
-                return session->refuse(fmt::format("the archive holds nothing after {}, subscribe again",
-                                                   session->cursor_));
+                return session->refuse(
+                    fmt::format("the archive holds nothing after {}, subscribe again", session->cursor_));
             }
             session->page_ = std::move(*page);
             session->wake_();

@@ -56,9 +56,9 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     bool subscribed_ = false, newest_run_ = false; ///< newest_run_: asked for run 0
     bool welcome_due_ = false, waiting_for_run_ = false;
     std::uint64_t run_ = 0;
-    std::uint64_t subscription_ = 0; ///< answers to an older one are dropped
-    v1::RunState older_run_;         ///< of a run that is not the current one
-    archive::Sequence cursor_ = 0;   ///< served up to here
+    std::uint64_t subscription_ = 0;     ///< answers to an older one are dropped
+    v1::RunState older_run_;             ///< of a run that is not the current one
+    archive::Sequence cursor_ = 0;       ///< served up to here
     archive::Sequence sent_through_ = 0; ///< what the client was told
     bool reading_ = false, exhausted_ = false, was_live_ = false;
     bool stalled_ = false; ///< the archive failed: nothing more until the client subscribes again

@@ -1,7 +1,7 @@
 #include "server/net/web_server.hpp"
 
-#include "server/api/json.hpp"
 #include "aeolis/v1/run.pb.h"
+#include "server/api/json.hpp"
 
 #include <array>
 #include <boost/asio/awaitable.hpp>
@@ -37,7 +37,8 @@ using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<tcp, Executor>;
 using Stream = beast::basic_stream<tcp, Executor>;
 using Acceptor = asio::basic_socket_acceptor<tcp, Executor>;
-using Timer = asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>, Executor>;
+using Timer =
+    asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>, Executor>;
 template <typename T = void>
 using Task = asio::awaitable<T, Executor>;
 constexpr asio::use_awaitable_t<Executor> awaiting{};
@@ -53,7 +54,9 @@ struct Subprotocol {
 constexpr std::array subprotocols{Subprotocol{"aeolis.v1.protobuf", StreamFormat::protobuf},
                                   Subprotocol{"aeolis.v1.json", StreamFormat::json}};
 
-std::string_view plain(beast::string_view text) { return {text.data(), text.size()}; }
+std::string_view plain(beast::string_view text) {
+    return {text.data(), text.size()};
+}
 
 /// "localhost", "127.0.0.1", "[::1]", each with or without a port.
 bool is_loopback_authority(std::string_view authority) {
@@ -217,17 +220,18 @@ Task<> WebServer::State::serve_requests(Stream& stream) {
             const bool too_long = error == http::error::body_limit || error == http::error::header_limit;
             auto reply = error_reply(
                 parser.get(), too_long ? http::status::payload_too_large : http::status::bad_request,
-                error == http::error::body_limit     ? fmt::format("the body is longer than {} octets", body_octets_max)
-                : error == http::error::header_limit ? fmt::format("the header is longer than {} octets", header_octets_max)
-                                                     : "this is not HTTP: " + error.message());
+                error == http::error::body_limit ? fmt::format("the body is longer than {} octets", body_octets_max)
+                : error == http::error::header_limit
+                    ? fmt::format("the header is longer than {} octets", header_octets_max)
+                    : "this is not HTTP: " + error.message());
             reply.keep_alive(false);
             co_await http::async_write(stream, reply, asio::redirect_error(awaiting, error));
             co_return;
         }
         auto request = parser.release();
         Response response;
-        const auto target = boost::urls::parse_origin_form(
-            boost::urls::string_view{request.target().data(), request.target().size()});
+        const auto target =
+            boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
         if (const auto refusal = refusal_of(request); !refusal.empty()) {
             response = error_reply(request, http::status::forbidden, refusal);
         } else if (!target) {
@@ -237,8 +241,9 @@ Task<> WebServer::State::serve_requests(Stream& stream) {
                 co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name);
                 co_return;
             }
-            response = error_reply(request, http::status::bad_request,
-                                   "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
+            response =
+                error_reply(request, http::status::bad_request,
+                            "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
         } else {
             stream.expires_never();
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
@@ -339,11 +344,21 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const std::string& address, s
 WebServer::WebServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 WebServer::~WebServer() = default;
 
-std::uint16_t WebServer::port() const { return state_->acceptor.local_endpoint().port(); }
-void WebServer::run() { state_->io.run(); }
-void WebServer::stop() { state_->io.stop(); }
-void WebServer::post(std::function<void()> action) { asio::post(state_->io, std::move(action)); }
-std::size_t WebServer::connections() const { return state_->connections; }
+std::uint16_t WebServer::port() const {
+    return state_->acceptor.local_endpoint().port();
+}
+void WebServer::run() {
+    state_->io.run();
+}
+void WebServer::stop() {
+    state_->io.stop();
+}
+void WebServer::post(std::function<void()> action) {
+    asio::post(state_->io, std::move(action));
+}
+std::size_t WebServer::connections() const {
+    return state_->connections;
+}
 
 void WebServer::every(unsigned milliseconds, std::function<void()> action) {
     auto& timer = state_->timers.emplace_back(state_->io.get_executor());

@@ -20,12 +20,13 @@ namespace aeolis::server {
 ///          was rebound to this address, cannot command
 class WebServer {
   public:
-    static constexpr std::size_t body_octets_max = 1 << 20;      ///< ours: a scenario with every field is under 2 KiB
-    static constexpr std::size_t header_octets_max = 16 << 10;   ///< ours
-    static constexpr std::size_t message_octets_max = 64 << 10;  ///< ours: a command with every argument is under 2 KiB
-    static constexpr std::size_t connections_max = 1000;         ///< ours: below the usual 1024 open files
-    static constexpr unsigned request_seconds_max = 30;          ///< ours: for the next request to arrive whole
-    static constexpr unsigned silence_seconds_max = 20;          ///< ours: a WebSocket peer that answers no ping for so long is dead
+    static constexpr std::size_t body_octets_max = 1 << 20;     ///< ours: a scenario with every field is under 2 KiB
+    static constexpr std::size_t header_octets_max = 16 << 10;  ///< ours
+    static constexpr std::size_t message_octets_max = 64 << 10; ///< ours: a command with every argument is under 2 KiB
+    static constexpr std::size_t connections_max = 1000;        ///< ours: below the usual 1024 open files
+    static constexpr unsigned request_seconds_max = 30;         ///< ours: for the next request to arrive whole
+    static constexpr unsigned silence_seconds_max =
+        20; ///< ours: a WebSocket peer that answers no ping for so long is dead
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
@@ -38,11 +39,11 @@ class WebServer {
     ~WebServer();
 
     std::uint16_t port() const;
-    void run();                              ///< until stop()
-    void stop();                             ///< from any thread
-    void post(std::function<void()> action); ///< run it on the network thread; from any thread
+    void run();                                                      ///< until stop()
+    void stop();                                                     ///< from any thread
+    void post(std::function<void()> action);                         ///< run it on the network thread; from any thread
     void every(unsigned milliseconds, std::function<void()> action); ///< on the network thread, before run()
-    std::size_t connections() const;         ///< on the network thread
+    std::size_t connections() const;                                 ///< on the network thread
 
   private:
     struct State;

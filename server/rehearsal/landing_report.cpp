@@ -20,7 +20,9 @@ std::string json_text(std::string_view text) {
     return quoted + '"';
 }
 
-std::string json_number(double value) { return std::isfinite(value) ? fmt::format("{}", value) : "null"; }
+std::string json_number(double value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : "null";
+}
 
 /// One object, its members in the order in which they are added.
 class JsonObject {
@@ -41,7 +43,8 @@ class JsonObject {
 template <typename Rows, typename ToJson>
 std::string json_array(const Rows& rows, ToJson to_json) {
     std::string text;
-    for (const auto& row : rows) text += (text.empty() ? "" : ",") + to_json(row);
+    for (const auto& row : rows)
+        text += (text.empty() ? "" : ",") + to_json(row);
     return "[" + text + "]";
 }
 
@@ -116,7 +119,8 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
 
 std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
-    std::string text = fmt::format("{} (seed {}): {}", rehearsal.scenario().name, rehearsal.seed(), rehearsal.outcome());
+    std::string text =
+        fmt::format("{} (seed {}): {}", rehearsal.scenario().name, rehearsal.seed(), rehearsal.outcome());
     if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
     text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");
     for (const auto& event : sorted_events(rehearsal))
@@ -124,14 +128,16 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
                             event.speed_mps);
     text += fmt::format("\npeak deceleration {:.2f} m/s2\n", landing.peak_deceleration_mps2());
     if (const auto touchdown = landing.touchdown())
-        text += fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, {:.0f} m from the target, at {:.4f}, {:.4f}\n",
-                            touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->miss_m,
-                            touchdown->latitude_deg, touchdown->longitude_deg);
+        text +=
+            fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, {:.0f} m from the target, at {:.4f}, {:.4f}\n",
+                        touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->miss_m, touchdown->latitude_deg,
+                        touchdown->longitude_deg);
     const auto& tones = rehearsal.tones();
     text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
                         rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);
     text += telemetry::text_of(rehearsal.proof()) + '\n';
-    for (const auto& refusal : rehearsal.script_refusals()) text += "scripted command refused: " + refusal + '\n';
+    for (const auto& refusal : rehearsal.script_refusals())
+        text += "scripted command refused: " + refusal + '\n';
     text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",
                         rehearsal.digest(), rehearsal.cycles(), landing.counters().overruns, wall_s,
                         real_time_factor(rehearsal, wall_s));

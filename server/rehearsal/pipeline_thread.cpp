@@ -19,12 +19,11 @@ void Delivery::add(const simulation::CycleReport& report) {
 PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
                                pipeline::Publish publish)
     : archive_(std::move(archive)), pipeline_(archive_, dictionary), faults_(faults) {
-    pipeline_.on_publish(
-        [this, publish = std::move(publish)](std::shared_ptr<const pipeline::PublishedBatch> batch) {
-            ++batches_;
-            items_ += batch->last_seq - batch->first_seq + 1;
-            if (publish) publish(std::move(batch));
-        });
+    pipeline_.on_publish([this, publish = std::move(publish)](std::shared_ptr<const pipeline::PublishedBatch> batch) {
+        ++batches_;
+        items_ += batch->last_seq - batch->first_seq + 1;
+        if (publish) publish(std::move(batch));
+    });
     thread_ = std::thread{[this] { run(); }};
 }
 
@@ -99,7 +98,8 @@ void PipelineThread::take(Delivery& delivery) {
     pipeline_.relay_progress(delivery.relay_progress);
     if (delivery.when_durable.empty()) return;
     if (!insist([&] { return pipeline_.commit(); })) return;
-    for (const auto& tell : delivery.when_durable) tell();
+    for (const auto& tell : delivery.when_durable)
+        tell();
 }
 
 bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {

@@ -18,8 +18,8 @@ namespace aeolis::server {
 
 /// What a run hands to the archive at once, in the order in which it reached Earth.
 struct Delivery {
-    using Entry = std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState,
-                               archive::StageRecord>;
+    using Entry =
+        std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit

@@ -17,12 +17,18 @@ constexpr const char* firing_packet_name = "TimepointFired";
 const char* name_of(simulation::Outcome outcome) {
     using simulation::Outcome;
     switch (outcome) {
-    case Outcome::running: return "running";
-    case Outcome::touchdown: return "touchdown";
-    case Outcome::impact: return "impact";
-    case Outcome::lost: return "lost";
-    case Outcome::not_commanded: return "not_commanded";
-    case Outcome::timeout: return "timeout";
+    case Outcome::running:
+        return "running";
+    case Outcome::touchdown:
+        return "touchdown";
+    case Outcome::impact:
+        return "impact";
+    case Outcome::lost:
+        return "lost";
+    case Outcome::not_commanded:
+        return "not_commanded";
+    case Outcome::timeout:
+        return "timeout";
     }
     return "running";
 }
@@ -66,8 +72,7 @@ const simulation::CycleReport& Rehearsal::step() {
 }
 
 void Rehearsal::send_script() {
-    while (!script_.empty() &&
-           landing_.sclk() >= scenario_.entry_sclk - script_.back().send_before_entry_s) {
+    while (!script_.empty() && landing_.sclk() >= scenario_.entry_sclk - script_.back().send_before_entry_s) {
         const auto command = script_.back();
         script_.pop_back();
         v1::CommandRequest request;
@@ -130,9 +135,13 @@ void Rehearsal::note_firings(std::span<const std::uint8_t> recorded) {
     }
 }
 
-std::vector<archive::StageRecord> Rehearsal::take_stages() { return std::exchange(stages_, {}); }
+std::vector<archive::StageRecord> Rehearsal::take_stages() {
+    return std::exchange(stages_, {});
+}
 
-std::string Rehearsal::outcome() const { return broken_.empty() ? name_of(landing_.outcome()) : "lost"; }
+std::string Rehearsal::outcome() const {
+    return broken_.empty() ? name_of(landing_.outcome()) : "lost";
+}
 
 std::string Rehearsal::outcome_reason() const {
     return broken_.empty() ? landing_.outcome_reason() : "a check failed in the simulation: " + broken_;
@@ -142,7 +151,8 @@ telemetry::Proof Rehearsal::proof() const {
     if (landing_.relay_progress() >= 1.0) return telemetry::prove(units_);
     auto units = units_;
     telemetry::PacketStream recording{landing_.recording()};
-    while (const auto packet = recording.next()) units.add(*packet, telemetry::Path::recorded);
+    while (const auto packet = recording.next())
+        units.add(*packet, telemetry::Path::recorded);
     return telemetry::prove(units);
 }
 
@@ -160,7 +170,8 @@ archive::RunStart Rehearsal::run_start(double pace) const {
     start.light_time_s = landing_.light_time_s();
     start.tone_model = "statistical"; // the only one that this landing has
     start.scenario_text = scenario_to_text(scenario_);
-    for (const auto& [name, value] : solution_arguments(landing_.solution())) start.solution.emplace_back(name, value);
+    for (const auto& [name, value] : solution_arguments(landing_.solution()))
+        start.solution.emplace_back(name, value);
     return start;
 }
 

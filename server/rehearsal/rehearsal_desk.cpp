@@ -10,8 +10,8 @@ namespace {
 
 Result<double> checked_pace(double pace) {
     if (std::isfinite(pace) && (pace == 0.0 || (pace >= 1.0 && pace <= RehearsalRunner::pace_max))) return pace;
-    return Error{fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace,
-                             RehearsalRunner::pace_max)};
+    return Error{
+        fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace, RehearsalRunner::pace_max)};
 }
 
 } // namespace
@@ -68,7 +68,9 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
     }
     if (!going_on()) return Error{"no rehearsal goes on"};
     switch (control.action_case()) {
-    case v1::RehearsalControl::kPause: runner_->pause(control.pause()); return {};
+    case v1::RehearsalControl::kPause:
+        runner_->pause(control.pause());
+        return {};
     case v1::RehearsalControl::kPace: {
         const auto pace = checked_pace(control.pace());
         if (!pace) return pace.error();
@@ -79,7 +81,8 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
         if (!control.stop()) return Error{"stop: false asks for nothing"};
         runner_->stop();
         return {};
-    default: return Error{"the control says nothing: start, pause, pace or stop is wanted"};
+    default:
+        return Error{"the control says nothing: start, pause, pace or stop is wanted"};
     }
 }
 

@@ -12,12 +12,12 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr milliseconds delivery_interval{5};    // half a commit's: a commit then holds what is 15 ms old at most
-constexpr std::size_t delivery_entries = 256;   // or so many, when it goes fast
-constexpr milliseconds clocks_interval{100};    // ten times a second: brief of the stream
+constexpr milliseconds delivery_interval{5};  // half a commit's: a commit then holds what is 15 ms old at most
+constexpr std::size_t delivery_entries = 256; // or so many, when it goes fast
+constexpr milliseconds clocks_interval{100};  // ten times a second: brief of the stream
 constexpr milliseconds state_interval{1000};
-constexpr milliseconds shortest_wait{1};        // shorter ones cost more than they pace
-constexpr double behind_s_max = 0.25;           // later than that the pace is not attained; do not rush to catch up
+constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pace
+constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
 
 } // namespace
 
@@ -172,8 +172,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
     tell(rehearsal, Clock::now(), true);
 }
 
-void RehearsalRunner::send_requests(Rehearsal& rehearsal,
-                                    std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
+void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
     for (auto& [request, reply] : requests) {
         auto answer = rehearsal.submit(request);
         spdlog::info("run {}: command {} {}", run_id_.value, request.command(),
@@ -183,7 +182,8 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal,
             reply(std::move(answer));
             continue;
         }
-        for (auto& stage : rehearsal.take_stages()) delivery_.entries.emplace_back(std::move(stage));
+        for (auto& stage : rehearsal.take_stages())
+            delivery_.entries.emplace_back(std::move(stage));
         delivery_.when_durable.push_back(
             [answer = std::move(answer), reply = std::move(reply)]() mutable { reply(std::move(answer)); });
     }
@@ -192,7 +192,8 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal,
 
 void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
     delivery_.add(report);
-    for (auto& stage : rehearsal.take_stages()) delivery_.entries.emplace_back(std::move(stage));
+    for (auto& stage : rehearsal.take_stages())
+        delivery_.entries.emplace_back(std::move(stage));
 }
 
 bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now) {

@@ -42,7 +42,8 @@ Result<simulation::Scenario> ScenarioLibrary::scenario(const std::string& name) 
     const auto names = names_in(directory_);
     if (std::ranges::binary_search(names, name)) return scenario_from_file(directory_ / (name + extension));
     std::string known;
-    for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
+    for (const auto& each : names)
+        known += (known.empty() ? "" : ", ") + each;
     return Error{"scenario '" + name + "': there is none of this name; there are: " + known};
 }
 

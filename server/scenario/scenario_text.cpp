@@ -15,13 +15,13 @@ namespace {
 using google::protobuf::Message;
 using simulation::Scenario;
 
-constexpr std::size_t scenario_octets_max = 1 << 20;  // ours: ours are under 2 KiB
+constexpr std::size_t scenario_octets_max = 1 << 20; // ours: ours are under 2 KiB
 
 /// A field of the message and the member of the struct that carry the same number under the same name.
 template <typename Struct>
 struct Bound {
     const char* field;
-    double Struct::* member;
+    double Struct::*member;
 };
 template <typename Struct>
 using Bindings = std::initializer_list<Bound<Struct>>;
@@ -47,12 +47,18 @@ const Bindings<simulation::Masses> mass_fields = {
     AEOLIS_BIND(Masses, rover_kg),
 };
 const Bindings<simulation::Dispersions> dispersion_fields = {
-    AEOLIS_BIND(Dispersions, delivery_flight_path_deg), AEOLIS_BIND(Dispersions, delivery_position_m),
-    AEOLIS_BIND(Dispersions, knowledge_position_m),     AEOLIS_BIND(Dispersions, knowledge_velocity_mps),
-    AEOLIS_BIND(Dispersions, density_fraction),         AEOLIS_BIND(Dispersions, drag_fraction),
-    AEOLIS_BIND(Dispersions, parachute_drag_fraction),  AEOLIS_BIND(Dispersions, wind_mps),
-    AEOLIS_BIND(Dispersions, imu_bias_mps2),            AEOLIS_BIND(Dispersions, gyro_bias_rps),
-    AEOLIS_BIND(Dispersions, attitude_rad),             AEOLIS_BIND(Dispersions, radar_range_fraction),
+    AEOLIS_BIND(Dispersions, delivery_flight_path_deg),
+    AEOLIS_BIND(Dispersions, delivery_position_m),
+    AEOLIS_BIND(Dispersions, knowledge_position_m),
+    AEOLIS_BIND(Dispersions, knowledge_velocity_mps),
+    AEOLIS_BIND(Dispersions, density_fraction),
+    AEOLIS_BIND(Dispersions, drag_fraction),
+    AEOLIS_BIND(Dispersions, parachute_drag_fraction),
+    AEOLIS_BIND(Dispersions, wind_mps),
+    AEOLIS_BIND(Dispersions, imu_bias_mps2),
+    AEOLIS_BIND(Dispersions, gyro_bias_rps),
+    AEOLIS_BIND(Dispersions, attitude_rad),
+    AEOLIS_BIND(Dispersions, radar_range_fraction),
     AEOLIS_BIND(Dispersions, radar_velocity_mps),
 };
 const Bindings<simulation::Radio> radio_fields = {
@@ -68,9 +74,9 @@ const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, relay_start_after_touchdown_s),
 };
 const Bindings<Scenario> scenario_fields = {
-    AEOLIS_BIND(Scenario, start_before_entry_s),   AEOLIS_BIND(Scenario, end_after_touchdown_s),
-    AEOLIS_BIND(Scenario, timeout_after_entry_s),  AEOLIS_BIND(Scenario, parachute_drag_area_m2),
-    AEOLIS_BIND(Scenario, steady_wind_east_mps),   AEOLIS_BIND(Scenario, steady_wind_north_mps),
+    AEOLIS_BIND(Scenario, start_before_entry_s),  AEOLIS_BIND(Scenario, end_after_touchdown_s),
+    AEOLIS_BIND(Scenario, timeout_after_entry_s), AEOLIS_BIND(Scenario, parachute_drag_area_m2),
+    AEOLIS_BIND(Scenario, steady_wind_east_mps),  AEOLIS_BIND(Scenario, steady_wind_north_mps),
 };
 const Bindings<Scenario> trigger_fields = {
     AEOLIS_BIND(Scenario, parachute_speed_mps),
@@ -129,7 +135,8 @@ void collect_not_finite(const Message& message, const std::string& prefix, std::
 
 std::string joined(const std::vector<std::string>& lines, const std::string& prefix) {
     std::string text;
-    for (const auto& line : lines) text += (text.empty() ? "" : "\n") + prefix + line;
+    for (const auto& line : lines)
+        text += (text.empty() ? "" : "\n") + prefix + line;
     return text;
 }
 
@@ -157,7 +164,7 @@ std::string utc_text(Scet scet) {
                        clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
 }
 
-}  // namespace
+} // namespace
 
 Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     std::vector<std::string> faults;
@@ -193,7 +200,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         command.send_before_entry_s = row.send_before_entry_s();
         command.command = row.command();
         command.from_solution = row.from_solution();
-        for (const auto& argument : row.arguments()) command.arguments.emplace_back(argument.name(), argument.value());
+        for (const auto& argument : row.arguments())
+            command.arguments.emplace_back(argument.name(), argument.value());
         scenario.commands.push_back(std::move(command));
     }
     const auto impossible = simulation::impossible_values(scenario);
@@ -214,7 +222,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
     write(scenario.radio, radio_fields, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
-    for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
+    for (const auto& scale : scenario.density_scale)
+        write(scale, density_fields, *message.add_density_scale());
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);
     for (const auto& command : scenario.commands) {
@@ -247,7 +256,8 @@ Result<Scenario> scenario_from_text(std::string_view text, const std::string& fi
     if (scenario) return scenario;
     std::istringstream lines{scenario.error().message};
     std::vector<std::string> named;
-    for (std::string line; std::getline(lines, line);) named.push_back(line);
+    for (std::string line; std::getline(lines, line);)
+        named.push_back(line);
     return Error{joined(named, file + ": ")};
 }
 
@@ -264,4 +274,4 @@ Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
     return scenario_from_text(text, file.string());
 }
 
-}  // namespace aeolis::server
+} // namespace aeolis::server

@@ -1,5 +1,5 @@
-#include "server/gateway/command_gateway.hpp"
 #include "common/bytes.hpp"
+#include "server/gateway/command_gateway.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
@@ -130,7 +130,8 @@ TEST_CASE("a stage is reached by the event that shows it, for that command only"
     REQUIRE(station.send(request("NO_OP")).reply.accepted());
     const auto opcode = tests::shipped_dictionary().command("NO_OP")->opcode.value;
     station.stages.clear();
-    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", opcode}, {"count", 1}}), true, now, station.stages);
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", opcode}, {"count", 1}}), true, now,
+                            station.stages);
     REQUIRE(station.latest("accepted") != nullptr);
     CHECK(station.latest("accepted")->status == "ok");
     CHECK(station.latest("accepted")->command == 2);

@@ -127,8 +127,9 @@ TEST_CASE("what is no HTTP, too long or cut off costs its own connection only", 
     CHECK_THAT(raw_exchange(port, "this is not HTTP\r\n\r\n"), Catch::StartsWith("HTTP/1.1 400"));
     CHECK_THAT(raw_exchange(port, "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20'000, 'x') + "\r\n\r\n"),
                Catch::StartsWith("HTTP/1.1 413"));
-    CHECK_THAT(raw_exchange(port, "POST /api/v1/rehearsals HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2000000\r\n\r\n"),
-               Catch::StartsWith("HTTP/1.1 413") && Catch::Contains("1048576"));
+    CHECK_THAT(
+        raw_exchange(port, "POST /api/v1/rehearsals HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2000000\r\n\r\n"),
+        Catch::StartsWith("HTTP/1.1 413") && Catch::Contains("1048576"));
     raw_exchange(port, "GET /api/v1/runs HTT");
     CHECK_THAT(raw_exchange(port, "GET /%zz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
                Catch::StartsWith("HTTP/1.1 400"));
@@ -152,7 +153,8 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
     CHECK(script.content_type == "text/javascript; charset=utf-8");
     CHECK_THAT(script.cache_control, Catch::Contains("immutable"));
     CHECK(web_request(port, "HEAD", "/").status == 200);
-    for (const char* outside : {"/../a.db", "/%2e%2e/a.db", "/assets/../../a.db", "/..%2fa.db", "//etc/passwd.x", "/none.js"})
+    for (const char* outside :
+         {"/../a.db", "/%2e%2e/a.db", "/assets/../../a.db", "/..%2fa.db", "//etc/passwd.x", "/none.js"})
         CHECK(web_request(port, "GET", outside).status == 404);
 }
 

@@ -4,7 +4,8 @@
 using namespace aeolis::server;
 
 TEST_CASE("a query's values are decoded", "[http]") {
-    const auto query = QueryText::parse("text=a%20b+c&from=-1.5&limit=0x10&names=x,,y", {"text", "from", "limit", "names"});
+    const auto query =
+        QueryText::parse("text=a%20b+c&from=-1.5&limit=0x10&names=x,,y", {"text", "from", "limit", "names"});
     REQUIRE(query);
     CHECK(query->text("text") == "a b c");
     CHECK(**query->number("from") == -1.5);
@@ -14,10 +15,12 @@ TEST_CASE("a query's values are decoded", "[http]") {
 }
 
 TEST_CASE("a wrong query is refused by the name of what is wrong", "[http]") {
-    CHECK(QueryText::parse("form=1", {"from", "to"}).error().message == "unknown parameter 'form'; known here: from, to");
+    CHECK(QueryText::parse("form=1", {"from", "to"}).error().message ==
+          "unknown parameter 'form'; known here: from, to");
     CHECK(QueryText::parse("from=1&from=2", {"from"}).error().message == "parameter 'from' is given twice");
     CHECK_FALSE(QueryText::parse("from=%zz", {"from"}));
-    const auto query = QueryText::parse("from=1x&to=nan&limit=-1&after=99999999999999999999", {"from", "to", "limit", "after"});
+    const auto query =
+        QueryText::parse("from=1x&to=nan&limit=-1&after=99999999999999999999", {"from", "to", "limit", "after"});
     REQUIRE(query);
     CHECK(query->number("from").error().message == "from: '1x' is not a number");
     CHECK(query->number("to").error().message == "to: 'nan' is not a number");

@@ -1,6 +1,6 @@
-#include "server/rehearsal/landing_report.hpp"
 #include "server/api/json.hpp"
 #include "server/rehearsal/digest.hpp"
+#include "server/rehearsal/landing_report.hpp"
 #include "tests/server/running_server.hpp"
 
 #include <google/protobuf/struct.pb.h>
@@ -12,7 +12,8 @@ TEST_CASE("the digest is SHA-256 of all octets, however they are cut", "[digest]
     Digest whole, pieces;
     const std::vector<std::uint8_t> abc{'a', 'b', 'c'};
     whole.add(abc);
-    for (const auto octet : abc) pieces.add({&octet, 1});
+    for (const auto octet : abc)
+        pieces.add({&octet, 1});
     CHECK(whole.text() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"); // [fips-180-4]
     CHECK(pieces.text() == whole.text());
     CHECK(Digest{}.text() == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
@@ -20,7 +21,8 @@ TEST_CASE("the digest is SHA-256 of all octets, however they are cut", "[digest]
 
 TEST_CASE("a landing's report is the object of the design, its real time proven by its recording", "[rehearsal][R41]") {
     Rehearsal rehearsal{test::shipped_scenario("nominal_auto"), 1, 0, tests::shipped_dictionary()};
-    while (!rehearsal.finished()) rehearsal.step();
+    while (!rehearsal.finished())
+        rehearsal.step();
     INFO(landing_table(rehearsal, 1.0));
     CHECK(rehearsal.script_refusals().empty());
 

@@ -1,5 +1,5 @@
-#include "server/scenario/scenario_text.hpp"
 #include "server/scenario/scenario_library.hpp"
+#include "server/scenario/scenario_text.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -45,7 +45,8 @@ TEST_CASE("an impossible value is told with file and field", "[scenario]") {
           "s.textproto: density_scale[1].scale: inf is not a finite number");
     CHECK(error_of("entry_scet: \"2012-08-06T05:10:47.4\"") == "s.textproto: name: missing");
     CHECK(error_of("name: \"x\"") == "s.textproto: entry_scet: missing");
-    CHECK_THAT(error_of("name: \"x\" entry_scet: \"yesterday\""), Catch::StartsWith("s.textproto: entry_scet: 'yesterday' is"));
+    CHECK_THAT(error_of("name: \"x\" entry_scet: \"yesterday\""),
+               Catch::StartsWith("s.textproto: entry_scet: 'yesterday' is"));
     CHECK(error_of(least + "entry_sclk: 397501715.01") ==
           "s.textproto: entry_sclk: 397501715.01 is not a multiple of 1/64 s");
 }
@@ -60,9 +61,10 @@ TEST_CASE("UTC is read by calendar and by day of year, and nothing else passes",
     CHECK(scet_from_text("2000-01-01T12:00:00")->microseconds == 0);
     CHECK(scet_from_text("2000-001T12:00:01.5")->microseconds == 1'500'000);
     CHECK(*scet_from_text("2012-02-29T00:00:00.000001") == *scet_from_text("2012-060T00:00:00.000001"));
-    for (const char* wrong : {"", "2012", "2013-02-29T00:00:00", "2012-367T00:00:00", "2013-366T00:00:00",
-                              "2012-08-06 05:10:47", "2012-08-06T24:00:00", "2012-08-06T05:60:00", "2012-08-06T05:10:47.",
-                              "2012-08-06T05:10:47.1234567", "2012-08-06T05:10:47Z", "2012-000T00:00:00", "-012-08-06T05:10:47"})
+    for (const char* wrong :
+         {"", "2012", "2013-02-29T00:00:00", "2012-367T00:00:00", "2013-366T00:00:00", "2012-08-06 05:10:47",
+          "2012-08-06T24:00:00", "2012-08-06T05:60:00", "2012-08-06T05:10:47.", "2012-08-06T05:10:47.1234567",
+          "2012-08-06T05:10:47Z", "2012-000T00:00:00", "-012-08-06T05:10:47"})
         CHECK_FALSE(scet_from_text(wrong).ok());
 }
 

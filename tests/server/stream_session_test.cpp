@@ -47,9 +47,7 @@ struct Venue {
             page.more = page.complete_through < durable.size();
             waiting.push_back([done, page] { done(page); });
         };
-        services.read_run = [](std::uint64_t run, const auto& done) {
-            done(Error{"no run " + std::to_string(run)});
-        };
+        services.read_run = [](std::uint64_t run, const auto& done) { done(Error{"no run " + std::to_string(run)}); };
         services.command = [](const v1::CommandRequest& request, const auto& reply) {
             v1::CommandReply answer;
             answer.set_request(request.request());
@@ -77,11 +75,13 @@ struct Venue {
     }
     void publish_events(std::size_t count) {
         std::vector<v1::Item> items;
-        for (std::size_t i = 0; i < count; ++i) items.push_back(event_item(durable.size() + i + 1));
+        for (std::size_t i = 0; i < count; ++i)
+            items.push_back(event_item(durable.size() + i + 1));
         publish(std::move(items));
     }
     void answer() {
-        for (auto& each : std::exchange(waiting, {})) each();
+        for (auto& each : std::exchange(waiting, {}))
+            each();
     }
 };
 
@@ -105,7 +105,8 @@ struct Client {
                 const auto& batch = message.batch();
                 CHECK(batch.after_seq() == complete_through); // a chain without a hole
                 complete_through = batch.complete_through();
-                for (const auto& item : batch.items()) seen.push_back(item.seq());
+                for (const auto& item : batch.items())
+                    seen.push_back(item.seq());
             }
             if (message.has_refusal()) refusals.push_back(message.refusal().reason());
             messages.push_back(std::move(message));
@@ -113,7 +114,8 @@ struct Client {
     }
     bool saw_exactly(archive::Sequence first, archive::Sequence last) const {
         std::vector<archive::Sequence> wanted;
-        for (auto seq = first; seq <= last; ++seq) wanted.push_back(seq);
+        for (auto seq = first; seq <= last; ++seq)
+            wanted.push_back(seq);
         return seen == wanted;
     }
 
@@ -159,7 +161,8 @@ TEST_CASE("a slow client reads the archive and loses nothing", "[stream][R42]") 
     client.subscribe(0);
     venue.publish_events(10);
     client.read_all();
-    for (int i = 0; i < 40; ++i) venue.publish_events(1000); // more than the hub holds, none of it read meanwhile
+    for (int i = 0; i < 40; ++i)
+        venue.publish_events(1000); // more than the hub holds, none of it read meanwhile
     while (client.complete_through < venue.durable.size()) {
         client.read_all();
         if (venue.waiting.empty()) break;
@@ -251,7 +254,8 @@ TEST_CASE("what a client asks and cannot have is refused in words, and it goes o
 TEST_CASE("a client that asks and never reads is marked to be closed", "[stream]") {
     Venue venue;
     Client client{venue.hub};
-    for (std::size_t i = 0; i <= StreamSession::replies_max; ++i) client.session->on_message("\xFF");
+    for (std::size_t i = 0; i <= StreamSession::replies_max; ++i)
+        client.session->on_message("\xFF");
     CHECK(client.session->flooded());
 }
 

@@ -2,6 +2,8 @@
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
+#include <map>
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -34,12 +36,17 @@ struct Follower {
             CHECK(last.batch().after_seq() == complete_through);
             complete_through = last.batch().complete_through();
             history = history || last.batch().history();
-            for (const auto& item : last.batch().items()) seen.push_back(item.seq());
+            for (const auto& item : last.batch().items()) {
+                seen.push_back(item.seq());
+                ++kinds[item.item_case()];
+                if (item.has_tone() && item.tone().has_tone()) ++decoded_tones;
+            }
         }
         return true;
     }
     void read_through(std::uint64_t seq) {
-        while (complete_through < seq) REQUIRE(read());
+        while (complete_through < seq)
+            REQUIRE(read());
     }
 
     bool json;
@@ -48,6 +55,8 @@ struct Follower {
     bool history = false;
     v1::ServerMessage last;
     std::vector<std::uint64_t> seen;
+    std::map<v1::Item::ItemCase, std::size_t> kinds;
+    std::size_t decoded_tones = 0;
 };
 
 void send_no_op(Follower& follower, std::uint64_t request) {
@@ -55,7 +64,8 @@ void send_no_op(Follower& follower, std::uint64_t request) {
     message.mutable_command()->set_command("NO_OP");
     message.mutable_command()->set_request(request);
     follower.send(message);
-    do REQUIRE(follower.read());
+    do
+        REQUIRE(follower.read());
     while (!follower.last.has_command_reply());
     CHECK(follower.last.command_reply().accepted());
     CHECK(follower.last.command_reply().request() == request);
@@ -63,7 +73,8 @@ void send_no_op(Follower& follower, std::uint64_t request) {
 
 std::vector<std::uint64_t> all_from(std::uint64_t first, std::uint64_t last) {
     std::vector<std::uint64_t> numbers;
-    for (auto i = first; i <= last; ++i) numbers.push_back(i);
+    for (auto i = first; i <= last; ++i)
+        numbers.push_back(i);
     return numbers;
 }
 
@@ -87,7 +98,8 @@ TEST_CASE("a client that comes back with after_seq has no gap and no double", "[
     std::vector<std::uint64_t> seen;
     {
         Follower first{server.port(), true};
-        while (first.last.run_state().run() == 0 && first.last.welcome().run_state().run() == 0) REQUIRE(first.read());
+        while (first.last.run_state().run() == 0 && first.last.welcome().run_state().run() == 0)
+            REQUIRE(first.read());
         send_no_op(first, 1);
         first.read_through(10);
         through = first.complete_through;
@@ -120,7 +132,8 @@ TEST_CASE("a message that does not parse is refused and the stream goes on", "[s
         v1::ClientMessage command;
         command.mutable_command()->set_command("NO_OP");
         client.send(command);
-        do REQUIRE(client.read());
+        do
+            REQUIRE(client.read());
         while (!client.last.has_command_reply());
         CHECK_THAT(client.last.command_reply().reason(), Catch::Contains("no run goes on"));
     }
@@ -140,7 +153,8 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
     RunningServer server;
     Follower client{server.port(), true};
     const auto read_until = [&](auto condition) {
-        do REQUIRE(client.read());
+        do
+            REQUIRE(client.read());
         while (!condition(client.last));
     };
     v1::ClientMessage message;
@@ -166,4 +180,27 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
     read_until([](const auto& said) { return said.run_state().state() == "finished"; });
     CHECK(client.last.run_state().outcome() == "stopped");
     CHECK(client.last.run_state().digest().size() == 64);
+}
+
+TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, and are in the archive",
+          "[stream][R41][R42][R43]") {
+    auto scenario = shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0; // just before the first timepoint; UHF begins at 600
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    RunningServer server{scenario, 300.0};
+    Follower client{server.port(), false};
+    while (client.kinds[v1::Item::kSamples] < 500 || client.decoded_tones < 5 || client.kinds[v1::Item::kTimepoint] < 5)
+        REQUIRE(client.read());
+    CHECK(client.kinds[v1::Item::kUnit] > 500);
+    CHECK(client.kinds[v1::Item::kEvent] > 0);
+    CHECK(client.kinds[v1::Item::kCommandStage] >= 16); // both of the script, eight stages each
+    CHECK(client.kinds[v1::Item::kLink] > 0);
+    CHECK(client.seen == all_from(1, client.complete_through)); // all of it live: nothing is thinned or left out
+
+    auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
+    REQUIRE(reader);
+    const auto durable = reader->last_seq(archive::RunId{1});
+    REQUIRE(durable);
+    CHECK(*durable >= client.complete_through); // published means durable
 }

@@ -19,7 +19,9 @@ using boost::system::error_code;
 
 constexpr std::chrono::seconds patience{20}; // a loaded machine with sanitizers is slow
 
-std::string authority(std::uint16_t port) { return "127.0.0.1:" + std::to_string(port); }
+std::string authority(std::uint16_t port) {
+    return "127.0.0.1:" + std::to_string(port);
+}
 
 /// Runs what was started; a time-out of the stream ends it.
 template <typename Start>
@@ -41,7 +43,8 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     http::request<http::string_body> request{http::verb::get, {target.data(), target.size()}, 11};
     request.method_string({method.data(), method.size()});
     request.set(http::field::host, authority(port));
-    for (const auto& [name, value] : headers) request.set(name, value);
+    for (const auto& [name, value] : headers)
+        request.set(name, value);
     request.body() = body;
     request.prepare_payload();
     stream.expires_after(patience);
@@ -85,7 +88,8 @@ StreamClient::StreamClient(std::uint16_t port, const std::string& subprotocols, 
     beast::get_lowest_layer(socket).connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), port});
     socket.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
         if (!subprotocols.empty()) request.set(http::field::sec_websocket_protocol, subprotocols);
-        for (const auto& [name, value] : headers) request.set(name, value);
+        for (const auto& [name, value] : headers)
+            request.set(name, value);
     }));
     socket.read_message_max(64 << 20);
     error_code error;
@@ -95,8 +99,12 @@ StreamClient::StreamClient(std::uint16_t port, const std::string& subprotocols, 
 StreamClient::~StreamClient() = default;
 StreamClient::StreamClient(StreamClient&&) noexcept = default;
 
-bool StreamClient::open() const { return state_->open; }
-unsigned StreamClient::status() const { return state_->response.result_int(); }
+bool StreamClient::open() const {
+    return state_->open;
+}
+unsigned StreamClient::status() const {
+    return state_->response.result_int();
+}
 std::string StreamClient::subprotocol() const {
     return std::string{state_->response[http::field::sec_websocket_protocol]};
 }
@@ -115,6 +123,8 @@ std::optional<std::string> StreamClient::receive() {
     return beast::buffers_to_string(state_->buffer.data());
 }
 
-std::uint16_t StreamClient::close_code() const { return state_->socket.reason().code; }
+std::uint16_t StreamClient::close_code() const {
+    return state_->socket.reason().code;
+}
 
 } // namespace aeolis::test
