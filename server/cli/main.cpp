@@ -102,7 +102,8 @@ int main(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
-        const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr;
+        const auto is_first = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+        const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty();
         if (unknown) return failed(fmt::format("there is no command '{}' (aeolis --help)", argv[1]), 2);
         return failed(fmt::format("{} (aeolis --help)", error.what()), 2);
     } catch (const std::exception& error) {
