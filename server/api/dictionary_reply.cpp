@@ -85,11 +85,16 @@ void add_command(const dictionary::Dictionary& dictionary, const dictionary::Com
         add_labels(argument.type, *out.mutable_labels());
         out.set_integer(argument.type.encoding != dictionary::Encoding::ieee754);
     }
-    for (const auto& condition : command.preconditions)
+    for (const auto& condition : command.preconditions) {
+        auto& comparable = *added.add_conditions();
+        comparable.set_channel(condition.channel.value);
+        comparable.set_comparison(condition.comparison);
+        comparable.set_value(condition.value);
         added.add_preconditions(condition.text.empty()
                                     ? fmt::format("{} {} {}", dictionary.channels[condition.channel.value].name,
                                                   condition.comparison, condition.value)
                                     : condition.text);
+    }
 }
 
 } // namespace

@@ -47,12 +47,13 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await shows('command-review', /filled from ground/);
         await page.keyboard.press('Enter');
         await shows('command-message', /EDL_SET_PARAMETERS is #1/);
-        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'radiated'), /ok/);
+        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
         await shows('waiting', /type “do edl”/);
+        await shows('command-history', /EDL_SET_PARAMETERS #1/);
 
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
-        await shows('command-review', /arms it; nothing is sent yet/);
+        await shows('command-review', /✓ [^]*parameters_received is [^]*arms it; nothing is sent yet/);
         await page.keyboard.press('Enter');
         await shows('command-armed', /ARMED/);
         await page.keyboard.press('Enter');

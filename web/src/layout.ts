@@ -53,6 +53,9 @@ export const LAYOUT = {
     },
   ],
 
+  /** The timepoint at which the descent picture ends. */
+  landed: 'touchdown',
+
   /** Seconds from entry that the timeline shows when nothing else is chosen. */
   window: { from: -60, to: 470 },
   /** Named moments that get a label in the timeline; the others are marks only. */

@@ -43,7 +43,8 @@ export function latestSend(
   return { at: fromEntry(latest_e_s), left_s: latest_e_s - now_e_s, first: first.name };
 }
 
-export type LinkLook = 'up' | 'down' | 'unknown';
+/** down: silent for a reason that is named; lost: it should be there. */
+export type LinkLook = 'up' | 'down' | 'lost' | 'unknown';
 export interface LinkLine {
   name: string;
   look: LinkLook;
@@ -71,7 +72,7 @@ const STREAM_WORDS: Record<StreamState, string> = {
 export function streamLine(state: StreamState, attempt: number, gaps: number): LinkLine {
   return {
     name: STREAM_WORDS[state],
-    look: state === 'live' ? 'up' : state === 'lost' ? 'down' : 'unknown',
+    look: state === 'live' ? 'up' : state === 'lost' ? 'lost' : 'unknown',
     detail: state === 'lost' ? `what is shown is old; attempt ${attempt}` : `gaps ${gaps}`,
   };
 }

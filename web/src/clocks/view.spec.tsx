@@ -26,6 +26,6 @@ describe('the header', () => {
   it('says why a link is silent, and that a lost connection shows old things', () => {
     const store = aStore([link({ link: 'uhf_live', up: false, reason: 'plasma outage', ert: '2012-219T04:59:00.0' })]);
     expect(linksOf(store, Infinity)).toEqual([{ name: 'UHF live', look: 'down', detail: 'plasma outage' }]);
-    expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'down', detail: 'what is shown is old; attempt 3' });
+    expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
   });
 });

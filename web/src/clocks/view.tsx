@@ -5,7 +5,7 @@ import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
 import type { LinkLine } from './model';
 import './style.css';
 
-const SHAPES = { up: '●', down: '✖', unknown: '○' } as const;
+const SHAPES = { up: '●', down: '◌', lost: '✖', unknown: '○' } as const;
 
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
   return (

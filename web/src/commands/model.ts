@@ -107,14 +107,15 @@ export interface Precondition {
 
 /** Preconditions as the page sees them; the server decides by itself, and so does flight. */
 export function preconditionsOf(command: DictionaryCommand, dictionary: Dictionary, store: RunStore | undefined): Precondition[] {
-  return command.preconditions.map((words) => {
-    const parts = /^\s*(\w+)\s*(==|!=|<=|>=|<|>)\s*(\S+)\s*$/.exec(words);
-    const channel = parts?.[1] === undefined ? undefined : dictionary.pick([parts[1]]);
+  return command.preconditions.map((words, index) => {
+    const condition = command.conditions[index];
+    const channel = condition && dictionary.channel(condition.channel);
     const sample = channel && store?.latest(channel.id);
-    if (!parts || !channel || !sample || Number.isNaN(sample.value)) return { words, holds: undefined, value: 'not known' };
-    const text = parts[3] ?? '';
-    const bound = Number(channel.labels.find((label) => label.label === text)?.value ?? (text === 'true' ? 1 : text === 'false' ? 0 : text));
-    return { words, holds: compare(sample.value, parts[2] ?? '', bound), value: dictionary.label(channel, sample.value) ?? numberText(sample.value) };
+    if (!channel || !sample || Number.isNaN(sample.value)) return { words, holds: undefined, value: 'not known' };
+    return {
+      words, holds: compare(sample.value, condition.comparison, condition.value),
+      value: `${channel.name} is ${dictionary.label(channel, sample.value) ?? numberText(sample.value)}`,
+    };
   });
 }
 
@@ -143,8 +144,7 @@ export interface StageCell {
 export function stageCells(row: CommandRow, known: (at: string) => boolean = () => true): StageCell[] {
   const names = [...STAGES, ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage))];
   return names.map((name) => {
-    const heard = row.stages.get(name);
-    const stage = heard && known(heard.at) ? heard : undefined;
+    const stage = row.stages.get(name)?.findLast((word) => known(word.at));
     const look = (['ok', 'failed', 'unknown', 'pending'] as const).find((each) => each === stage?.status);
     return { stage: name, look: look ?? 'none', evidence: stage?.evidence ?? 'nothing is known', at: stage?.at ?? '' };
   });

@@ -4,14 +4,25 @@ import type { Surface } from '../draw/canvas';
 import { ticks, valueStep } from '../draw/axis';
 import { LAYOUT } from '../layout';
 import { Panel } from '../panel';
-import { cutoff, dictionary, store, tick, timepoints } from '../run/session';
+import { cutoff, dictionary, runNow, store, tick, timepoints } from '../run/session';
+import type { RunStore } from '../run/store';
 import { inWords } from '../run/dictionary';
-import { isImportant } from '../timeline/model';
+import { isImportant, outages } from '../timeline/model';
 import { heightFraction, pairs } from './model';
 import './style.css';
 
 const LEFT = 62;
 const TOP_M = 200000;
+const GAP_S = 6; // ours: longer without a sample is a gap
+
+/** The picture ends at touchdown: what the descent stage does after it is not the landing. */
+function lastInstant(run: RunStore | undefined, end: number): number {
+  for (const pair of run?.firings.values() ?? []) {
+    const fired = (pair.live ?? pair.recorded)?.firedSclk;
+    if (pair.name === LAYOUT.landed && fired !== undefined) return Math.min(end, fired);
+  }
+  return end;
+}
 
 function draw({ context: c, width, height, colours }: Surface): void {
   const run = store.value;
@@ -19,8 +30,9 @@ function draw({ context: c, width, height, colours }: Surface): void {
   const speed = dictionary.value?.pick(LAYOUT.speed);
   if (!altitude || !speed) return;
   const bottom = height - 26;
-  const recorded = pairs(run?.recorded.get(altitude.id), run?.recorded.get(speed.id), cutoff.value, 3000);
-  const live = pairs(run?.live.get(altitude.id), run?.live.get(speed.id), cutoff.value, 3000);
+  const until = lastInstant(run, cutoff.value);
+  const recorded = pairs(run?.recorded.get(altitude.id), run?.recorded.get(speed.id), until, 3000);
+  const live = pairs(run?.live.get(altitude.id), run?.live.get(speed.id), until, 3000);
   const fastest = Math.max(6200, ...[...recorded, ...live].map((point) => point.speed));
   const x = (mps: number) => LEFT + Math.sqrt(mps / fastest) * (width - LEFT - 24);
   const y = (m: number) => bottom - heightFraction(m, TOP_M) * (bottom - 12);
@@ -53,25 +65,33 @@ function draw({ context: c, width, height, colours }: Surface): void {
   c.fillText('m/s', width - 36, height - 11 - 16);
   if (!run) return;
 
-  for (const [points, colour] of [[recorded, colours.green], [live, colours.trace]] as const) {
-    c.strokeStyle = colour;
-    c.lineWidth = 1;
-    c.beginPath();
-    let before = -Infinity;
-    for (const point of points) {
-      if (point.sclk - before > 6) c.moveTo(x(point.speed), y(point.altitude));
-      else c.lineTo(x(point.speed), y(point.altitude));
-      before = point.sclk;
+  const points = [...recorded, ...live].sort((one, other) => one.sclk - other.sclk);
+  const silences = outages(run, 'uhf_live', Infinity, cutoff.value);
+  let before: (typeof points)[number] | undefined;
+  let colour = '';
+  c.lineWidth = 1;
+  c.beginPath();
+  for (const point of points) {
+    const e_s = point.sclk - run.entrySclk;
+    const next = silences.some((silence) => e_s > silence.from && e_s < silence.to) ? colours.green : colours.trace;
+    if (next !== colour) {
+      c.stroke();
+      c.strokeStyle = colour = next;
+      c.beginPath();
+      if (before) c.moveTo(x(before.speed), y(before.altitude));
     }
-    c.stroke();
+    if (!before || point.sclk - before.sclk > GAP_S) c.moveTo(x(point.speed), y(point.altitude));
+    else c.lineTo(x(point.speed), y(point.altitude));
+    before = point;
   }
-  moments(c, [...recorded, ...live], x, y, width, bottom, colours);
-  if (live.length + recorded.length === 0) {
+  c.stroke();
+  moments(c, points, x, y, width, bottom, colours);
+  if (points.length === 0) {
     c.fillStyle = colours.dim;
     c.textAlign = 'center';
     c.fillText(`no ${altitude.name} has come yet`, (LEFT + width) / 2, height / 2);
   }
-  const now = live[live.length - 1] ?? recorded[recorded.length - 1];
+  const now = points[points.length - 1];
   if (now) {
     c.fillStyle = colours.text;
     c.beginPath();
@@ -115,6 +135,14 @@ function moments(
       if (box[0] < LEFT || box[2] > width - 8 || box[3] > bottom || box[1] < 4) continue;
       if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
       boxes.push(box);
+      if (Math.abs(dy) > 14) {
+        c.strokeStyle = colours.dim;
+        c.lineWidth = 1;
+        c.beginPath();
+        c.moveTo(px, py);
+        c.lineTo(px + dx - 2, py + dy);
+        c.stroke();
+      }
       c.fillStyle = colours.text;
       c.textAlign = align;
       c.fillText(words, px + dx, py + dy);
@@ -124,16 +152,18 @@ function moments(
 }
 
 export function Descent() {
-  void tick.value;
+  const run = runNow();
+  const until = lastInstant(run, cutoff.value);
   const words = dictionary.value;
   const altitude = words?.pick(LAYOUT.altitude);
   const speed = words?.pick(LAYOUT.speed);
-  const h = altitude && store.value?.latest(altitude.id, cutoff.value)?.value;
-  const v = speed && store.value?.latest(speed.id, cutoff.value)?.value;
+  const h = altitude && run?.latest(altitude.id, until)?.value;
+  const v = speed && run?.latest(speed.id, until)?.value;
   const inKm = (h ?? 0) >= 10000;
   return (
     <Panel name="descent" title="Descent, how high and how fast" extra={
-      <span class="descent-now">
+      <span class="descent-now" title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
+        {until < cutoff.value && <span>at touchdown</span>}
         <span class="nowrap"><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</span>
         <span class="nowrap"><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</span>
       </span>

@@ -29,7 +29,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
   const colours = palette();
   const axis = { stroke: colours.dim, font: `11px ${colours.mono}`, grid: { stroke: colours.line, width: 1 }, ticks: { show: false } };
   return {
-    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 10, 0, 0],
+    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 24, 0, 0],
     cursor: { sync: { key: sync.key, setSeries: false }, drag: { x: false, y: false }, points: { show: false }, y: false },
     scales: { x: { time: false } },
     axes: [
@@ -133,7 +133,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
         plot.setSize({ width, height });
       }
       const data = run
-        ? align(recorded, live, run.entrySclk, span.from, span.to, cutoff.value, per, width * 2)
+        ? align(recorded, live, outages(run, 'uhf_live', span.to, cutoff.value), run.entrySclk, span.from, span.to, cutoff.value, per, width * 2)
         : ([[], [], []] as Aligned);
       plot.batch(() => {
         plot?.setData(data as uPlot.AlignedData, false);

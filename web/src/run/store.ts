@@ -34,7 +34,8 @@ export interface CommandRow {
   command: number;
   name: string;
   arguments: string;
-  stages: Map<string, CommandStage>;
+  /** What was said of each stage, oldest first: the last word counts, in a past view the last of then. */
+  stages: Map<string, CommandStage[]>;
 }
 export interface UnitTotals {
   units: number;
@@ -199,7 +200,7 @@ export class RunStore {
     if (!row) this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
     if (stage.name) row.name = stage.name;
     if (stage.arguments) row.arguments = stage.arguments;
-    row.stages.set(stage.stage, stage);
+    row.stages.set(stage.stage, [...(row.stages.get(stage.stage) ?? []), stage]);
   }
 
   private addUnit(item: Known<Unit>): void {

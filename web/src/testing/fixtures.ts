@@ -38,7 +38,7 @@ export const aDictionary = new Dictionary(create(DictionaryReplySchema, {
         { name: 'parachute_speed_mps', unit: 'm/s', min: 380, max: 430, defaultValue: 405 },
       ],
     },
-    { opcode: 3, name: 'EDL_DO_EDL', significance: 'critical', preconditions: ['parameters_received == 1'] },
+    { opcode: 3, name: 'EDL_DO_EDL', significance: 'critical', preconditions: ['parameters received'], conditions: [{ channel: 5, comparison: '==', value: 1 }] },
     { opcode: 4, name: 'EDL_SET_TIMEPOINT_OFFSET', significance: 'none', arguments: [{ name: 'timepoint', integer: true }] },
   ],
   tones: [{ id: 7, name: 'entry', meaning: 'Entry interface' }],

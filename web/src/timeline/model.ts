@@ -98,6 +98,10 @@ export function shortReason(words: string): string {
   return words.split(/[,:;(]/)[0]?.trim() ?? words;
 }
 
+export function firedCount(store: RunStore, cutoff: number): number {
+  return [...store.firings.values()].filter(({ live, recorded }) => ((live ?? recorded)?.firedSclk ?? Infinity) <= cutoff && (live ?? recorded)).length;
+}
+
 export type PointState = 'fired' | 'timed out' | 'waiting for reply' | 'next' | 'pending' | 'undefined';
 
 export interface PointDetail {

@@ -8,7 +8,7 @@ import { cutoff, pastRange, runNow, store, tick, timepoints } from '../run/sessi
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { lanesOf, pointDetail, shortReason, title } from './model';
+import { firedCount, lanesOf, pointDetail, shortReason, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
@@ -255,7 +255,7 @@ function Detail() {
 
 export function Timeline() {
   const run = runNow();
-  const fired = run ? [...run.firings.values()].filter((pair) => pair.live || pair.recorded).length : 0;
+  const fired = run ? firedCount(run, cutoff.value) : 0;
   return (
     <Panel name="timeline" title="Timeline" extra={
       <>

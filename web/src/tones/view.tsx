@@ -35,7 +35,7 @@ function draw({ context: c, width, height, colours }: Surface): void {
   }
   const step = timeStep(to - from, Math.floor(width / 100));
   c.textAlign = 'center';
-  for (const e_s of ticks(from, to, step)) c.fillText(axisTime(e_s, step), x(e_s), height - 8);
+  for (const e_s of ticks(from, to, step)) if (x(e_s) < width - 26) c.fillText(axisTime(e_s, step), x(e_s), height - 8);
   c.save();
   c.beginPath();
   c.rect(LEFT, 0, width - LEFT - 10, height);

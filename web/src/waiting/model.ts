@@ -22,7 +22,7 @@ export interface Waiting {
   lines: Line[];
 }
 
-const RELATIONS: Record<string, string> = { lt: '<', le: '≤', eq: '=', ge: '≥', gt: '>' };
+const RELATIONS: Record<string, string> = { '<=': '≤', '==': '=', '>=': '≥', '!=': '≠' };
 
 export function conditionLine(condition: Condition): Line {
   const relation = RELATIONS[condition.comparison] ?? condition.comparison;
@@ -69,7 +69,7 @@ type FirstStep = (typeof LAYOUT.firstSteps)[number];
 export function stepEvidence(store: RunStore, step: FirstStep | undefined): string | undefined {
   if (!step) return undefined;
   for (const row of store.commands.values()) {
-    const stage = ['verified', 'executed'].find((name) => row.stages.get(name)?.status === 'ok');
+    const stage = ['verified', 'executed'].find((name) => row.stages.get(name)?.at(-1)?.status === 'ok');
     if (row.name === step.command && stage !== undefined) return stage;
   }
   const tone = store.tones.find(({ fact }) => fact.name === step.tone);
@@ -93,7 +93,7 @@ function beginning(store: RunStore, dictionary: Dictionary): Waiting {
 const newest = (store: RunStore, step: FirstStep) => [...store.commands.values()].findLast((row) => row.name === step.command);
 
 function failure(store: RunStore, step: FirstStep): string | undefined {
-  const failed = [...(newest(store, step)?.stages.values() ?? [])].find((stage) => stage.status === 'failed');
+  const failed = [...(newest(store, step)?.stages.values() ?? [])].map((words) => words.at(-1)).find((stage) => stage?.status === 'failed');
   return failed && `failed: ${failed.evidence}`;
 }
 
@@ -134,7 +134,7 @@ function offsetWords(offset_s: number | undefined): string {
 }
 
 function timeLine(words: string, due_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
-  if (due_sclk === undefined) return { words, value: 'not known', holds: undefined };
+  if (due_sclk === undefined) return { words, value: 'no word yet', holds: undefined };
   if (Number.isNaN(due_sclk)) return { words, value: 'not yet', holds: false };
   const left = due_sclk - now_sclk;
   return {

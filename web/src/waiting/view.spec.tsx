@@ -35,7 +35,7 @@ describe('waiting for', () => {
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'not yet', holds: false });
   });
   it('shows the condition that is missing, as flight explained it', () => {
-    const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: 'le', bound: 405, holds: false });
+    const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: '<=', bound: 405, holds: false });
     const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] })]);
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({ words: 'speed mps ≤ 405', value: '450', holds: false });
   });
