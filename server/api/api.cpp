@@ -62,7 +62,7 @@ HttpResponse error_response(unsigned status, const std::string& error) {
 
 Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dictionary_reply(parts_.dictionary))) {}
 
-void Api::handle(HttpRequest request, Respond respond) {
+void Api::handle(const HttpRequest& request, const Respond& respond) {
     if (request.path.starts_with(api_prefix)) return handle_api(request, respond);
     if (request.method != "GET" && request.method != "HEAD") return respond(wrong_method(request, "GET"));
     if (request.path == "/healthz") return respond({200, "text/plain; charset=utf-8", "no-store", "ok\n"});
@@ -72,7 +72,7 @@ void Api::handle(HttpRequest request, Respond respond) {
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::handle_api(const HttpRequest& request, Respond respond) {
+void Api::handle_api(const HttpRequest& request, const Respond& respond) {
     const auto parts = split(std::string_view{request.path}.substr(api_prefix.size()));
     const auto get_only = [&](auto&& answer) {
         if (request.method != "GET" && request.method != "HEAD") return respond(wrong_method(request, "GET"));
@@ -81,17 +81,16 @@ void Api::handle_api(const HttpRequest& request, Respond respond) {
         answer();
     };
     const std::string first = parts.empty() ? "" : parts[0];
-    if (first == "runs" && parts.size() == 1) return get_only([&] { list_runs(std::move(respond)); });
+    if (first == "runs" && parts.size() == 1) return get_only([&] { list_runs(respond); });
     if (first == "runs" && parts.size() <= 3)
-        return handle_run(request, parts[1], parts.size() == 3 ? parts[2] : "", std::move(respond));
-    if (first == "scenarios" && parts.size() == 1) return get_only([&] { list_scenarios(std::move(respond)); });
+        return handle_run(request, parts[1], parts.size() == 3 ? parts[2] : "", respond);
+    if (first == "scenarios" && parts.size() == 1) return get_only([&] { list_scenarios(respond); });
     if (first == "dictionary" && parts.size() == 1)
         return get_only([&] { respond({200, "application/json", "no-store", dictionary_json_}); });
     if (first == "openapi.yaml" && parts.size() == 1)
         return get_only([&] { respond({200, "application/yaml", "no-cache", std::string{openapi_text}}); });
-    if (first == "rehearsals" && parts.size() == 1) return rehearsals(request, false, std::move(respond));
-    if (first == "rehearsals" && parts.size() == 2 && parts[1] == "current")
-        return rehearsals(request, true, std::move(respond));
+    if (first == "rehearsals" && parts.size() == 1) return rehearsals(request, false, respond);
+    if (first == "rehearsals" && parts.size() == 2 && parts[1] == "current") return rehearsals(request, true, respond);
     if (first == "stream" && parts.size() == 1)
         return respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
                                            "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
@@ -99,11 +98,12 @@ void Api::handle_api(const HttpRequest& request, Respond respond) {
         error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", request.path)));
 }
 
-void Api::handle_run(const HttpRequest& request, const std::string& run, const std::string& what, Respond respond) {
+void Api::handle_run(const HttpRequest& request, const std::string& run, const std::string& what,
+                     const Respond& respond) {
     if (run != "latest" && !run_id(run))
         return respond(
             error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
-    if (what == "commands" && request.method == "POST") return post_command(request, run, std::move(respond));
+    if (what == "commands" && request.method == "POST") return post_command(request, run, respond);
     const auto* question = run_question(what);
     if (question == nullptr)
         return respond(error_response(
@@ -125,10 +125,10 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
         [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
             return answer(dictionary, reader, id, asked);
         },
-        std::move(respond));
+        respond);
 }
 
-void Api::ask(const std::string& run, QueryText query, RunQuestion question, Respond respond) {
+void Api::ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond) {
     const auto job = [run, query = std::move(query), question = std::move(question), respond](archive::Reader& reader) {
         auto id = run_id(run);
         if (!id) {
@@ -144,7 +144,7 @@ void Api::ask(const std::string& run, QueryText query, RunQuestion question, Res
     if (!parts_.queries.ask(job)) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::list_runs(Respond respond) {
+void Api::list_runs(const Respond& respond) {
     const bool taken = parts_.queries.ask(
         [respond, current = parts_.desk.current(), last = parts_.hub.last_seq()](archive::Reader& reader) {
             auto runs = reader.runs();
@@ -159,13 +159,13 @@ void Api::list_runs(Respond respond) {
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::list_scenarios(Respond respond) {
+void Api::list_scenarios(const Respond& respond) {
     const bool taken =
         parts_.queries.ask([this, respond](archive::Reader&) { respond(json_response(parts_.scenarios.list())); });
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::rehearsals(const HttpRequest& request, bool current, Respond respond) {
+void Api::rehearsals(const HttpRequest& request, bool current, const Respond& respond) {
     const auto began = [respond](const Result<v1::RunState>& state) {
         respond(state ? json_response(*state, 201) : error_response(409, state.error().message));
     };
@@ -196,7 +196,7 @@ void Api::rehearsals(const HttpRequest& request, bool current, Respond respond) 
     respond(wrong_method(request, current ? "GET, POST and PATCH" : "GET and POST"));
 }
 
-void Api::post_command(const HttpRequest& request, const std::string& run, Respond respond) {
+void Api::post_command(const HttpRequest& request, const std::string& run, const Respond& respond) {
     v1::CommandRequest command;
     if (const auto parsed = from_json(request.body, command); !parsed)
         return respond(error_response(400, parsed.error().message));
@@ -204,7 +204,7 @@ void Api::post_command(const HttpRequest& request, const std::string& run, Respo
     if (id && command.run() != 0 && command.run() != id->value)
         return respond(error_response(400, fmt::format("run: the path says {}, the body {}", run, command.run())));
     if (id) command.set_run(id->value);
-    parts_.desk.command(std::move(command), [respond](v1::CommandReply reply) {
+    parts_.desk.command(std::move(command), [respond](const v1::CommandReply& reply) {
         respond(json_response(reply, reply.accepted() ? 202 : 409));
     });
 }

@@ -35,18 +35,19 @@ class Api {
     };
     explicit Api(Parts parts);
 
-    void handle(HttpRequest request, Respond respond);
+    void handle(const HttpRequest& request, const Respond& respond);
     /// `respond` is called on whatever thread has the answer.
     using RunQuestion = std::function<HttpResponse(archive::Reader&, archive::RunId, const QueryText&)>;
 
   private:
-    void handle_api(const HttpRequest& request, Respond respond);
-    void handle_run(const HttpRequest& request, const std::string& run, const std::string& what, Respond respond);
-    void list_runs(Respond respond);
-    void list_scenarios(Respond respond);
-    void rehearsals(const HttpRequest& request, bool current, Respond respond);
-    void post_command(const HttpRequest& request, const std::string& run, Respond respond);
-    void ask(const std::string& run, QueryText query, RunQuestion question, Respond respond);
+    void handle_api(const HttpRequest& request, const Respond& respond);
+    void handle_run(const HttpRequest& request, const std::string& run, const std::string& what,
+                    const Respond& respond);
+    void list_runs(const Respond& respond);
+    void list_scenarios(const Respond& respond);
+    void rehearsals(const HttpRequest& request, bool current, const Respond& respond);
+    void post_command(const HttpRequest& request, const std::string& run, const Respond& respond);
+    void ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
     HttpResponse metrics() const;
 
     Parts parts_;

@@ -47,8 +47,8 @@ Result<void> fly_archived(Rehearsal& rehearsal, PipelineThread& pipeline) {
 } // namespace
 
 int rehearse(const RehearseOptions& options) {
-    const auto dictionary = loaded_dictionary(options.shared.dictionary);
-    if (!dictionary) return failed(options.shared.dictionary.string() + ": the dictionary breaks the rules above");
+    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
+    if (!dictionary) return failed(dictionary.error().message);
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);
 

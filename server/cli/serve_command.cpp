@@ -42,8 +42,8 @@ int serve(const ServeOptions& options) {
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
-    const auto dictionary = loaded_dictionary(options.shared.dictionary);
-    if (!dictionary) return failed(options.shared.dictionary.string() + ": the dictionary breaks the rules above");
+    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
+    if (!dictionary) return failed(dictionary.error().message);
     std::optional<simulation::Scenario> scenario;
     if (!options.scenario.empty()) {
         auto given = scenario_given(options.scenario, options.shared.scenarios);

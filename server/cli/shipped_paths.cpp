@@ -1,5 +1,6 @@
 #include "server/cli/shipped_paths.hpp"
 
+#include "generated/dictionary_flight.hpp"
 #include "server/scenario/scenario_library.hpp"
 #include "server/scenario/scenario_text.hpp"
 
@@ -20,6 +21,16 @@ std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::p
     for (const auto& finding : loaded.findings)
         fmt::print(stderr, "{}\n", finding.text());
     return std::move(loaded.dictionary);
+}
+
+Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path& directory) {
+    auto dictionary = loaded_dictionary(directory);
+    if (!dictionary) return Error{directory.string() + ": the dictionary breaks the rules above"};
+    if (dictionary->id != flight::dictionary_id)
+        return Error{
+            fmt::format("{}: the dictionary (id {}) is not the one that flight was built from (id {}): build again",
+                        directory.string(), dictionary->id, flight::dictionary_id)};
+    return std::move(*dictionary);
 }
 
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios) {

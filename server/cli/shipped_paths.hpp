@@ -5,6 +5,7 @@
 #include "simulation/scenario.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace aeolis::server {
@@ -15,6 +16,9 @@ std::filesystem::path shipped(const std::string& folder);
 
 /// Prints every broken rule, a line each, to stderr and gives none when there are any.
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory);
+
+/// The same, and an Error when flight was built from other words: its packets could not be read.
+Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path& directory);
 
 /// `given` is a file, or the name of a scenario that ships.
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios);

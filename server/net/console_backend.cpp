@@ -17,8 +17,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     // The address first: a second server must not touch the archive before it fails.
     backend->hub_ = std::make_unique<StreamHub>(dictionary.id, self->stream_services());
     WebServer::Handlers handlers;
-    handlers.request = [self](HttpRequest request, Respond respond) {
-        self->api_->handle(std::move(request), std::move(respond));
+    handlers.request = [self](const HttpRequest& request, const Respond& respond) {
+        self->api_->handle(request, respond);
     };
     handlers.open_stream = [self](StreamFormat format, std::function<void()> wake) {
         return std::make_shared<StreamSession>(*self->hub_, format, std::move(wake));
@@ -54,7 +54,15 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     return backend;
 }
 
-ConsoleBackend::~ConsoleBackend() = default;
+ConsoleBackend::~ConsoleBackend() {
+    // Said and not left to the members' order: until it is gone, each may call what comes after it here.
+    api_.reset();
+    desk_.reset();
+    pipeline_.reset();
+    queries_.reset();
+    server_.reset();
+    hub_.reset();
+}
 
 StreamHub::Services ConsoleBackend::stream_services() {
     StreamHub::Services services;

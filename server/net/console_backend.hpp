@@ -36,7 +36,6 @@ class ConsoleBackend {
     StreamHub::Services stream_services();
     void adopt_newest_run();
 
-    // In the order in which they must end, the last one first: who calls into another comes below it.
     Settings settings_;
     const dictionary::Dictionary& dictionary_;
     ScenarioLibrary scenarios_;

@@ -36,7 +36,7 @@ void StreamSession::on_message(std::string_view payload) {
             if (!session) return;
             v1::ServerMessage out;
             *out.mutable_command_reply() = std::move(answer);
-            session->reply(std::move(out));
+            session->reply(out);
         });
     case v1::ClientMessage::kControl:
         return hub_.services().control(message.control(), [self](const Result<void>& done) {
@@ -53,10 +53,10 @@ void StreamSession::refuse(std::string reason) {
     ++hub_.figures.refusals;
     v1::ServerMessage message;
     message.mutable_refusal()->set_reason(std::move(reason));
-    reply(std::move(message));
+    reply(message);
 }
 
-void StreamSession::reply(v1::ServerMessage message) {
+void StreamSession::reply(const v1::ServerMessage& message) {
     replies_.push_back(encode(message, shape_.format));
     wake_();
 }

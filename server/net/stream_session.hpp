@@ -40,7 +40,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   private:
     void subscribe(const v1::Subscribe& subscribe);
     void refuse(std::string reason);
-    void reply(v1::ServerMessage message);
+    void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);
     Encoded welcome();
     Encoded next_items();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <tuple>
 
 namespace aeolis::server {
 namespace {
@@ -50,7 +51,7 @@ std::string json_array(const Rows& rows, ToJson to_json) {
 
 std::vector<simulation::TruthEvent> sorted_events(const Rehearsal& rehearsal) {
     auto events = rehearsal.events();
-    std::ranges::stable_sort(events, {}, &simulation::TruthEvent::e_s);
+    std::ranges::sort(events, {}, [](const simulation::TruthEvent& event) { return std::tie(event.e_s, event.name); });
     return events;
 }
 

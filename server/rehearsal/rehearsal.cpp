@@ -53,9 +53,7 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
       landing_(scenario, seed, case_number, event_reports(dictionary)),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
-      script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)), decommutator_(dictionary) {
-    std::ranges::stable_sort(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
-}
+      script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)), decommutator_(dictionary) {}
 
 const simulation::CycleReport& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
@@ -72,9 +70,12 @@ const simulation::CycleReport& Rehearsal::step() {
 }
 
 void Rehearsal::send_script() {
-    while (!script_.empty() && landing_.sclk() >= scenario_.entry_sclk - script_.back().send_before_entry_s) {
-        const auto command = script_.back();
-        script_.pop_back();
+    while (!script_.empty()) {
+        // The first one of those that are due first: an order within one instant is the scenario's.
+        const auto next = std::ranges::max_element(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
+        if (landing_.sclk() < scenario_.entry_sclk - next->send_before_entry_s) return;
+        const auto command = std::move(*next);
+        script_.erase(next);
         v1::CommandRequest request;
         request.set_command(command.command);
         request.set_from_solution(command.from_solution);

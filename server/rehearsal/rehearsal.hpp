@@ -77,7 +77,7 @@ class Rehearsal {
     std::uint64_t seed_ = 0, case_number_ = 0;
     simulation::Landing landing_;
     CommandGateway gateway_;
-    std::vector<simulation::ScriptedCommand> script_; ///< by time, the next one last
+    std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
     std::vector<archive::StageRecord> stages_;
     std::vector<std::string> script_refusals_;
     Digest digest_;

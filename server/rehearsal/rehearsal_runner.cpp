@@ -185,7 +185,7 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<
         for (auto& stage : rehearsal.take_stages())
             delivery_.entries.emplace_back(std::move(stage));
         delivery_.when_durable.push_back(
-            [answer = std::move(answer), reply = std::move(reply)]() mutable { reply(std::move(answer)); });
+            [give = std::move(reply), given = std::move(answer)]() mutable { give(std::move(given)); });
     }
     if (!delivery_.when_durable.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
 }
