@@ -31,6 +31,8 @@ async function pace(page, wanted) {
     assert.fail(`the pace never became ${wanted}`);
 }
 
+const focused = (page) => page.evaluate(() => document.activeElement?.dataset.testid);
+
 const stage = (page, command, name) =>
     page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
 
@@ -51,11 +53,13 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await shows('waiting', /type “do edl”/);
         await shows('command-history', /EDL_SET_PARAMETERS #1/);
 
+        await waitFor(() => focused(page), /command-line/);
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
         await shows('command-review', /✓ [^]*parameters_received is [^]*arms it; nothing is sent yet/);
         await page.keyboard.press('Enter');
         await shows('command-armed', /ARMED/);
+        await waitFor(() => focused(page), /command-confirmation/);
         await page.keyboard.press('Enter');
         await shows('command-message', /nothing was sent/);
         await page.keyboard.type('EDL_DO_EDL');
@@ -66,17 +70,18 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await pace(page, 100);
         await shows('waiting', /Waiting for coolant vent/);
         await shows('timepoints-fired', /^[1-9]/);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > -60, 30_000);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 40_000);
         await pace(page, 20);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 40_000);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 30_000);
         await page.keyboard.press('p');
         await shows('badge', /paused/);
+        await shows('pause', /go on/);
         await shows('phases', /Parachute/);
         assert.match(await text('tone-title'), /Tone \d+ · \S/);
         assert.match(await text('reading-altitude'), /\d/);
         await picture(page, 'console_mid_entry.png');
         await page.keyboard.press('p');
-        await pace(page, 50);
+        await pace(page, 100);
 
         await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 30_000);
         await pace(page, 0).catch(() => undefined); // it may have ended by now
@@ -98,7 +103,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 1);
 
         await page.keyboard.press('r');
-        await waitFor(() => page.evaluate(() => document.activeElement?.dataset.testid), /range-from/);
+        await waitFor(() => focused(page), /range-from/);
         await page.keyboard.press('Control+A');
         await page.keyboard.type('E+4:10');
         await page.keyboard.press('Tab');

@@ -1,6 +1,6 @@
 // Commands: one line with completion, a form from the dictionary, arming and typed confirmation in place, and the
 // history with what is known of each stage.
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import type { DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../panel';
 import { latestSend } from '../clocks/model';
@@ -101,7 +101,7 @@ function Review({ command }: { command: DictionaryCommand }) {
 
 function Armed({ command }: { command: DictionaryCommand }) {
   const input = useRef<HTMLInputElement>(null);
-  useEffect(() => input.current?.focus(), []);
+  useLayoutEffect(() => input.current?.focus(), []); // before the next key can be typed
   return (
     <div class="armed" data-testid="command-armed">
       <b>▲ ARMED: {command.name}</b>

@@ -113,9 +113,10 @@ export function watch(run: number): void {
   post({ type: 'watch', run });
 }
 
-export function refreshHistory(): void {
-  if (store.value) store.value.thinnedSinceHistory = false;
-  post({ type: 'refresh_history' });
+/** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
+function refreshHistory(of: RunStore): void {
+  if (!of.going) of.thinnedSinceHistory = false;
+  post({ type: 'refresh_history', all: !of.going });
 }
 
 function onMessage(message: FromWorker): void {
@@ -257,7 +258,7 @@ export async function begin(): Promise<void> {
     if (store.value?.going) await refreshTimepoints();
   });
   void everySeconds(5, async () => {
-    if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory();
+    if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory(store.value);
   });
 }
 

@@ -57,7 +57,7 @@ export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'ser
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
-  | { type: 'refresh_history' }
+  | { type: 'refresh_history'; all: boolean }
   | {
       type: 'command'; request: number; run: number; command: string;
       arguments: { name: string; value: number }[]; armed: boolean; confirmation: string; fromSolution: boolean;

@@ -189,11 +189,11 @@ function goOnWithSamples(): void {
   }, 300);
 }
 
-async function fetchHistory(): Promise<void> {
+async function fetchHistory(all = true): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
   try {
-    for (const [names, points] of [[plotted, PLOTTED_POINTS], [others, OTHER_POINTS]] as const) {
+    for (const [names, points] of [[plotted, PLOTTED_POINTS], [all ? others : [], OTHER_POINTS]] as const) {
       for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
         const some = names.slice(i, i + CHANNELS_A_QUESTION).map(encodeURIComponent).join(',');
         const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?names=${some}&points=${points}`);
@@ -247,7 +247,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       subscribe();
       break;
     case 'refresh_history':
-      void fetchHistory();
+      void fetchHistory(message.all);
       break;
     case 'command': {
       const sent = send({
