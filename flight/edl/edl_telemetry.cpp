@@ -10,6 +10,7 @@ namespace {
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 constexpr double standard_gravity_mps2 = 9.80665;
 constexpr double parts_in_percent = 100.0;
+constexpr std::int64_t held_every_s = 8;  // ours: well inside ground's window for the read-back
 
 /// Whether a packet of `hz` (a power of two up to 64) is due in this cycle.
 bool due(Sclk now, std::int64_t hz) {
@@ -144,6 +145,9 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                           .backshell_anchor_sclk = seconds(timeline_.anchor_time(anchor::backshell)),
                                           .touchdown_anchor_sclk = seconds(timeline_.anchor_time(anchor::touchdown))});
     }
+    // Again and again while parameters may still come, so that a lost or early read-back is made good.
+    if (parameters_ && !configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0)
+        out.record(parameters_held());
     if (plan_ == Plan::wideband) out.record(wideband(now));
     if (!configuration_.enabled) return;
 

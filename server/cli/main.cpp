@@ -31,6 +31,15 @@ void add_shared(CLI::App& command, SharedOptions& shared) {
     command.add_option("--scenarios", shared.scenarios, "directory of the scenarios that ship")->capture_default_str();
 }
 
+/// CLI11 reads -1 into an unsigned number without a word.
+CLI::Validator whole_number() {
+    return {[](std::string& text) {
+                const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+                return digits && text.size() <= 15 ? std::string{} : "not a whole number of at most 15 digits: " + text;
+            },
+            "NUMBER"};
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -55,7 +64,7 @@ int main(int argc, char** argv) {
     serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
     serve_command->add_option("--scenario", serving.scenario,
                               "start this rehearsal at once: a file, or a name that ships");
-    serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->capture_default_str();
+    serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->check(whole_number())->capture_default_str();
     serve_command->add_option("--pace", serving.pace, "of that rehearsal: 1 … 1000, 0 as fast as it goes")
         ->check(CLI::Validator{[](std::string& text) {
                                    const double pace = std::strtod(text.c_str(), nullptr);
@@ -73,8 +82,9 @@ int main(int argc, char** argv) {
     auto* rehearse_command = app.add_subcommand("rehearse", "one landing, without a console, as fast as it goes");
     rehearse_command->add_option("--scenario", rehearsing.scenario, "a file, or the name of one that ships")
         ->required();
-    rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")->capture_default_str();
+    rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")->check(whole_number())->capture_default_str();
     rehearse_command->add_option("--case", rehearsing.case_number, "another draw of the errors under the same seed")
+        ->check(whole_number())
         ->capture_default_str();
     rehearse_command->add_option("--archive", rehearsing.archive, "store everything in this SQLite file");
     rehearse_command->add_flag("--json", rehearsing.json, "print one JSON object");

@@ -4,6 +4,7 @@
 #include "server/rehearsal/pipeline_thread.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
+#include "server/scenario/script_check.hpp"
 
 #include <chrono>
 #include <fmt/format.h>
@@ -51,6 +52,9 @@ int rehearse(const RehearseOptions& options) {
     if (!dictionary) return failed(dictionary.error().message);
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);
+
+    if (const auto script = check_script(*scenario, *dictionary); !script)
+        return failed(options.scenario + ": " + script.error().message);
 
     std::unique_ptr<PipelineThread> pipeline;
     if (options.archive) {

@@ -68,10 +68,10 @@ bool is_loopback_authority(std::string_view authority) {
 }
 
 /// A page's own address; a program that is no browser sends none.
-bool is_loopback_origin(std::string_view origin) {
-    for (const std::string_view scheme : {"http://", "https://"})
-        if (origin.starts_with(scheme)) return is_loopback_authority(origin.substr(scheme.size()));
-    return false;
+/// Another program's page on this machine is another origin too: only our own may command.
+bool is_own_origin(std::string_view origin, std::string_view host) {
+    constexpr std::string_view scheme = "http://";
+    return origin.starts_with(scheme) && origin.substr(scheme.size()) == host;
 }
 
 /// Empty when the request may go on.
@@ -80,8 +80,8 @@ std::string refusal_of(const Request& request) {
     if (!is_loopback_authority(host))
         return fmt::format("Host '{}' is not a loopback name: this server answers on this machine only", host);
     const auto origin = request.find(http::field::origin);
-    if (origin != request.end() && !is_loopback_origin(plain(origin->value())))
-        return fmt::format("Origin '{}' is not a page of this machine", plain(origin->value()));
+    if (origin != request.end() && !is_own_origin(plain(origin->value()), host))
+        return fmt::format("Origin '{}' is not a page of this server", plain(origin->value()));
     return {};
 }
 

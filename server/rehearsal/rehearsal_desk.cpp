@@ -1,6 +1,7 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 
 #include "server/scenario/scenario_text.hpp"
+#include "server/scenario/script_check.hpp"
 
 #include <cmath>
 #include <fmt/format.h>
@@ -37,6 +38,7 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
 void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
     if (going_on())
         return began(Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())});
+    if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     runner_.reset();
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {

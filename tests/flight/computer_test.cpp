@@ -2,6 +2,7 @@
 
 #include "simulation/entry_reference.hpp"
 #include "simulation/world.hpp"
+#include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/allocations.hpp"
 #include "tests/support/catch.hpp"
@@ -67,6 +68,29 @@ TEST_CASE("flight code asks for no memory from the first tick to the last, over 
     CHECK(flight.computer.counters().mailbox_overflows == 0);
     CHECK(flight.computer.counters().unexpected_messages == 0);
     CHECK(flight.computer.counters().resets == 0);
+}
+
+TEST_CASE("a cycle is timeline, GNC, timeline: each acts on the other in the same 1/64 s", "[flight][R17][R18]") {
+    Flight flight{tests::gale_scenario(900.0), 1};
+    const auto reported = [&](Apid apid, EvrId id) {
+        telemetry::PacketStream packets{flight.out->nvm.span()};
+        while (const auto packet = packets.next())
+            if (read_primary_header(*packet)->apid == apid && read_bits(*packet, tm_data_offset_octets * 8, 16) == id.value)
+                return true;
+        return false;
+    };
+    bool gnc_saw_the_timeline = false, timeline_saw_gnc = false;
+    while (flight.flying()) {
+        flight.step();
+        // First pass before GNC: GNC leaves its mode "off" in the cycle in which its timepoint fires.
+        if (reported(evr::GNC_ENABLED::apid, evr::GNC_ENABLED::id))
+            gnc_saw_the_timeline = reported(evr::GNC_MODE_CHANGED::apid, evr::GNC_MODE_CHANGED::id);
+        // Second pass after GNC: the mortar fires in the cycle in which GNC says now.
+        if (reported(evr::PARACHUTE_DEPLOY::apid, evr::PARACHUTE_DEPLOY::id))
+            timeline_saw_gnc = std::ranges::count(flight.out->pyros.span(), PyroId::parachute_mortar) == 1;
+    }
+    CHECK(gnc_saw_the_timeline);
+    CHECK(timeline_saw_gnc);
 }
 
 TEST_CASE("a copied computer fed the same inputs stays bit-identical", "[flight][invariant2]") {

@@ -111,8 +111,9 @@ TEST_CASE("a page of another site, or a name bound to this address, gets nothing
         return web_request(server.port(), "GET", "/api/v1/runs", "", headers).status;
     };
     CHECK(status({}) == 200);
-    CHECK(status({{"Origin", "http://localhost:5173"}}) == 200);
-    CHECK(status({{"Origin", "http://[::1]:8080"}}) == 200);
+    CHECK(status({{"Host", "localhost:8080"}, {"Origin", "http://localhost:8080"}}) == 200);
+    CHECK(status({{"Host", "[::1]:8080"}, {"Origin", "http://[::1]:8080"}}) == 200);
+    CHECK(status({{"Host", "localhost:8080"}, {"Origin", "http://localhost:5173"}}) == 403);
     CHECK(status({{"Origin", "https://evil.example"}}) == 403);
     CHECK(status({{"Origin", "null"}}) == 403);
     CHECK(status({{"Origin", "http://localhost.evil.example"}}) == 403);

@@ -1,0 +1,21 @@
+#include "server/scenario/script_check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+
+Result<void> check_script(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+    for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
+        const auto& scripted = scenario.commands[i];
+        const auto* command = dictionary.command(scripted.command);
+        if (command == nullptr)
+            return Error{fmt::format("commands[{}].command: '{}' is no command of the dictionary", i, scripted.command)};
+        for (const auto& [name, value] : scripted.arguments)
+            if (std::ranges::none_of(command->arguments, [&](const auto& known) { return known.name == name; }))
+                return Error{fmt::format("commands[{}].arguments: {} has no argument '{}'", i, scripted.command, name)};
+    }
+    return {};
+}
+
+} // namespace aeolis::server
