@@ -64,6 +64,7 @@ std::uint16_t hash(std::initializer_list<const File*> files) {
 
 std::vector<TimelineContext::DeclaredEvent> declared(const xtce::SpaceSystem& system) {
     std::vector<TimelineContext::DeclaredEvent> events;
+    events.reserve(system.declared_events.size());
     for (const auto& event : system.declared_events)
         events.push_back({event.name, event.has_arguments});
     return events;

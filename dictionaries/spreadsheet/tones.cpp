@@ -89,6 +89,7 @@ std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& 
     check_names(tones, findings);
 
     std::vector<ToneRow> rows;
+    rows.reserve(tones.size());
     for (Read& read : tones)
         rows.push_back(std::move(read.tone));
     std::ranges::stable_sort(rows, {}, &ToneRow::id);

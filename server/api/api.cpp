@@ -114,12 +114,9 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
     if (!query) return respond(error_response(400, query.error().message));
     const auto& dictionary = parts_.dictionary;
     // What the archive cannot know of the run that goes on: its pace and its clocks.
-    const v1::RunState& current = parts_.desk.current();
-    if (what.empty() && current.run() != 0 && (run == "latest" || run_id(run)->value == current.run())) {
-        auto state = current;
-        state.set_last_seq(parts_.hub.last_seq());
-        return respond(json_response(state));
-    }
+    const auto current = current_run();
+    if (what.empty() && current.run() != 0 && (run == "latest" || run_id(run)->value == current.run()))
+        return respond(json_response(current));
     ask(
         run, std::move(*query),
         [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
@@ -146,14 +143,11 @@ void Api::ask(const std::string& run, QueryText query, RunQuestion question, con
 
 void Api::list_runs(const Respond& respond) {
     const bool taken = parts_.queries.ask(
-        [respond, current = parts_.desk.current(), last = parts_.hub.last_seq()](archive::Reader& reader) {
+        [respond, current = current_run()](archive::Reader& reader) {
             auto runs = reader.runs();
             if (!runs) return respond(error_response(500, runs.error().message));
-            for (auto& run : *runs->mutable_runs()) {
-                if (run.run() != current.run()) continue;
-                run = current;
-                run.set_last_seq(last);
-            }
+            for (auto& run : *runs->mutable_runs())
+                if (run.run() == current.run()) run = current;
             respond(json_response(*runs));
         });
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
@@ -166,12 +160,14 @@ void Api::list_scenarios(const Respond& respond) {
 }
 
 void Api::rehearsals(const HttpRequest& request, bool current, const Respond& respond) {
-    const auto began = [respond](const Result<v1::RunState>& state) {
-        respond(state ? json_response(*state, 201) : error_response(409, state.error().message));
+    // What cannot be done now may be asked again later; what makes no sense may not.
+    const bool going_on = parts_.desk.going_on();
+    const auto began = [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
+        respond(state ? json_response(*state, 201) : error_response(refused, state.error().message));
     };
     if (request.method == "GET" || request.method == "HEAD") {
         v1::RunList list;
-        if (parts_.desk.current().run() != 0) *list.add_runs() = parts_.desk.current();
+        if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
         if (!current) return respond(json_response(list));
         if (list.runs().empty())
             return respond(error_response(404, "no rehearsal was started since the server came up"));
@@ -189,8 +185,8 @@ void Api::rehearsals(const HttpRequest& request, bool current, const Respond& re
             return respond(error_response(400, parsed.error().message));
         const bool starts = control.action_case() == v1::RehearsalControl::kStart;
         const auto done = parts_.desk.control(control, began);
-        if (!done) return respond(error_response(409, done.error().message));
-        if (!starts) respond(json_response(parts_.desk.current(), 202));
+        if (!done) return respond(error_response(going_on ? 422 : 409, done.error().message));
+        if (!starts) respond(json_response(current_run(), 202));
         return;
     }
     respond(wrong_method(request, current ? "GET, POST and PATCH" : "GET and POST"));
@@ -204,9 +200,16 @@ void Api::post_command(const HttpRequest& request, const std::string& run, const
     if (id && command.run() != 0 && command.run() != id->value)
         return respond(error_response(400, fmt::format("run: the path says {}, the body {}", run, command.run())));
     if (id) command.set_run(id->value);
-    parts_.desk.command(std::move(command), [respond](const v1::CommandReply& reply) {
-        respond(json_response(reply, reply.accepted() ? 202 : 409));
+    const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
+    parts_.desk.command(std::move(command), [respond, refused](const v1::CommandReply& reply) {
+        respond(json_response(reply, reply.accepted() ? 202 : refused));
     });
+}
+
+v1::RunState Api::current_run() const {
+    auto state = parts_.desk.current();
+    if (state.run() != 0) state.set_last_seq(parts_.hub.last_seq());
+    return state;
 }
 
 HttpResponse Api::metrics() const {

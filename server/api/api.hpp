@@ -48,6 +48,7 @@ class Api {
     void rehearsals(const HttpRequest& request, bool current, const Respond& respond);
     void post_command(const HttpRequest& request, const std::string& run, const Respond& respond);
     void ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
+    v1::RunState current_run() const; ///< with what only the stream knows; run 0: none since the server started
     HttpResponse metrics() const;
 
     Parts parts_;

@@ -139,10 +139,20 @@ HttpResponse events(const dictionary::Dictionary&, archive::Reader& reader, arch
     return answer(reader.events(run, events));
 }
 
-HttpResponse explanations(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+/// The decisions that flight can explain, as the dictionary words them.
+bool is_decision(const dictionary::Dictionary& dictionary, std::string_view name) {
+    const auto* packet = dictionary.packet("Explanation");
+    const auto field = packet == nullptr ? std::nullopt : telemetry::field_index(*packet, "decision");
+    return field && std::ranges::any_of(packet->fields[*field].type.enumeration,
+                                        [&](const dictionary::EnumValue& value) { return value.label == name; });
+}
+
+HttpResponse explanations(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
                           const QueryText& query) {
     archive::ExplanationQuery explanations;
     explanations.decision = query.text("decision").value_or("");
+    if (!explanations.decision.empty() && !is_decision(dictionary, explanations.decision))
+        return error_response(400, fmt::format("decision: flight explains none called '{}'", explanations.decision));
     const auto range = range_of(query);
     if (!range) return error_response(400, range.error().message);
     const auto page = page_of(query, 1'000, archive::rows_page_max);

@@ -102,6 +102,7 @@ int main(int argc, char** argv) {
 
     for (const auto& later : later_commands) {
         auto* command = app.add_subcommand(later.name, fmt::format("(comes with a later issue) {}", later.text));
+        command->set_help_flag(); // there is nothing yet that it could explain
         command->allow_extras();
         command->callback([&exit_code, name = later.name] {
             exit_code = failed(fmt::format("{} comes with a later issue", name), 2);
@@ -113,8 +114,10 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
         const auto is_first = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
-        const bool unknown = argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_first).empty();
-        if (unknown) return failed(fmt::format("there is no command '{}' (aeolis --help)", argv[1]), 2);
+        const bool is_option = argc > 1 && argv[1][0] == '-';
+        if (is_option) return failed(fmt::format("there is no option '{}' (aeolis --help)", argv[1]), 2);
+        if (argc > 1 && app.get_subcommands(is_first).empty())
+            return failed(fmt::format("there is no command '{}' (aeolis --help)", argv[1]), 2);
         return failed(fmt::format("{} (aeolis --help)", error.what()), 2);
     } catch (const std::exception& error) {
         return failed(error.what());

@@ -180,7 +180,7 @@ Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamForm
     socket.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, beast::string_view{subprotocol.data(), subprotocol.size()});
     }));
-    socket.read_message_max(message_octets_max);
+    socket.read_message_max(0); // the limit is kept below: Beast's own closes without a word
     error_code error;
     co_await socket.async_accept(request, asio::redirect_error(awaiting, error));
     if (error) co_return;
@@ -191,13 +191,20 @@ Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamForm
     asio::co_spawn(io, write_messages(connection, session), asio::detached);
     beast::flat_buffer buffer;
     while (connection->open) {
-        co_await socket.async_read(buffer, asio::redirect_error(awaiting, error));
+        co_await socket.async_read_some(buffer, message_octets_max + 1 - buffer.size(),
+                                        asio::redirect_error(awaiting, error));
         if (error) break;
+        if (buffer.size() > message_octets_max) {
+            spdlog::warn("stream: a client sent more than {} octets in one message and is closed", message_octets_max);
+            const websocket::close_reason reason{websocket::close_code::too_big,
+                                                 fmt::format("a message has at most {} octets", message_octets_max)};
+            co_await socket.async_close(reason, asio::redirect_error(awaiting, error));
+            break;
+        }
+        if (!socket.is_message_done()) continue;
         session->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
         buffer.consume(buffer.size());
     }
-    if (error == websocket::error::message_too_big)
-        spdlog::warn("stream: a client sent more than {} octets in one message and was closed", message_octets_max);
     connection->open = false;
     connection->due.cancel();
     error_code ignored;

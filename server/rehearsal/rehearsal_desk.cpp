@@ -24,7 +24,13 @@ RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary:
 
 RehearsalDesk::~RehearsalDesk() = default;
 
+Result<void> RehearsalDesk::refusal_while_going_on() const {
+    if (!going_on()) return {};
+    return Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())};
+}
+
 void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
+    if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
     if (request.has_inline_scenario() && !request.scenario().empty())
@@ -36,8 +42,7 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
 }
 
 void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
-    if (going_on())
-        return began(Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())});
+    if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     runner_.reset();
     RehearsalRunner::Callbacks callbacks;

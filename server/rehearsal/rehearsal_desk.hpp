@@ -39,6 +39,8 @@ class RehearsalDesk {
     bool going_on() const { return runner_ && !runner_->over(); }
 
   private:
+    Result<void> refusal_while_going_on() const;
+
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;

@@ -50,6 +50,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await page.keyboard.press('Enter');
         await shows('command-message', /EDL_SET_PARAMETERS is #1/);
         await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
+        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 20_000); // flight reports what it holds every 8 s
         await shows('waiting', /type “do edl”/);
         await shows('command-history', /EDL_SET_PARAMETERS #1/);
 

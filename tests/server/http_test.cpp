@@ -60,6 +60,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&colour=red", "", 400, "colour"},
         {"GET", "/api/v1/runs/1/events?level=PANIC", "", 400, "PANIC"},
         {"GET", "/api/v1/runs/1/events?limit=1000000", "", 400, "limit"},
+        {"GET", "/api/v1/runs/1/explanations?decision=zz", "", 400, "zz"},
         {"GET", "/api/v1/runs/1/packets?apid=0x30", "", 400, "share"},
         {"GET", "/api/v1/runs/1/packets?apid=9999999", "", 400, "apid"},
         {"DELETE", "/api/v1/runs/1/events", "", 405, "DELETE"},
@@ -68,11 +69,9 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"POST", "/api/v1/rehearsals", "{", 400, "StartRehearsal"},
         {"POST", "/api/v1/rehearsals", R"({"senario":"nominal"})", 400, "senario"},
         {"POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})", 409, "goes on"},
-        {"POST", "/api/v1/rehearsals", R"({"scenario":"../etc/passwd","pace":1})", 409, "there is none of this name"},
-        {"POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":0.5})", 409, "pace"},
-        {"POST", "/api/v1/rehearsals/current", R"({"pace":100000})", 409, "pace"},
-        {"POST", "/api/v1/rehearsals/current", "{}", 409, "says nothing"},
-        {"POST", "/api/v1/runs/1/commands", R"({"command":"NO_SUCH"})", 409, "NO_SUCH"},
+        {"POST", "/api/v1/rehearsals/current", R"({"pace":100000})", 422, "pace"},
+        {"POST", "/api/v1/rehearsals/current", "{}", 422, "says nothing"},
+        {"POST", "/api/v1/runs/1/commands", R"({"command":"NO_SUCH"})", 422, "NO_SUCH"},
         {"POST", "/api/v1/runs/1/commands", R"({"command":5})", 400, "CommandRequest"},
         {"POST", "/api/v1/runs/1/commands", R"({"command":"NO_OP","run":"2"})", 400, "the path says 1"},
         {"POST", "/api/v1/runs/2/commands", R"({"command":"NO_OP"})", 409, "not the one that goes on"},
@@ -83,10 +82,25 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         INFO(asked.method << ' ' << asked.target << ' ' << asked.body << " -> " << reply.body.substr(0, 300));
         CHECK(reply.status == asked.status);
         CHECK_THAT(reply.body, Catch::Contains(asked.says));
-        const bool is_command = std::string_view{asked.target}.ends_with("/commands") && reply.status == 409;
+        const bool is_command = std::string_view{asked.target}.ends_with("/commands") && (reply.status == 409 || reply.status == 422);
         if (reply.status >= 400) // a command that was refused is answered by its own message
             CHECK_THAT(reply.body, Catch::StartsWith(is_command ? "{\"request\":" : "{\"error\":"));
     }
+}
+
+TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the next one begins", "[http][R45]") {
+    RunningServer server;
+    const auto post = [&](std::string_view body) {
+        return web_request(server.port(), "POST", "/api/v1/rehearsals", std::string{body});
+    };
+    const auto unknown = post(R"({"scenario":"../etc/passwd","pace":1})");
+    CHECK(unknown.status == 422);
+    CHECK_THAT(unknown.body, Catch::Contains("there is none of this name"));
+    const auto slow = post(R"({"scenario":"nominal","pace":0.5})");
+    CHECK(slow.status == 422);
+    CHECK_THAT(slow.body, Catch::Contains("pace"));
+    CHECK(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"pause":true})").status == 409);
+    CHECK(post(R"({"scenario":"nominal","pace":1})").status == 201);
 }
 
 TEST_CASE("what was acknowledged is durable: the command is in the archive when the reply comes", "[http][R43]") {

@@ -146,6 +146,7 @@ TEST_CASE("an over-long message closes its own connection with 'too big'", "[str
     client.send(std::string(server::WebServer::message_octets_max + 1, ' '), false);
     CHECK_FALSE(client.receive());
     CHECK(client.close_code() == 1009);
+    CHECK(client.close_words() == "a message has at most 65536 octets");
     CHECK(web_request(server.port(), "GET", "/healthz").status == 200);
 }
 

@@ -127,4 +127,9 @@ std::uint16_t StreamClient::close_code() const {
     return state_->socket.reason().code;
 }
 
+std::string StreamClient::close_words() const {
+    const auto& words = state_->socket.reason().reason;
+    return {words.data(), words.size()};
+}
+
 } // namespace aeolis::test

@@ -36,6 +36,7 @@ class StreamClient {
     /// None when the server has closed, or said nothing for some seconds.
     std::optional<std::string> receive();
     std::uint16_t close_code() const; ///< after receive() gave none
+    std::string close_words() const;
 
   private:
     struct State;
