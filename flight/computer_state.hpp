@@ -6,6 +6,7 @@
 #include "flight/edl/edl_main.hpp"
 #include "flight/edl_bg/edl_bg.hpp"
 #include "flight/edl_comm/edl_comm.hpp"
+#include "flight/fault_protection/system_fault_protection.hpp"
 #include "flight/kernel/sync.hpp"
 #include "flight/load.hpp"
 #include "flight/mfsk/tone_selector.hpp"
@@ -33,6 +34,7 @@ struct ComputerState {
     DescentEngines descent_engines;
     Thrusters thrusters;
     PowerManager power;
+    SystemFaultProtection system_fault_protection;
     CommandDispatcher command_dispatcher;
     EdlBg edl_bg;
     ToneSelector mfsk;

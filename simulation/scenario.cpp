@@ -111,6 +111,19 @@ void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
     }
 }
 
+void check_system_faults(const Scenario& scenario, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < scenario.system_faults.size(); ++i) {
+        const SystemFault& fault = scenario.system_faults[i];
+        const std::string name = "system_faults[" + std::to_string(i) + "]";
+        if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
+              fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
+            found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +
+                            " is not within the run");
+        if (!(fault.duration_s > 0.0))
+            found.push_back(name + ".duration_s: " + number(fault.duration_s) + " is not above 0");
+    }
+}
+
 } // namespace
 
 std::vector<std::string> impossible_values(const Scenario& scenario) {
@@ -133,6 +146,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_masses(scenario.masses, found);
     check_density_scale(scenario.density_scale, found);
     check_commands(scenario, found);
+    check_system_faults(scenario, found);
     return found;
 }
 

@@ -84,6 +84,12 @@ struct ScriptedCommand {
     bool from_solution = false; ///< fill the arguments from ground's navigation solution
 };
 
+/// Something on the spacecraft is broken for a while, outside EDL: its fault protection may hold EDL meanwhile. R24
+struct SystemFault {
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+};
+
 struct Scenario {
     std::string name;
     std::string title;            ///< a line for people
@@ -106,6 +112,7 @@ struct Scenario {
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
+    std::vector<SystemFault> system_faults;
 };
 
 /// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.

@@ -45,6 +45,7 @@ struct World::State {
     BankReversals reversals;
     PeakDeceleration peak;
     std::vector<TruthEvent> events;
+    bool system_fault_told = false;
     bool entered = false, engines_commanded = false, sky_crane_started = false, flown_away = false;
     std::optional<Sclk> contact, bridle_cut, stage_down;
     Vector3 p_MoRover_M = Vector3::Zero();
@@ -66,6 +67,18 @@ struct World::State {
     static double seconds(std::int64_t grid) { return static_cast<double>(grid) / grid_hz; }
     double now_s() const { return seconds(grid()); }
     Sclk sclk() const { return initial.start + static_cast<double>(ticks) * seconds_per_tick; }
+
+    std::optional<flight::SystemFaultReport> system_fault_report() {
+        const double to_entry_s = scenario.entry_sclk - sclk();
+        const bool present = std::ranges::any_of(scenario.system_faults, [&](const SystemFault& fault) {
+            return to_entry_s <= fault.begin_before_entry_s &&
+                   to_entry_s > fault.begin_before_entry_s - fault.duration_s;
+        });
+        const bool is_over = system_fault_told && !present;
+        if (!is_over && !(present && sclk().ticks() % 64 == 0)) return {};
+        system_fault_told = present;
+        return flight::SystemFaultReport{present};
+    }
 
     TruthState truth() const {
         TruthState truth;
@@ -267,6 +280,7 @@ const flight::DeviceInputs& World::sense() {
     if (engines.valves_open()) in.engines = flight::EngineReply{engines.running(), engines.thrust_N()};
     if (!s.vehicle.configuration().rover_on_stage)
         in.bridle = flight::BridleReply{s.vehicle.bridle().payed_out_m(s.now_s())};
+    in.system_fault = s.system_fault_report();
     while (!s.received.empty() && !in.uplink.full()) {
         in.uplink.push_back(s.received[0]);
         s.received.erase_at(0);

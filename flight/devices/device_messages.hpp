@@ -69,6 +69,11 @@ struct BridleReply {
     double payed_out_m = 0.0;         ///< 0 … 7.5
 };
 
+/// The spacecraft's own monitors, outside EDL: whether something is broken that must be put right first. R24
+struct SystemFaultReport {
+    bool present = false;
+};
+
 /// A telecommand packet from the receiver, as it came: nothing about it is trusted.
 struct UplinkPacket {
     std::array<std::uint8_t, packet_octets_max> octets{};
@@ -86,6 +91,7 @@ struct DeviceInputs {
     std::optional<EngineReply> engines;           ///< each cycle once valves are open
     std::optional<ThrusterReply> thrusters;       ///< on change
     std::optional<BridleReply> bridle;            ///< each cycle after rover separation
+    std::optional<SystemFaultReport> system_fault;  ///< each second while there is one, and once when it is over
     FixedVector<UplinkPacket, 2> uplink;
     std::uint32_t nvm_used_octets = 0;
     std::uint32_t nvm_capacity_octets = 0;

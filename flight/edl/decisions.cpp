@@ -155,6 +155,8 @@ void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, Mayb
     };
     const bool received = refused != CommandRefusal::no_parameters;
     add(Quantity::parameters_received, received, gnc::Condition::Comparison::eq, 1, received);
+    const bool inhibited = refused == CommandRefusal::inhibited;
+    if (inhibited) add(Quantity::fault_inhibit, 1, gnc::Condition::Comparison::eq, 0, false);
     if (entry.defined()) {
         const double to_entry_s = entry.get()->seconds - now_s;
         add(Quantity::time_to_entry_s, to_entry_s, gnc::Condition::Comparison::le,

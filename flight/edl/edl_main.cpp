@@ -39,6 +39,7 @@ EdlMain::EdlMain(const Load& load) : plan_(load.telemetry_plan), timeline_(timel
 void EdlMain::on(const Tick& tick, Outbox& out) {
     ++cycle_count_;
     timeline_.begin_cycle();
+    watch_approach(tick.now, out);
     run_timeline(tick.now, out);
     run_gnc(tick.now, out);
     take_triggers(tick.now, out);
@@ -48,7 +49,21 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     out.send(ModuleId::sync, Confirm{ModuleId::edl});
 }
 
+void EdlMain::watch_approach(Sclk now, Outbox& out) {
+    if (const bool is = late_cruise(now); is != was_late_cruise_) {
+        was_late_cruise_ = is;
+        if (is) out.event(evr::LATE_CRUISE_BEGUN{});
+        if (is) out.send(ModuleId::mfsk, ToneRequest{tone::late_cruise, now});
+    }
+    if (const bool is = pre_edl(now); is != was_pre_edl_) {
+        was_pre_edl_ = is;
+        if (!is) out.event(evr::PRE_EDL_ENDED{});
+    }
+    if (inhibited_ && !was_pre_edl_) set_inhibited(false, out);
+}
+
 void EdlMain::run_timeline(Sclk now, Outbox& out) {
+    if (inhibited_) return;
     ActionContext context{out, configuration_};
     Firings firings;
     timeline_.pass(now, context, firings);
@@ -131,10 +146,36 @@ void EdlMain::on(const ActionReply& reply, Outbox&) {
     timeline_.reply(reply);
 }
 
+// ---- system fault protection ------------------------------------------------------------------------------------
+
+void EdlMain::on(const InhibitEdl& wish, Outbox& out) {
+    if (!wish.inhibited || pre_edl(out.now())) {
+        refused_to_hold_ = false;
+        return set_inhibited(wish.inhibited, out);
+    }
+    if (!refused_to_hold_) out.event(evr::FAULT_PROTECTION_TOO_LATE{});
+    refused_to_hold_ = true;
+}
+
+void EdlMain::set_inhibited(bool inhibited, Outbox& out) {
+    if (inhibited == inhibited_) return;
+    inhibited_ = inhibited;
+    if (inhibited)
+        out.event(evr::FAULT_PROTECTION_INHIBITS_EDL{});
+    else
+        out.event(evr::FAULT_PROTECTION_RELEASES_EDL{});
+    out.send(ModuleId::mfsk, ToneRequest{inhibited ? tone::fault_inhibit : tone::fault_inhibit_over, out.now()});
+}
+
 // ---- commands --------------------------------------------------------------------------------------------------
 
 bool EdlMain::late_cruise(Sclk now) const {
     return now >= entry() + MaybeOffset{-parameters.late_cruise_before_entry_s};
+}
+
+// Until ground has said when entry is, EDL has not come near.
+bool EdlMain::pre_edl(Sclk now) const {
+    return !(now >= timeline_.anchor_time(anchor::pre_edl_end));
 }
 
 bool EdlMain::too_late(Sclk now) const {
@@ -161,6 +202,8 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         refused = CommandRefusal::no_parameters;
     else if (timeline_.begun())
         refused = CommandRefusal::already_running;
+    else if (inhibited_)
+        refused = CommandRefusal::inhibited;
     else if (!late_cruise(out.now()))
         refused = CommandRefusal::too_early;
     else if (too_late(out.now()))

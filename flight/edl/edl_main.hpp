@@ -14,9 +14,10 @@ namespace aeolis::flight {
 /// that what GNC decides happens in the same cycle. R15, R17, R18, R47
 ///
 /// In      Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
-///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand
+///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand; InhibitEdl
 /// Out     actions to the managers of devices; tones; events, firings, explanations and channels to EdlComm; Confirm
 /// Gate    nothing runs before parameters came and then "do edl", in late cruise, and not too late for it. R23
+///         Before the end of pre-EDL system fault protection can hold all of it, afterwards it cannot. R24
 class EdlMain {
   public:
     explicit EdlMain(const Load& load);
@@ -29,6 +30,7 @@ class EdlMain {
     void on(const CruiseAttitude& attitude, Outbox& out);
     void on(const gnc::RadarSolution& solution, Outbox& out);
     void on(const ActionReply& reply, Outbox& out);
+    void on(const InhibitEdl& wish, Outbox& out);
 
     void on(const ParametersUpdate& update, Outbox& out);
     void on(const DoEdlCommand& command, Outbox& out);
@@ -39,6 +41,8 @@ class EdlMain {
     EdlPhase phase() const { return phase_; }
 
   private:
+    void watch_approach(Sclk now, Outbox& out);
+    void set_inhibited(bool inhibited, Outbox& out);
     void run_timeline(Sclk now, Outbox& out);
     void run_gnc(Sclk now, Outbox& out);
     void take_triggers(Sclk now, Outbox& out);
@@ -47,6 +51,7 @@ class EdlMain {
     packet::ParametersHeld parameters_held() const;
     MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
     bool late_cruise(Sclk now) const;
+    bool pre_edl(Sclk now) const;
     bool too_late(Sclk now) const;
 
     Plan plan_;
@@ -61,6 +66,11 @@ class EdlMain {
     gnc::Mode mode_ = gnc::Mode::off;
     EdlPhase phase_ = EdlPhase::pre_edl;
     std::uint32_t cycle_count_ = 0;
+    bool inhibited_ = false;
+    bool refused_to_hold_ = false;  // told once a fault, not once a report
+    // As of the cycle before: their ends are events.
+    bool was_pre_edl_ = true;
+    bool was_late_cruise_ = false;
 };
 
 }  // namespace aeolis::flight

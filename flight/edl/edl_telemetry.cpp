@@ -134,7 +134,8 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                      .late_cruise = late_cruise(now),
                                      .seconds_to_entry_s =
                                          entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
-                                     .edl_cycle_count = cycle_count_});
+                                     .edl_cycle_count = cycle_count_,
+                                     .fault_inhibit = inhibited_});
         out.record(packet::TimelineStatus{.timeline_version = timeline_version,
                                           .timepoint_index = timeline_.current().value,
                                           .timepoint_state = timeline_.state(),

@@ -40,6 +40,7 @@ void Executive::post_interrupts(const DeviceInputs& in) {
     if (in.bridle) deliver(ModuleId::descent_engines, *in.bridle);
     if (in.thrusters) deliver(ModuleId::thrusters, *in.thrusters);
     if (in.cruise_attitude) deliver(ModuleId::edl, *in.cruise_attitude);
+    if (in.system_fault) deliver(ModuleId::system_fault_protection, *in.system_fault);
     for (const auto& uplink : in.uplink) {
         UplinkReceived received;
         received.size = uplink.size;
@@ -82,6 +83,7 @@ void Executive::dispatch(ModuleId id, const Message& message, DeviceOutputs& out
     case ModuleId::descent_engines: handle(state_.descent_engines, message); break;
     case ModuleId::thrusters: handle(state_.thrusters, message); break;
     case ModuleId::power: handle(state_.power, message); break;
+    case ModuleId::system_fault_protection: handle(state_.system_fault_protection, message); break;
     case ModuleId::command_dispatcher: handle(state_.command_dispatcher, message); break;
     case ModuleId::edl_bg: handle(state_.edl_bg, message); break;
     case ModuleId::mfsk: handle(state_.mfsk, message); break;

@@ -26,12 +26,13 @@ enum class ModuleId : std::uint8_t {
     descent_engines,
     thrusters,
     power,
+    system_fault_protection,
     command_dispatcher,
     edl_bg,
     mfsk,
     edl_comm,
 };
-inline constexpr std::size_t module_count = 12;
+inline constexpr std::size_t module_count = 13;
 constexpr bool in_rate_group(ModuleId id) {
     return id <= ModuleId::thrusters;
 }
@@ -99,6 +100,10 @@ struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into
     bool radar_locked = false;
 };
 
+struct InhibitEdl {  ///< from system fault protection: EDL shall make no progress, or may again. R24
+    bool inhibited = false;
+};
+
 // ---- commands --------------------------------------------------------------------------------------------------
 
 /// Names one uplinked command, so that its outcome finds the way back.
@@ -155,7 +160,8 @@ struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
 using Message =
     std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
                  EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
-                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, NavigatedAttitude, SetParametersCommand,
+                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, NavigatedAttitude, SystemFaultReport,
+                 InhibitEdl, SetParametersCommand,
                  ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, CommandOutcome,
                  Record, ToneRequest, PhaseChanged, ToneStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");

@@ -87,6 +87,10 @@ const Bindings<simulation::DensityScale> density_fields = {
     AEOLIS_BIND(DensityScale, altitude_m),
     AEOLIS_BIND(DensityScale, scale),
 };
+const Bindings<simulation::SystemFault> fault_fields = {
+    AEOLIS_BIND(SystemFault, begin_before_entry_s),
+    AEOLIS_BIND(SystemFault, duration_s),
+};
 #undef AEOLIS_BIND
 
 const google::protobuf::FieldDescriptor& field_of(const Message& message, const char* name) {
@@ -204,6 +208,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
             command.arguments.emplace_back(argument.name(), argument.value());
         scenario.commands.push_back(std::move(command));
     }
+    for (const auto& row : message.system_faults())
+        read(row, fault_fields, scenario.system_faults.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -237,6 +243,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
             argument.set_value(value);
         }
     }
+    for (const auto& fault : scenario.system_faults)
+        write(fault, fault_fields, *message.add_system_faults());
     return message;
 }
 

@@ -101,6 +101,53 @@ TEST_CASE("without do edl the timeline fires nothing up to and past entry", "[ed
     }
 }
 
+TEST_CASE("in pre-EDL fault protection holds the timeline, and it goes on when released", "[edl][R24]") {
+    Fixture f;
+    const double pre_edl_s = entry_s - 15'000;
+    const double brought_forward_s = pre_edl_s - entry_s + 10.0;  // the first timepoint, into pre-EDL
+    f.set_parameters(pre_edl_s);
+    CHECK_FALSE(f.do_edl(pre_edl_s).has_value());
+    f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = brought_forward_s, .minimum_offset_s = 0.0}},
+             pre_edl_s);
+    f.handle(InhibitEdl{true}, pre_edl_s + 1);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_INHIBITS_EDL>() == 1);
+    for (double at_s = pre_edl_s + 1; at_s < pre_edl_s + 20; at_s += 1.0 / 64) {
+        f.handle(Tick{Sclk{at_s}}, at_s);
+        REQUIRE(f.edl.timeline().state() == TimepointState::pending);
+        REQUIRE(f.recorder.sent<FirePyro>().empty());
+    }
+    f.handle(InhibitEdl{false}, pre_edl_s + 20);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_RELEASES_EDL>() == 1);
+    f.handle(Tick{Sclk{pre_edl_s + 20}}, pre_edl_s + 20);
+    CHECK(f.recorder.sent<FirePyro>().size() == 1);
+}
+
+TEST_CASE("do edl is refused while fault protection inhibits EDL", "[edl][R23][R24]") {
+    Fixture f;
+    f.set_parameters(entry_s - 17'000);
+    f.handle(InhibitEdl{true}, entry_s - 16'900);
+    CHECK(f.do_edl(entry_s - 16'800) == CommandRefusal::inhibited);
+    f.handle(InhibitEdl{false}, entry_s - 16'700);
+    CHECK_FALSE(f.do_edl(entry_s - 16'600).has_value());
+}
+
+TEST_CASE("after pre-EDL fault protection cannot inhibit EDL, and an inhibition ends with it", "[edl][R24]") {
+    const double pre_edl_ends_s = entry_s + *anchor_specs[anchor::pre_edl_end.value].offset_s;
+    Fixture f;
+    f.set_parameters(pre_edl_ends_s - 100);
+    f.handle(InhibitEdl{true}, pre_edl_ends_s - 1.0 / 64);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_INHIBITS_EDL>() == 1);
+    f.handle(Tick{Sclk{pre_edl_ends_s}}, pre_edl_ends_s);
+    CHECK(f.recorder.events<evr::PRE_EDL_ENDED>() == 1);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_RELEASES_EDL>() == 1);
+    f.handle(InhibitEdl{true}, pre_edl_ends_s + 1);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_TOO_LATE>() == 1);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_INHIBITS_EDL>() == 0);
+    f.handle(InhibitEdl{true}, pre_edl_ends_s + 2);
+    CHECK(f.recorder.events<evr::FAULT_PROTECTION_TOO_LATE>() == 0);
+    CHECK_FALSE(f.do_edl(pre_edl_ends_s + 3).has_value());
+}
+
 TEST_CASE("an offset that is no multiple of 1/64 s, or of a row that is not there, is refused", "[edl][R16][R21]") {
     Fixture f;
     f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = 0.3, .minimum_offset_s = 0.0}}, 5.0);
