@@ -97,7 +97,12 @@ Loaded load(const std::filesystem::path& directory) {
     });
 
     const File constraints_csv = read_file(directory / "constraints.csv", all);
-    const ConstraintContext moments{timeline ? &*timeline : nullptr, anchors ? &*anchors : nullptr};
+    // A name that its own sheet has wrong is one fault, not one more for each constraint that uses it.
+    const auto is_sound = [&](const File& file) {
+        return std::ranges::find(all, file.name, &Finding::file) == all.end();
+    };
+    const ConstraintContext moments{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
+                                    anchors && is_sound(anchors_csv) ? &*anchors : nullptr};
     auto constraints = read(constraints_csv, [&](std::string_view text, Findings& findings) {
         return read_constraints(text, moments, findings);
     });
