@@ -236,7 +236,7 @@ void print_diff(const TimelineDiff& diff) {
                              ? "No row differs.\n"
                              : "No row differs; the versions differ in how the sheets are written only.\n");
     else
-        fmt::print("{} rows differ.\n", rows);
+        fmt::print("{} {}.\n", rows, rows == 1 ? "row differs" : "rows differ");
 }
 
 std::string diff_json(const TimelineDiff& diff) {
