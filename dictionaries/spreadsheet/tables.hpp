@@ -10,11 +10,11 @@
 // row is there, also those with findings, so that a reference to one is not called dangling as well.
 namespace aeolis::dictionary {
 
-inline constexpr std::size_t timepoints_max = 1000; ///< ours: ten times the landing's; numbers fit the command's range
-inline constexpr std::size_t anchors_max = 100;     ///< ours
-inline constexpr std::size_t parameters_max = 1000; ///< ours
+inline constexpr std::size_t timepoints_max = 1000;  ///< ours: ten times the landing's; numbers fit the command's range
+inline constexpr std::size_t anchors_max = 100;      ///< ours
+inline constexpr std::size_t parameters_max = 1000;  ///< ours
 inline constexpr std::size_t constraints_max = 1000; ///< ours: ten times the landing's
-inline constexpr std::size_t tones_count = 256;     ///< R31
+inline constexpr std::size_t tones_count = 256;      ///< R31
 
 /// In topological order: parents before children, else as in the file. R12
 std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findings& findings);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace aeolis::server {
@@ -99,7 +100,10 @@ void print_counter_example(const Dictionary& d, const BoundProof& bound) {
                 : instant.moment.kind == Moment::Kind::anchor && (is_end || anchors.contains(instant.moment.index)))
             shown.push_back(instant);
     }
-    std::ranges::stable_sort(shown, {}, &Instant::time_s);
+    std::ranges::sort(shown, {}, [](const Instant& instant) {
+        const bool is_timepoint = instant.moment.kind >= Moment::Kind::triggered;
+        return std::tuple{instant.time_s, is_timepoint, instant.moment.index, instant.moment.kind};
+    });
     for (const Instant& instant : shown)
         fmt::print("      {:>14.6f}  {}\n", instant.time_s - from_s, moment_text(d, instant.moment));
 }

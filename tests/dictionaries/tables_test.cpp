@@ -135,7 +135,8 @@ TEST_CASE("anchors are put in topological order, else as in the file", "[diction
 }
 
 TEST_CASE("constraints are read as moments of timepoints and anchors", "[dictionary][R19]") {
-    const std::vector<dictionary::AnchorRow> anchors{{AnchorId{0}, "root", {}, 0.0, ""}, {AnchorId{1}, "jump", AnchorId{0}, {}, ""}};
+    const std::vector<dictionary::AnchorRow> anchors{{AnchorId{0}, "root", {}, 0.0, ""},
+                                                     {AnchorId{1}, "jump", AnchorId{0}, {}, ""}};
     std::vector<dictionary::TimelineRow> timeline(2);
     timeline[0].name = "ready";
     timeline[1].name = "jump";
