@@ -189,11 +189,38 @@ struct ParameterRow {
     std::string source;
 };
 
+/// An instant that constraints.csv speaks of.
+struct Moment {
+    enum class Kind {
+        do_edl,    ///< its acceptance: the predecessor of the first timepoint. R16
+        anchor,    ///< NAME:anchor
+        triggered, ///< NAME:triggered, the action begins
+        fired,     ///< NAME:fired, the reply came or its time-out; the same instant where none is asked for. R14
+    };
+    Kind kind = Kind::do_edl;
+    std::uint16_t index = 0;  ///< in Dictionary::anchors or Dictionary::timeline
+    constexpr bool operator==(const Moment&) const = default;
+};
+
+/// A row of constraints.csv: minimum_s <= to - from <= maximum_s. R19
+struct ConstraintRow {
+    enum class Kind {
+        required,  ///< must follow from the timeline and the given rows
+        given,     ///< what GNC or ground's commands hold to: when an anchor is set
+    };
+    Kind kind = Kind::required;
+    Moment from, to;
+    MaybeOffset minimum_s, maximum_s;  ///< undefined: no bound
+    std::string source;
+    std::string note;
+    unsigned line = 0;  ///< in constraints.csv
+};
+
 // ---- the whole -------------------------------------------------------------------------------------------------
 
 struct Dictionary {
     std::string mission;               ///< SpaceSystem name
-    std::uint16_t id = 0;              ///< in every telemetry packet: changes with every change of any file
+    std::uint16_t id = 0;              ///< in every telemetry packet: changes with every change of any file on board
     std::uint16_t timeline_version = 0;
     std::vector<Channel> channels;
     std::vector<Packet> packets;
@@ -203,6 +230,7 @@ struct Dictionary {
     std::vector<AnchorRow> anchors;
     std::vector<ToneRow> tones;        ///< 256, by id
     std::vector<ParameterRow> parameters;
+    std::vector<ConstraintRow> constraints;
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -226,7 +254,8 @@ struct Loaded {
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv.
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv. The last
+/// changes nothing on board, so neither `id` nor `timeline_version` follows it.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

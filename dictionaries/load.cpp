@@ -97,12 +97,24 @@ Loaded load(const std::filesystem::path& directory) {
         return read_timeline(text, context, findings);
     });
 
+    const File constraints_csv = read_file(directory / "constraints.csv", all);
+    // A name that its own sheet has wrong is one fault, not one more for each constraint that uses it.
+    const auto is_sound = [&](const File& file) {
+        return std::ranges::find(all, file.name, &Finding::file) == all.end();
+    };
+    const ConstraintContext moments{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
+                                    anchors && is_sound(anchors_csv) ? &*anchors : nullptr};
+    auto constraints = read(constraints_csv, [&](std::string_view text, Findings& findings) {
+        return read_constraints(text, moments, findings);
+    });
+
     std::ranges::stable_sort(
         all, [](const Finding& a, const Finding& b) { return std::tie(a.file, a.line) < std::tie(b.file, b.line); });
     if (!all.empty()) return loaded;
 
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
+    // Without constraints.csv: flight is not made from it, and a claim about the timeline must not make flight another.
     dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv});
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
@@ -113,6 +125,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.anchors = std::move(*anchors);
     dictionary.tones = std::move(*tones);
     dictionary.parameters = std::move(*parameters);
+    dictionary.constraints = std::move(*constraints);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

@@ -10,10 +10,11 @@
 // row is there, also those with findings, so that a reference to one is not called dangling as well.
 namespace aeolis::dictionary {
 
-inline constexpr std::size_t timepoints_max = 1000; ///< ours: ten times the landing's; numbers fit the command's range
-inline constexpr std::size_t anchors_max = 100;     ///< ours
-inline constexpr std::size_t parameters_max = 1000; ///< ours
-inline constexpr std::size_t tones_count = 256;     ///< R31
+inline constexpr std::size_t timepoints_max = 1000;  ///< ours: ten times the landing's; numbers fit the command's range
+inline constexpr std::size_t anchors_max = 100;      ///< ours
+inline constexpr std::size_t parameters_max = 1000;  ///< ours
+inline constexpr std::size_t constraints_max = 1000; ///< ours: ten times the landing's
+inline constexpr std::size_t tones_count = 256;      ///< R31
 
 /// In topological order: parents before children, else as in the file. R12
 std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findings& findings);
@@ -37,5 +38,16 @@ struct TimelineContext {
 /// In the order of the file, which is the order of firing. R11, R13, R20
 std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
                                                       Findings& findings);
+
+/// What a constraint may speak of; a null pointer: unknown because its own file could not be read, so not checked.
+struct ConstraintContext {
+    const std::vector<TimelineRow>* timeline = nullptr;
+    const std::vector<AnchorRow>* anchors = nullptr;
+};
+
+/// In the order of the file. A moment is NAME (a timepoint: its firing as `from`, its triggering as `to`),
+/// NAME:triggered, NAME:fired, NAME:anchor or do_edl. R19
+std::optional<std::vector<ConstraintRow>> read_constraints(std::string_view text, const ConstraintContext& context,
+                                                           Findings& findings);
 
 } // namespace aeolis::dictionary

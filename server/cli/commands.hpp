@@ -34,4 +34,18 @@ int rehearse(const RehearseOptions& options);
 
 int dictionary_check(const std::filesystem::path& directory);
 
+struct TimelineAnalyseOptions {
+    std::filesystem::path directory;
+    bool json = false;
+};
+/// 0 when every required row of constraints.csv is proven.
+int timeline_analyse(const TimelineAnalyseOptions& options);
+
+struct TimelineDiffOptions {
+    std::filesystem::path before, after;
+    bool json = false;
+};
+/// 0 when no row differs.
+int timeline_diff(const TimelineDiffOptions& options);
+
 } // namespace aeolis::server

@@ -18,7 +18,6 @@ struct Later {
 };
 constexpr std::array later_commands{
     Later{"campaign", "dispersed landings, statistics, ellipse"},
-    Later{"timeline", "analyse, diff: constraints proven or refuted; two versions compared"},
     Later{"entry", "reference: guidance tables for a scenario"},
     Later{"decode", "any mission's packets by its XTCE"},
     Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
@@ -99,6 +98,22 @@ int main(int argc, char** argv) {
     auto* exported = dictionary_command->add_subcommand("export", "(comes with a later issue)");
     exported->allow_extras();
     exported->callback([&] { exit_code = failed("dictionary export comes with a later issue", 2); });
+
+    auto* timeline_command =
+        app.add_subcommand("timeline", "constraints proven or refuted; two versions compared")->require_subcommand(1);
+    TimelineAnalyseOptions analysing{serving.shared.dictionary, false};
+    auto* analyse = timeline_command->add_subcommand(
+        "analyse", "proves or refutes each row of constraints.csv; 1 when one is not proven");
+    analyse->add_option("DIR", analysing.directory, "the dictionary's directory")->capture_default_str();
+    analyse->add_flag("--json", analysing.json, "print one JSON object");
+    analyse->callback([&] { exit_code = timeline_analyse(analysing); });
+    TimelineDiffOptions comparing;
+    auto* diff = timeline_command->add_subcommand(
+        "diff", "rows added, removed, moved, changed from one dictionary to another; 1 when any is");
+    diff->add_option("DIR_A", comparing.before, "the earlier dictionary's directory")->required();
+    diff->add_option("DIR_B", comparing.after, "the later one's")->required();
+    diff->add_flag("--json", comparing.json, "print one JSON object");
+    diff->callback([&] { exit_code = timeline_diff(comparing); });
 
     for (const auto& later : later_commands) {
         auto* command = app.add_subcommand(later.name, fmt::format("(comes with a later issue) {}", later.text));

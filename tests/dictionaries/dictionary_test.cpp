@@ -136,7 +136,7 @@ TEST_CASE("a command is preceded and followed by what its author asks for", "[di
     CHECK(begin.verifiers[1].window_s == 20.0);
 }
 
-TEST_CASE("any change of any file changes the dictionary's id; the timeline's version follows its own",
+TEST_CASE("any change of any file on board changes the dictionary's id; the timeline's version follows its own",
           "[dictionary][R20]") {
     std::set<std::uint16_t> ids{msl().id};
     for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv"}) {
@@ -151,8 +151,22 @@ TEST_CASE("any change of any file changes the dictionary's id; the timeline's ve
     }
 }
 
+TEST_CASE("a change of constraints.csv, which nothing on board is made from, changes neither id nor version",
+          "[dictionary][R19][R20]") {
+    const tests::MissionCopy mission;
+    std::string text = mission.text("constraints.csv");
+    text.resize(text.rfind('\n', text.size() - 2) + 1);
+    mission.write("constraints.csv", text);
+    const Loaded loaded = mission.load();
+    REQUIRE(loaded.dictionary);
+    CHECK(loaded.dictionary->constraints.size() == msl().constraints.size() - 1);
+    CHECK(loaded.dictionary->id == msl().id);
+    CHECK(loaded.dictionary->timeline_version == msl().timeline_version);
+}
+
 TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary]") {
-    for (const char* file : {"timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "msl.xml"}) {
+    for (const char* file :
+         {"timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "constraints.csv", "msl.xml"}) {
         const tests::MissionCopy mission;
         std::filesystem::remove(mission.path() / file);
         const Loaded loaded = mission.load();
@@ -160,13 +174,14 @@ TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary
         CHECK_FALSE(loaded.dictionary);
         CHECK(loaded.findings.size() == 1);
     }
-    CHECK(load("/no/such/folder").findings.size() == 5);
+    CHECK(load("/no/such/folder").findings.size() == 6);
 }
 
 TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
     std::mt19937 random{20120806};
     const tests::MissionCopy mission;
-    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv"}) {
+    for (const char* file :
+         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "constraints.csv"}) {
         const std::string sound = mission.text(file);
         for (int trial = 0; trial < 60; ++trial) {
             std::string text = sound;

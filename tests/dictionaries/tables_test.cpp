@@ -57,6 +57,34 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"bad number", "parameters.csv", "guidance_gain,5,", "guidance_gain,five,", "default 'five' is not a number"},
         {"parameter twice", "parameters.csv", "drag_filter_time_s,", "guidance_start_drag_mps2,",
          "is there twice, first in line 4"},
+        // constraints
+        {"unknown timepoint", "constraints.csv", "required,coolant_vent,", "required,coolant_went,",
+         "from 'coolant_went': there is no timepoint 'coolant_went'"},
+        {"anchor without its suffix", "constraints.csv", "required,heatshield:anchor,", "required,heatshield,",
+         "the anchor is written 'heatshield:anchor'"},
+        {"unknown anchor", "constraints.csv", "required,heatshield:anchor,", "required,backshield:anchor,",
+         "there is no anchor 'backshield'"},
+        {"unknown moment", "constraints.csv", "required,sky_crane:triggered", "required,sky_crane:began",
+         "'began' is none of triggered, fired, anchor"},
+        {"unknown kind", "constraints.csv", "required,coolant_vent,", "wanted,coolant_vent,",
+         "kind 'wanted' is neither required nor given"},
+        {"bound off the ticks", "constraints.csv", "uhf_start,20,", "uhf_start,20.1,",
+         "minimum_s 20.1 is not a multiple of 1/64 s"},
+        {"bound no number", "constraints.csv", "uhf_start,20,", "uhf_start,,",
+         "minimum_s '' is neither a number nor undefined"},
+        {"no bound", "constraints.csv", "uhf_start,20,", "uhf_start,undefined,",
+         "neither minimum_s nor maximum_s bounds anything"},
+        {"bounds upside down", "constraints.csv", "cruise_balance_2,0.5,1,", "cruise_balance_2,1.5,1,",
+         "minimum_s 1.5 is above maximum_s 1"},
+        {"from is to", "constraints.csv", "required,coolant_vent,uhf_start,", "required,uhf_start:triggered,uhf_start,",
+         "from and to are the same moment"},
+        {"constraint twice", "constraints.csv", "required,uhf_start,cruise_stage_separation,",
+         "required,coolant_vent:fired,uhf_start:triggered,",
+         "from 'coolant_vent:fired' is there twice, first in line 13"},
+        {"a timepoint given", "constraints.csv", "given,do_edl,entry:anchor,", "given,do_edl,coolant_vent,",
+         "only an anchor can be given"},
+        {"no source of a constraint", "constraints.csv", "uhf_start,20,undefined,[ours],", "uhf_start,20,undefined,,",
+         "source is empty"},
         // the sheet itself
         {"ragged row", "parameters.csv", "guidance_gain,5,", "guidance_gain,5,5,", "the row has 8 cells, the header 7"},
         {"open quote", "tones.csv", "\n255,spare,,Spare", "\n255,spare,,\"Spare",
@@ -104,4 +132,38 @@ TEST_CASE("anchors are put in topological order, else as in the file", "[diction
     CHECK(rows->at(3).name == "late");
     for (const auto& row : *rows)
         if (row.parent) CHECK(row.parent->value < row.id.value);
+}
+
+TEST_CASE("constraints are read as moments of timepoints and anchors", "[dictionary][R19]") {
+    const std::vector<dictionary::AnchorRow> anchors{{AnchorId{0}, "root", {}, 0.0, ""},
+                                                     {AnchorId{1}, "jump", AnchorId{0}, {}, ""}};
+    std::vector<dictionary::TimelineRow> timeline(2);
+    timeline[0].name = "ready";
+    timeline[1].name = "jump";
+    std::vector<dictionary::Finding> all;
+    dictionary::Findings findings{"constraints.csv", all};
+    const auto rows = dictionary::read_constraints("kind,from,to,minimum_s,maximum_s,source,note\n"
+                                                   "required,ready,jump,0.5,undefined,[ours],\n"
+                                                   "given,do_edl,jump:anchor,undefined,-2,[ours],early\n"
+                                                   "required,jump:triggered,jump:fired,0,1,[ours],\n",
+                                                   {&timeline, &anchors}, findings);
+    REQUIRE(all.empty());
+    REQUIRE(rows->size() == 3);
+    using Kind = dictionary::Moment::Kind;
+    CHECK(rows->at(0).from == dictionary::Moment{Kind::fired, 0});
+    CHECK(rows->at(0).to == dictionary::Moment{Kind::triggered, 1});
+    CHECK(rows->at(0).minimum_s == 0.5);
+    CHECK_FALSE(rows->at(0).maximum_s);
+    CHECK(rows->at(1).kind == dictionary::ConstraintRow::Kind::given);
+    CHECK(rows->at(1).from == dictionary::Moment{});
+    CHECK(rows->at(1).to == dictionary::Moment{Kind::anchor, 1});
+    CHECK(rows->at(1).maximum_s == -2.0);
+    CHECK(rows->at(2).from == dictionary::Moment{Kind::triggered, 1});
+    CHECK(rows->at(2).to == dictionary::Moment{Kind::fired, 1});
+    CHECK(rows->at(2).line == 4);
+}
+
+TEST_CASE("a timepoint's offset counts from its neighbour or an anchor, from no other timepoint", "[timeline][R19]") {
+    tests::check_planted({"another timepoint", "timeline.csv", "gnc_enable,entry,", "gnc_enable,coolant_vent,",
+                          "reference 'coolant_vent' is neither previous nor an anchor"});
 }

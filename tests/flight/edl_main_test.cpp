@@ -1,7 +1,11 @@
 #include "flight/edl/edl_main.hpp"
 
+#include "common/space_packet.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/mission_copy.hpp"
 #include "tests/support/outbox.hpp"
+
+#include <algorithm>
 
 using namespace aeolis;
 using namespace aeolis::flight;
@@ -163,4 +167,22 @@ TEST_CASE("every cycle ends with one confirmation to sync", "[edl][R18][R22]") {
     Fixture f;
     f.handle(Tick{Sclk{5.0}}, 5.0);
     CHECK(f.recorder.sent<Confirm>().size() == 1);
+}
+
+TEST_CASE("the version of the timeline on board is in telemetry every second", "[edl][timeline][R20]") {
+    const auto loaded = dictionary::load(tests::shipped_mission);
+    REQUIRE(loaded.dictionary);
+    const auto& fields = loaded.dictionary->packet("TimelineStatus")->fields;
+    const auto version = std::ranges::find(fields, "timeline_version", &dictionary::Field::name);
+    REQUIRE(version != fields.end());
+    const unsigned position_bits = version->position_bits - tm_data_offset_octets * 8;
+    Fixture f;
+    for (const double second : {1000.0, 1001.0}) {
+        f.handle(Tick{Sclk{second}}, second);
+        std::vector<std::uint64_t> versions;
+        for (const auto& record : f.recorder.sent<Record>())
+            if (record.apid == packet::TimelineStatus::apid) 
+                versions.push_back(read_bits(record.data, position_bits, version->type.bits));
+        CHECK(versions == std::vector<std::uint64_t>{loaded.dictionary->timeline_version});
+    }
 }

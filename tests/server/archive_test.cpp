@@ -151,6 +151,26 @@ TEST_CASE("runs are numbered in one file and keep their units apart", "[archive]
     CHECK(ask(file, "SELECT count(*) FROM dictionaries") == 1);
 }
 
+TEST_CASE("the archive keeps with each run the version of the timeline that it flew", "[archive][timeline][R20]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    auto archive = Archive::open(file);
+    auto dictionary = test::small_dictionary();
+    const auto first = archive->begin_run({}, dictionary);
+    REQUIRE(first.ok());
+    Batch end;
+    end.end = RunEnd{"touchdown", "", "abc", "2026-01-01T00:00:00Z"};
+    REQUIRE(archive->append(*first, end).ok());
+    ++dictionary.id;
+    dictionary.timeline_version = 4;
+    REQUIRE(archive->begin_run({}, dictionary).ok());
+    for (const char* run : {"1", "2"})
+        CHECK(ask(file, (std::string{"SELECT d.timeline_version FROM runs JOIN dictionaries d USING (dictionary) "
+                                     "WHERE run = "} +
+                         run)
+                            .c_str()) == (*run == '1' ? 3 : 4));
+}
+
 TEST_CASE("a run that was cut off is marked interrupted, with its last sequence number", "[archive]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";

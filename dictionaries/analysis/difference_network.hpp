@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace aeolis::dictionary {
+
+/// Moments and least differences between them, in ticks of 1/64 s: a system of difference constraints, solved exactly
+/// by longest paths (Bellman-Ford). An upper bound is a least difference the other way round.
+class DifferenceNetwork {
+  public:
+    /// t(to) - t(from) >= ticks
+    struct Edge {
+        std::size_t from = 0, to = 0;
+        std::int64_t ticks = 0;
+    };
+    using EdgeIndex = std::size_t;
+
+    explicit DifferenceNetwork(std::size_t moments) : moments_(moments) {}
+
+    EdgeIndex add(const Edge& edge) {
+        edges_.push_back(edge);
+        return edges_.size() - 1;
+    }
+    /// Takes back the edge added last.
+    void remove_last() { edges_.pop_back(); }
+    const std::vector<Edge>& edges() const { return edges_; }
+    std::size_t moments() const { return moments_; }
+
+    /// Of all solutions without a negative time the one in which every moment is earliest; or why there is none.
+    struct Earliest {
+        std::vector<std::int64_t> ticks;      ///< a time for each moment; empty when the edges contradict one another
+        std::vector<EdgeIndex> contradiction; ///< a ring of edges whose least differences add up to more than nil
+    };
+    Earliest earliest() const;
+
+    struct Path {
+        std::int64_t ticks = 0;
+        std::vector<EdgeIndex> edges; ///< those that force it, from the first moment to the last
+    };
+    /// The least that t(to) - t(from) can be; none: it has no lower bound. Only where `earliest` has a solution.
+    std::optional<Path> least_difference(std::size_t from, std::size_t to) const;
+
+  private:
+    std::size_t moments_;
+    std::vector<Edge> edges_;
+};
+
+} // namespace aeolis::dictionary

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "dictionaries/analysis/difference_network.hpp"
+#include "dictionaries/analysis/timeline_analysis.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace aeolis::dictionary {
+
+/// The timeline and the given rows as a network, and the search for its worst schedules. A step of
+/// timeline_analysis.hpp.
+class TimelineNetwork {
+  public:
+    using MaybeTicks = std::optional<std::int64_t>;
+
+    explicit TimelineNetwork(const Dictionary& dictionary);
+
+    /// Why nothing satisfies the constraints; empty: something does, though perhaps not as soon as it could.
+    std::vector<ChainStep> contradiction() const;
+
+    /// The least difference of two moments.
+    struct Worst {
+        bool found = false;  ///< `ticks`, `chain` and `schedule` are those of a real schedule
+        bool bounded = true; ///< false: there is no least difference; the schedule may have the one that was enough
+        std::int64_t ticks = 0;
+        std::vector<ChainStep> chain;
+        std::vector<Instant> schedule;
+        bool exhausted = false; ///< the search was cut short
+        MaybeTicks open_ticks;  ///< then: what was not searched is no less than this, if anything
+    };
+    /// The least that t(to) - t(from) can be. Where it has no bound, a schedule with `enough_ticks`.
+    Worst least_difference(const Moment& from, const Moment& to, std::int64_t enough_ticks);
+
+  private:
+    using EdgeIndex = DifferenceNetwork::EdgeIndex;
+    struct Query {
+        std::size_t from = 0, to = 0;
+        std::int64_t enough_ticks = 0;
+        std::size_t nodes = 0;
+        Worst worst;
+        bool done = false;
+    };
+
+    std::size_t node(const Moment& moment) const;
+    Moment moment(std::size_t node) const;
+    void add(const Moment& from, const Moment& to, std::int64_t ticks, ChainStep::Reason reason, unsigned line);
+    void remove_last();
+    void add_anchors();
+    void add_timepoint(std::size_t index);
+    void add_given();
+    void search(Query& query);
+    std::vector<std::int64_t> earliest_with(const Query& query, std::int64_t at_most_ticks);
+    std::optional<std::size_t> without_cause(const std::vector<std::int64_t>& ticks) const;
+    std::vector<ChainStep> steps(const std::vector<EdgeIndex>& edges) const;
+
+    const Dictionary& dictionary_;
+    DifferenceNetwork network_;
+    std::int64_t horizon_ticks_ = 0;                              ///< no bounded difference is less than its negative
+    std::vector<std::pair<ChainStep::Reason, unsigned>> reasons_; ///< of the edges, by index
+    std::vector<std::vector<DifferenceNetwork::Edge>> causes_;    ///< of each triggering; empty: it is free
+};
+
+} // namespace aeolis::dictionary
