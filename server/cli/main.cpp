@@ -133,6 +133,12 @@ int main(int argc, char** argv) {
         if (is_option) return failed(fmt::format("there is no option '{}' (aeolis --help)", argv[1]), 2);
         if (argc > 1 && app.get_subcommands(is_first).empty())
             return failed(fmt::format("there is no command '{}' (aeolis --help)", argv[1]), 2);
+        if (argc > 2 && argv[2][0] != '-') {
+            const auto* command = app.get_subcommand(argv[1]);
+            const auto is_second = [&](const CLI::App* each) { return each->get_name() == argv[2]; };
+            if (!command->get_subcommands({}).empty() && command->get_subcommands(is_second).empty())
+                return failed(fmt::format("there is no command '{0} {1}' (aeolis {0} --help)", argv[1], argv[2]), 2);
+        }
         return failed(fmt::format("{} (aeolis --help)", error.what()), 2);
     } catch (const std::exception& error) {
         return failed(error.what());

@@ -70,6 +70,26 @@ TEST_CASE("flight code asks for no memory from the first tick to the last, over 
     CHECK(flight.computer.counters().resets == 0);
 }
 
+TEST_CASE("each change of configuration changes what GNC controls with: none, bank, hanging, thrust", "[flight][R26]") {
+    using Mode = AttitudeCommand::Mode;
+    Flight flight{tests::gale_scenario(900.0), 1};
+    std::vector<Mode> modes{flight.out->attitude.mode};
+    bool mortar_fired = false, held_under_parachute = false, throttled_before_priming = false, primed = false;
+    while (flight.flying()) {
+        flight.step();
+        const Mode mode = flight.out->attitude.mode;
+        if (mode != modes.back()) modes.push_back(mode);
+        held_under_parachute |= mortar_fired && mode == Mode::entry_bank;
+        mortar_fired |= std::ranges::count(flight.out->pyros.span(), PyroId::parachute_mortar) != 0;
+        primed |= std::ranges::count(flight.out->pyros.span(), PyroId::engine_valves) != 0;
+        throttled_before_priming |= !primed && flight.out->engines.ignited;
+    }
+    CHECK(mortar_fired);
+    CHECK_FALSE(held_under_parachute);
+    CHECK(modes == std::vector{Mode::idle, Mode::entry_bank, Mode::suspended, Mode::thrust});
+    CHECK_FALSE(throttled_before_priming);
+}
+
 TEST_CASE("a cycle is timeline, GNC, timeline: each acts on the other in the same 1/64 s", "[flight][R17][R18]") {
     Flight flight{tests::gale_scenario(900.0), 1};
     const auto reported = [&](Apid apid, EvrId id) {

@@ -77,6 +77,28 @@ TEST_CASE("a full mailbox is counted, and the computer goes on", "[executive][R6
     CHECK(f.state->mailbox_overflows == before);
 }
 
+TEST_CASE("an interrupt and the tick of the clock are messages at once: handled in the cycle in which they came",
+          "[executive][R10]") {
+    // Answers of modules outside the rate group wait for the next cycle: they show that the module had its message.
+    const auto answered = [](const Fixture& f, ModuleId from, auto is_it) {
+        return std::any_of(f.state->next_cycle.begin(), f.state->next_cycle.end(),
+                           [&](const Envelope& e) { return e.from == from && is_it(e.message); });
+    };
+    Fixture f;
+    f.cycle();
+    CHECK(f.state->sync.cycles() == 1);  // the clock's tick, and every turn and confirmation after it
+
+    f.in.system_fault = SystemFaultReport{true};
+    f.in.uplink.push_back({});
+    f.in.switch_replies.push_back({SwitchId::radar, true});
+    f.cycle();
+    CHECK(answered(f, ModuleId::system_fault_protection, [](const Message& m) { return std::holds_alternative<InhibitEdl>(m); }));
+    CHECK(answered(f, ModuleId::command_dispatcher, [](const Message& m) { return std::holds_alternative<Record>(m); }));
+    CHECK(answered(f, ModuleId::power, [](const Message& m) { return std::holds_alternative<ActionReply>(m); }));
+    for (const auto& mailbox : f.state->mailboxes) CHECK(mailbox.empty());
+    CHECK(f.state->unexpected_messages == 0);
+}
+
 TEST_CASE("what a module outside the rate group sends is delivered at the start of the next cycle", "[executive][R18]") {
     Fixture f;
     REQUIRE(f.state->mailboxes[static_cast<std::size_t>(ModuleId::mfsk)].try_push(ToneRequest{ToneId{61}, Sclk{1000.0}}));
