@@ -30,7 +30,8 @@ struct Condition {
     std::uint16_t quantity = 0; ///< a Quantity
     double value = 0.0;
     double bound = 0.0;
-    enum class Comparison : std::uint8_t { lt, le, eq, ge, gt } comparison{};
+    enum class Comparison : std::uint8_t { lt, le, eq, ge, gt };
+    Comparison comparison{};
     bool holds = false;
 };
 
