@@ -1,0 +1,105 @@
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <utility>
+
+// The program as people start it: what it says, on one line, and how it ends.
+namespace {
+
+struct Ended {
+    int code = -1;
+    std::string text; ///< of both streams
+};
+
+Ended run(const std::string& program, const std::string& arguments) {
+    std::FILE* pipe = popen(("'" + program + "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    Ended ended;
+    std::array<char, 4096> chunk{};
+    for (std::size_t read = 0; (read = std::fread(chunk.data(), 1, chunk.size(), pipe)) > 0;)
+        ended.text.append(chunk.data(), read);
+    const int status = pclose(pipe);
+    ended.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return ended;
+}
+
+/// Built beside the tests, by another build type: ./test says where.
+const char* program() {
+    const char* given = std::getenv("AEOLIS_PROGRAM");
+    if (given == nullptr) std::cout << "SKIPPED: AEOLIS_PROGRAM does not name the program to try\n";
+    return given;
+}
+
+} // namespace
+
+TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
+    if (program() == nullptr) return;
+    const std::array<std::pair<const char*, const char*>, 10> table{{
+        {"frob", "there is no command 'frob'"},
+        {"--frob", "there is no option '--frob'"},
+        {"timeline frob", "there is no command 'timeline frob'"},
+        {"timeline analyse /nope", "/nope"},
+        {"tones --help", "comes with a later issue"},
+        {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
+        {"rehearse", "--scenario"},
+        {"serve --pace 0.5", "neither 0 nor within 1 … 1000: 0.5"},
+        {"serve --listen nowhere", "ADDRESS:PORT is wanted"},
+        {"dictionary check /nope", "/nope"},
+    }};
+    for (const auto& [arguments, says] : table) {
+        const auto ended = run(program(), arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli]") {
+    if (program() == nullptr) return;
+    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 3>{{
+             {"rehearse --scenario no_such", "no_such"},
+             {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
+             {"serve --listen 192.0.2.1:0 --archive /dev/null", "only loopback"},
+         }}) {
+        const auto ended = run(program(), arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == 1);
+        CHECK_THAT(ended.text, Catch::Contains(says));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("the program proves the shipped timeline, and shows what two versions differ in", "[cli][timeline][R19][R20]") {
+    if (program() == nullptr) return;
+    const std::filesystem::path shipped = std::filesystem::path{AEOLIS_SOURCE_DIR} / "dictionaries/msl";
+    const auto proven = run(program(), "timeline analyse '" + shipped.string() + "'");
+    CHECK(proven.code == 0);
+    CHECK_THAT(proven.text, Catch::Contains("bounds are proven"));
+    CHECK(run(program(), "timeline diff '" + shipped.string() + "' '" + shipped.string() + "'").code == 0);
+
+    const auto other = std::filesystem::temp_directory_path() / ("aeolis_cli_" + std::to_string(getpid()));
+    std::filesystem::copy(shipped, other);
+    std::string text;
+    {
+        std::ifstream csv{shipped / "timeline.csv"};
+        text.assign(std::istreambuf_iterator<char>{csv}, {});
+    }
+    const std::string row = "uhf_start,entry,-800,";
+    REQUIRE(text.find(row) != std::string::npos);
+    std::ofstream{other / "timeline.csv"} << text.replace(text.find(row), row.size(), "uhf_start,entry,-790,");
+    const auto changed = run(program(), "timeline diff '" + shipped.string() + "' '" + other.string() + "'");
+    std::filesystem::remove_all(other);
+    CHECK(changed.code == 1);
+    CHECK_THAT(changed.text, Catch::Contains("desired_offset_s: -800 -> -790"));
+}
