@@ -150,7 +150,7 @@ void Landing::State::receive_tone(std::int64_t cycle_start_us) {
     if (auto tone = x_band.cycle(out.tone, {truth.sclk, truth.e_s, doppler_hz})) {
         tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
-        tones.send(tone->end.microseconds, std::move(*tone));
+        tones.send(tone->end.microseconds, *tone);
     }
     tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
 }
@@ -224,7 +224,7 @@ const CycleReport& Landing::step() {
 
     const std::int64_t now_us = s.now_us();
     s.packets.arrive(now_us, [&](std::int64_t, ReceivedPacket&& p) { s.report.packets.push_back(std::move(p)); });
-    s.tones.arrive(now_us, [&](std::int64_t, ReceivedTone&& t) { s.report.tones.push_back(std::move(t)); });
+    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { s.report.tones.push_back(t); });
     s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
     return s.report;
 }

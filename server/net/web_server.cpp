@@ -299,7 +299,7 @@ Task<> WebServer::State::accept() {
         error_code error;
         auto socket = co_await acceptor.async_accept(asio::redirect_error(awaiting, error));
         if (!error) {
-            asio::co_spawn(io, serve(std::move(socket)), [](std::exception_ptr broken) {
+            asio::co_spawn(io, serve(std::move(socket)), [](const std::exception_ptr& broken) {
                 // A bug in one request: that connection ends, the server goes on.
                 try {
                     if (broken) std::rethrow_exception(broken);
