@@ -36,7 +36,7 @@ const focused = (page) => page.evaluate(() => document.activeElement?.dataset.te
 const stage = (page, command, name) =>
     page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
 
-test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 80_000 }, async () => {
+test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 120_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'landing.db'), more: ['--scenario', 'nominal'] });
     try {
         const { page, problems, text, shows } = await open(chrome, server.address);
@@ -88,6 +88,17 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await pace(page, 0).catch(() => undefined); // it may have ended by now
         await shows('waiting', /Landed/, 30_000);
         await shows('badge', /ENDED RUN.*touchdown/s);
+        // The end of the run may be told before its last items: the page has all once it has what the server has, and
+        // neither goes on.
+        let before;
+        await waitFor(async () => {
+            const [{ last_seq: last }] = (await server.get('/runs')).runs;
+            const through = (await text('complete-through')).replace(/\D/g, '');
+            const settled = through === last && through === before;
+            before = through;
+            await new Promise((resolve) => setTimeout(resolve, 300));
+            return settled;
+        }, (settled) => settled === true);
         const seen = {
             fired: await text('timepoints-fired'), through: await text('complete-through'), tone: await text('tone-title'),
             stages: await stage(page, 'EDL_DO_EDL', 'executed'),
