@@ -254,8 +254,8 @@ struct Loaded {
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv. The last
-/// changes nothing on board, so neither `id` nor `timeline_version` follows it.
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv. All are on
+/// board, so `id` follows each; the last changes nothing that the timeline does, so `timeline_version` does not follow it.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

@@ -114,8 +114,8 @@ Loaded load(const std::filesystem::path& directory) {
 
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
-    // Without constraints.csv: flight is not made from it, and a claim about the timeline must not make flight another.
-    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv});
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv});
+    // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
     dictionary.packets = std::move(system->packets);

@@ -35,6 +35,7 @@ std::string symbol_of(const std::string& comparison) {
 
 std::string subject_of(const dictionary::Dictionary& dictionary, const std::string& decision, double number) {
     if (decision == "timepoint" || decision == "tone") return reference_text(dictionary, decision, number);
+    if (decision == "sub_constraint") return reference_text(dictionary, "constraint", number);
     if (decision == "command" || decision == "do_edl" || decision == "set_parameters")
         return reference_text(dictionary, "opcode", number);
     if (decision == "bank_reversal") return std::to_string(static_cast<unsigned>(number));

@@ -54,7 +54,21 @@ const Notation* notation_of_name(std::string_view name) {
 }
 
 bool is_reference(std::string_view field) {
-    return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone";
+    return field == "opcode" || field == "timepoint" || field == "anchor" || field == "tone" || field == "constraint";
+}
+
+std::string moment_words(const dictionary::Dictionary& dictionary, const dictionary::Moment& moment) {
+    switch (moment.kind) {
+    case dictionary::Moment::Kind::anchor:
+        return "the anchor " + dictionary.anchors[moment.index].name;
+    case dictionary::Moment::Kind::triggered:
+        return "the triggering of " + dictionary.timeline[moment.index].name;
+    case dictionary::Moment::Kind::fired:
+        return "the firing of " + dictionary.timeline[moment.index].name;
+    case dictionary::Moment::Kind::do_edl:
+        break;
+    }
+    return "the acceptance of do edl";
 }
 
 const std::string* label_of(const dictionary::Type& type, double value) {
@@ -110,6 +124,12 @@ std::string reference_text(const dictionary::Dictionary& dictionary, std::string
     if (field == "opcode") {
         const auto* command = dictionary.command(Opcode{static_cast<std::uint16_t>(index)});
         return command != nullptr ? command->name : plain;
+    }
+    if (field == "constraint") {
+        if (index >= dictionary.constraints.size()) return plain;
+        const dictionary::ConstraintRow& row = dictionary.constraints[index];
+        return plain + " (from " + moment_words(dictionary, row.from) + " to " + moment_words(dictionary, row.to) +
+               ", constraints.csv:" + std::to_string(row.line) + ")";
     }
     const auto numbered = [&](const auto& rows) {
         return index < rows.size() && !rows[index].name.empty() ? plain + " " + rows[index].name : plain;

@@ -18,8 +18,9 @@ std::string number_text(const dictionary::Type& type, std::optional<double> valu
 /// With the unit: "404.6 m/s", "parachute_descent", "undefined".
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
-/// A number that names a thing of the dictionary, by the name of its field: "opcode", "timepoint", "anchor", "tone".
-/// "EDL_DO_EDL", "14 parachute_mortar"; the number alone where it names nothing.
+/// A number that names a thing of the dictionary, by the name of its field: "opcode", "timepoint", "anchor", "tone",
+/// "constraint". "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; the number alone where
+/// it names nothing.
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
 
 /// For a number whose unit is only known from the ending of its name, "speed_mps": "speed" and "12.3 m/s".

@@ -239,7 +239,8 @@ class HeaderWriter {
 
     void write_ids() {
         out_ << "inline constexpr std::size_t timepoint_count = " << dictionary_.timeline.size() << ";\n"
-             << "inline constexpr std::size_t anchor_count = " << dictionary_.anchors.size() << ";\n\n";
+             << "inline constexpr std::size_t anchor_count = " << dictionary_.anchors.size() << ";\n"
+             << "inline constexpr std::size_t constraint_count = " << dictionary_.constraints.size() << ";\n\n";
         write_constants("timepoint", "TimepointId", dictionary_.timeline);
         write_constants("anchor", "AnchorId", dictionary_.anchors);
         write_constants("tone", "ToneId", dictionary_.tones);

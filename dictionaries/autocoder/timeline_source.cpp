@@ -1,5 +1,6 @@
 #include "dictionaries/autocoder/timeline_source.hpp"
 
+#include "dictionaries/autocoder/constraint_table.hpp"
 #include "dictionaries/autocoder/cpp_text.hpp"
 
 #include <algorithm>
@@ -58,11 +59,13 @@ std::string timeline_source(const Dictionary& dictionary) {
     std::ostringstream out;
     out << "// Made by the autocoder from the dictionary of " << dictionary.mission
         << ". Not to be edited: change the spreadsheets.\n"
-           "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/timepoint.hpp\"\n\n"
+           "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
+           "#include \"flight/timeline/timepoint.hpp\"\n\n"
            "namespace aeolis::flight {\n\n";
     write_timeline(dictionary, out);
     write_anchors(dictionary, out);
     write_tones(dictionary, out);
+    out << constraint_table(dictionary);
     out << "}  // namespace aeolis::flight\n";
     return out.str();
 }

@@ -46,6 +46,7 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     run_timeline(tick.now, out);
     update_phase(tick.now, out);
     record_channels(tick.now, out);
+    constraint_monitor_.report(out);
     out.send(ModuleId::sync, Confirm{ModuleId::edl});
 }
 
@@ -67,6 +68,7 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
     ActionContext context{out, configuration_};
     Firings firings;
     timeline_.pass(now, context, firings);
+    constraint_monitor_.watch(timeline_, firings.span());
     for (const Firing& firing : firings) {
         out.record(packet::TimepointFired{.timepoint = firing.timepoint.value,
                                           .triggered_sclk = firing.triggered.seconds,
@@ -76,7 +78,9 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
         out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
         out.send(ModuleId::mfsk, ToneRequest{tone::timepoint_timed_out, now});
     }
-    if (!firings.empty() && timeline_.finished()) out.event(evr::TIMELINE_COMPLETE{});
+    if (firings.empty() || !timeline_.finished()) return;
+    out.event(evr::TIMELINE_COMPLETE{});
+    constraint_monitor_.summarise(out);
 }
 
 void EdlMain::run_gnc(Sclk now, Outbox& out) {
@@ -211,6 +215,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     explain_do_edl(refused, entry(), timeline_.first_desired(), out);
     if (!refused) {
         timeline_.begin(out.now());
+        constraint_monitor_.note(Moment::of_do_edl(), out.now());
         out.event(evr::EDL_BEGUN{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }

@@ -4,6 +4,7 @@
 #include "flight/edl/phase.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/timeline/constraint_monitor.hpp"
 #include "flight/timeline/timeline.hpp"
 
 #include <optional>
@@ -56,6 +57,7 @@ class EdlMain {
 
     Plan plan_;
     Timeline timeline_;
+    ConstraintMonitor constraint_monitor_{constraint_specs};
     gnc::EdlGnc gnc_;
     gnc::Configuration configuration_;
     gnc::Output output_;

@@ -63,6 +63,8 @@ class Timeline {
     MaybeTime anchor_time(AnchorId id) const { return anchor_times_[id.value]; }
     TimepointId current() const { return {static_cast<std::uint16_t>(current_)}; }
     TimepointState state() const;
+    /// When the current timepoint was triggered; undefined unless its reply is awaited.
+    MaybeTime waiting_since() const { return waiting_ ? MaybeTime{triggered_} : MaybeTime{}; }
     /// Times from which the current timepoint may fire; undefined when it is not known yet.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;

@@ -33,4 +33,15 @@ inline std::vector<std::uint8_t> do_edl() {
     return packet;
 }
 
+inline std::vector<std::uint8_t> set_timepoint_offset(TimepointId timepoint, double desired_s, double minimum_s) {
+    using Command = flight::command::EDL_SET_TIMEPOINT_OFFSET;
+    std::vector<std::uint8_t> packet(tc_overhead_octets + Command::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    arguments.put(timepoint.value, 16);
+    arguments.put_double(desired_s);
+    arguments.put_double(minimum_s);
+    seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
+    return packet;
+}
+
 }  // namespace aeolis::test

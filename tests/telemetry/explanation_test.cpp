@@ -1,5 +1,6 @@
 #include "telemetry/explanation.hpp"
 
+#include "telemetry/text.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
@@ -62,6 +63,40 @@ TEST_CASE("the subject is told by name", "[explanation][R38]") {
     CHECK(ground.explained(ground.packet(2, 2, 37, 0))->text == "tone 37 parachute_out chosen");
     CHECK(ground.explained(ground.packet(3, 3, 0x0103, 0))->text == "command EDL_DO_EDL refused");
     CHECK(ground.explained(ground.packet(4, 4, 1, 0))->text == "edl_phase parachute_descent changed");
+}
+
+TEST_CASE("a sub-constraint that does not hold is told by its two moments and its line, event and explanation alike",
+          "[explanation][R39]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    const auto row = std::ranges::find_if(dictionary.constraints, [&](const dictionary::ConstraintRow& each) {
+        return each.from.kind == dictionary::Moment::Kind::fired && each.to.kind == dictionary::Moment::Kind::triggered &&
+               dictionary.timeline[each.from.index].name == "coolant_vent";
+    });
+    REQUIRE(row != dictionary.constraints.end());
+    const auto number = static_cast<std::uint64_t>(row - dictionary.constraints.begin());
+    const std::string subject = std::to_string(number) +
+                                " (from the firing of coolant_vent to the triggering of uhf_start, constraints.csv:" +
+                                std::to_string(row->line) + ")";
+    Decoded decoded;
+    auto packet = PacketFiller{dictionary, "Explanation"};
+    packet.raw("decision", number_of(dictionary, "decision", "sub_constraint"))
+        .raw("verdict", number_of(dictionary, "verdict", "violated"))
+        .raw("subject", number)
+        .raw("condition_count", 1)
+        .raw("condition_1", number_of(dictionary, "condition_1", "elapsed_s"))
+        .real("value_1", 12.5)
+        .real("bound_1", 20.0)
+        .raw("comparison_1", number_of(dictionary, "comparison_1", "ge"));
+    REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
+    CHECK(explain(dictionary, decoded)->text ==
+          "sub_constraint " + subject + " violated: elapsed 12.500 s, not >= 20.000 s");
+
+    auto event = PacketFiller{dictionary, "SUB_CONSTRAINT_VIOLATED"};
+    event.raw("constraint", number).real("elapsed_s", 12.5).real("bound_s", 20.0).raw("violations", 1);
+    REQUIRE_FALSE(decommutator.decode(event.seal(), decoded));
+    CHECK(event_text(dictionary, *event_of(dictionary, decoded), decoded) ==
+          "Sub-constraint " + subject + " does not hold: 12.500 s, bound 20.000 s; 1 so far. Nothing was done about it");
 }
 
 TEST_CASE("a count of conditions beyond the slots gives the slots there are", "[explanation]") {
