@@ -6,8 +6,8 @@ namespace aeolis::flight {
 namespace {
 
 constexpr double standard_gravity_mps2 = 9.80665;
-constexpr double peak_is_real_above_mps2 = 3.0 * standard_gravity_mps2;  // ours: far below any guided entry's peak
-constexpr double peak_has_passed_at = 0.95;                             // ours: of the largest, above noise and bumps
+constexpr double peak_is_real_above_mps2 = ParameterDefaults{}.peak_deceleration_min_g * standard_gravity_mps2;
+constexpr double peak_has_passed_at = ParameterDefaults{}.peak_deceleration_passed;
 
 float f(double value) {
     return static_cast<float>(value);

@@ -25,8 +25,10 @@ gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
     solution.target_longitude_rad = p.target_longitude_deg * radians_per_degree;
     solution.target_radius_m = p.target_radius_m;
     solution.parachute_speed_mps = p.parachute_speed_mps;
+    solution.parachute_altitude_min_m = p.parachute_altitude_min_m;
     solution.heatshield_speed_mps = p.heatshield_speed_mps;
     solution.backshell_altitude_m = p.backshell_altitude_m;
+    solution.backshell_descent_rate_mps = p.backshell_speed_mps;
     return solution;
 }
 

@@ -10,7 +10,7 @@ namespace {
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 constexpr double standard_gravity_mps2 = 9.80665;
 constexpr double parts_in_percent = 100.0;
-constexpr std::int64_t held_every_s = 8;  // ours: well inside ground's window for the read-back
+constexpr auto held_every_s = static_cast<std::int64_t>(ParameterDefaults{}.parameters_held_every_s);
 
 /// Whether a packet of `hz` (a power of two up to 64) is due in this cycle.
 bool due(Sclk now, std::int64_t hz) {

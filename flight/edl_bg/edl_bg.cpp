@@ -5,19 +5,17 @@
 namespace aeolis::flight {
 namespace {
 
-// Each argument is inside its own range already; these are what only several together show. Ours.
-constexpr double radius_min_m = 3.3e6;   // below the surface everywhere
-constexpr double radius_max_m = 2.0e9;   // a few days out
-constexpr double speed_max_mps = 1.0e4;
+constexpr ParameterDefaults parameters{};
 
 double norm(double x, double y, double z) {
     return std::sqrt(x * x + y * y + z * z);
 }
 
+// Each argument is inside its own range already; these are what only several together show.
 bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
     const double radius_m = norm(p.position_x_m, p.position_y_m, p.position_z_m);
-    return radius_m >= radius_min_m && radius_m <= radius_max_m &&
-           norm(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps) <= speed_max_mps && p.entry_sclk > now.seconds &&
+    return radius_m >= parameters.solution_radius_min_m && radius_m <= parameters.solution_radius_max_m &&
+           norm(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps) <= parameters.solution_speed_max_mps && p.entry_sclk > now.seconds &&
            p.epoch_sclk <= p.entry_sclk;
 }
 

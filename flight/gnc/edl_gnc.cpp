@@ -15,22 +15,8 @@ namespace aeolis::flight::gnc {
 namespace {
 
 constexpr double cycle_s = seconds_per_tick;
-
-// Bank held from turn to entry until guidance starts: lift nearly sideways, to the right. [facts] Guidance: +74 … 80°
-constexpr double bank_before_guidance_rad = 77.0 * degree;
-
-// Above it air is too thin to be felt through the accelerometers' bias: at 140 km drag is 2e-4 m/s². Ours.
-constexpr double no_air_above_m = 140000.0;
-// Felt all the same when something pushes: 50 times the bias. Ours.
-constexpr double pushed_mps2 = 0.05;
-constexpr double smoothing_s = 0.5;
-
-// Reference areas for estimates of dynamic pressure. [facts] Vehicle
-constexpr double entry_drag_area_m2 = 1.45 * 15.9;
-constexpr double parachute_drag_area_m2 = 205.0;
-
-// A drift that the sky crane may still be nulling is no reason to wait for ever: bound on the descent rate only. Ours.
-constexpr double sky_crane_rate_tolerance_mps = 0.08;
+constexpr ParameterDefaults parameters{};
+constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg * degree;
 
 } // namespace
 
@@ -59,7 +45,7 @@ void EdlGnc::on(const CruiseAttitude& attitude) {
 }
 
 void EdlGnc::on(const RadarSolution& solution) {
-    if (!navigating_) return;
+    if (!navigating_ || solution.altitude_m > parameters.radar_altitude_max_m) return;
     last_radar_beams_ = solution.beams;
     const auto correction = radar_filter_.on(solution, measured_at_, measured_.up_M);
     if (!correction) return;
@@ -73,11 +59,11 @@ void EdlGnc::navigate(const DeviceInputs& in) {
     if (passed_s <= 0.0) return; // a solution was just taken in, as of now: these increments lie before it
     navigated_to_ = in.now;
     if (in.imu.empty()) strapdown_.coast(passed_s);
-    const bool in_air = measured_.altitude_m < no_air_above_m;
+    const bool in_air = measured_.altitude_m < parameters.air_altitude_max_m;
     for (const ImuSample& sample : in.imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
-        smooth_force_B_mps2_ += imu_period_s / (smoothing_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
-        strapdown_.on(sample, in_air || smooth_force_B_mps2_.squaredNorm() > pushed_mps2 * pushed_mps2);
+        smooth_force_B_mps2_ += imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
+        strapdown_.on(sample, in_air || smooth_force_B_mps2_.squaredNorm() > parameters.push_felt_mps2 * parameters.push_felt_mps2);
     }
 }
 
@@ -167,20 +153,22 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) 
 // Entry and parachute: decisions by what is navigated.
 void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output& out) {
     const Measured& m = measured_;
+    const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps};
+    const triggers::ParachuteBounds parachute{solution_.parachute_speed_mps, solution_.parachute_altitude_min_m};
     if (mode_ == Mode::wait_for_guidance_start &&
         fire(Trigger::guidance_start, triggers::guidance_start(force_filter_.drag_mps2()), out))
         enter(Mode::range_control, now);
     if (mode_ == Mode::range_control && fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
         enter(Mode::heading_alignment, now);
     if ((mode_ == Mode::range_control || mode_ == Mode::heading_alignment) && configuration.sufr_allowed &&
-        fire(Trigger::sufr_start, triggers::sufr_start(m.speed_mps, m.deceleration_mps2, solution_.parachute_speed_mps),
+        fire(Trigger::sufr_start, triggers::sufr_start(in_air, m.deceleration_mps2, parachute),
              out)) {
         bank_at_sufr_rad_ = m.bank_rad;
         enter(Mode::straighten_up, now);
     }
     if (mode_ >= Mode::range_control && mode_ <= Mode::wait_for_parachute) {
-        const auto held = slow_for_parachute_.on(m.speed_mps <= solution_.parachute_speed_mps);
-        fire(Trigger::parachute, triggers::parachute(m.speed_mps, solution_.parachute_speed_mps, held), out);
+        const auto held = due_for_parachute_.on(triggers::parachute_due(in_air, parachute));
+        fire(Trigger::parachute, triggers::parachute(in_air, parachute, held), out);
     }
     if (mode_ != Mode::parachute_descent) return;
     const double since_parachute_s = configuration.parachute_time ? now - *configuration.parachute_time : 0.0;
@@ -193,11 +181,12 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s)
         fire(Trigger::engine_priming,
              triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m), out);
-    const double needed_m = triggers::backshell_altitude_needed_m(solution_.backshell_altitude_m, m.descent_rate_mps);
+    const triggers::BackshellBounds backshell{solution_.backshell_altitude_m, solution_.backshell_descent_rate_mps};
+    const double needed_m = triggers::backshell_altitude_needed_m(backshell, m.descent_rate_mps);
     const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);
     if (configuration.engines_primed)
         fire(Trigger::backshell,
-             triggers::backshell(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m, held), out);
+             triggers::backshell(m.altitude_m, m.descent_rate_mps, backshell, held), out);
 }
 
 // Powered descent and sky crane.
@@ -227,7 +216,7 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
         deceleration_.start(m.altitude_m, m.descent_rate_mps);
     } else if (mode_ == Mode::constant_deceleration) {
         conditions.push_back(
-            at_most(Quantity::descent_rate_mps, m.descent_rate_mps, sky_crane_mps + sky_crane_rate_tolerance_mps));
+            at_most(Quantity::descent_rate_mps, m.descent_rate_mps, sky_crane_mps + parameters.sky_crane_rate_tolerance_mps));
         fire(Trigger::sky_crane, conditions, out);
     } else if (mode_ == Mode::sky_crane) {
         conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), triggers::sky_crane_settling_s));
@@ -260,7 +249,7 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         predicted_range_m_ = wanted.predicted_range_m;
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
         // Near lift up the two sides are hardly apart: there a reversal need not have been flown out.
-        const bool settled = m.bank_rad * lateral_.sign() > 0.0 || wanted.bank_magnitude_rad < 15.0 * degree;
+        const bool settled = m.bank_rad * lateral_.sign() > 0.0 || wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
         if (lateral_.on(m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
             out.bank_reversal = lateral_.reversals();
         bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
@@ -355,7 +344,7 @@ void EdlGnc::report(Output& out) const {
     out.bank_command_deg = bank_command_rad_ / degree;
     out.lift_to_drag_command = lift_to_drag_command_;
     if (mode_ < Mode::free_fall) {
-        const double area_m2 = mode_ == Mode::parachute_descent ? parachute_drag_area_m2 : entry_drag_area_m2;
+        const double area_m2 = mode_ == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
         out.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
     }
     out.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);

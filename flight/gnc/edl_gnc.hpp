@@ -36,8 +36,10 @@ struct Solution {
     double target_longitude_rad = 0.0; ///< east
     double target_radius_m = 0.0;
     double parachute_speed_mps = 405.0;
+    double parachute_altitude_min_m = 6000.0; ///< down to here the parachute waits for its speed
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
+    double backshell_descent_rate_mps = 79.1; ///< that the altitude belongs to
 };
 
 /// What the timeline has done, as GNC asks for it each cycle: the configuration that GNC must fly. R26
@@ -83,25 +85,9 @@ enum class Trigger : std::uint8_t {
     rover_separation,
     touchdown,
 };
-inline constexpr std::size_t trigger_count = 14;
+inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::touchdown) + 1;
 
-enum class Mode : std::uint8_t {
-    off,
-    approach,
-    wait_for_guidance_start,
-    range_control,
-    heading_alignment,
-    straighten_up,
-    wait_for_parachute,
-    parachute_descent,
-    free_fall,
-    powered_approach,
-    constant_velocity,
-    constant_deceleration,
-    sky_crane,
-    touchdown,
-    flyaway,
-};
+using Mode = GncMode; ///< in the order in which they come
 
 /// Everything that GNC tells the rest in one cycle.
 struct Output {
@@ -205,7 +191,7 @@ class EdlGnc {
     Mode mode_ = Mode::off;
     Sclk mode_since_;
     std::array<bool, trigger_count> fired_{};
-    triggers::Persistence slow_for_parachute_, low_for_backshell_;
+    triggers::Persistence due_for_parachute_, low_for_backshell_;
     bool radar_first_ = false; ///< the first solution was accepted since the last cycle
 
     LateralLogic lateral_;

@@ -4,16 +4,47 @@
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::triggers;
 
+namespace {
+
+constexpr ParachuteBounds bounds{405.0, 6000.0};
+constexpr BackshellBounds design{1660.0, 79.1};
+
+} // namespace
+
 TEST_CASE("entry guidance starts at 0.2 g of drag", "[gnc][R17]") {
     CHECK_FALSE(all_hold(guidance_start(1.95)));
     CHECK(all_hold(guidance_start(1.96)));
 }
 
 TEST_CASE("the parachute needs the speed and three cycles of it", "[gnc][R17]") {
-    CHECK_FALSE(all_hold(parachute(405.1, 405.0, 3)));
-    CHECK_FALSE(all_hold(parachute(404.9, 405.0, 2)));
-    CHECK(all_hold(parachute(404.9, 405.0, 3)));
-    CHECK(parachute(404.9, 405.0, 3).size() == 2);
+    CHECK_FALSE(all_hold(parachute({405.1, 12000.0, 110.0}, bounds, 3)));
+    CHECK_FALSE(all_hold(parachute({404.9, 12000.0, 110.0}, bounds, 2)));
+    CHECK(all_hold(parachute({404.9, 12000.0, 110.0}, bounds, 3)));
+    CHECK(parachute({404.9, 12000.0, 110.0}, bounds, 3).size() == 2);
+}
+
+TEST_CASE("below its lowest altitude the parachute waits for its speed no longer", "[gnc][R17][R48]") {
+    CHECK_FALSE(parachute_due({500.0, 6000.1, 150.0}, bounds));
+    CHECK(parachute_due({500.0, 6000.0, 150.0}, bounds));
+    CHECK(parachute_due({405.0, 12000.0, 110.0}, bounds));
+    const auto low = parachute({500.0, 6000.0, 150.0}, bounds, 3);
+    CHECK(all_hold(low));
+    CHECK(low[0].quantity == static_cast<std::uint16_t>(aeolis::flight::Quantity::altitude_m)); // and says why
+    CHECK_FALSE(all_hold(parachute({500.0, 6000.0, 150.0}, bounds, 2)));
+}
+
+TEST_CASE("straightening up begins its lead time before the parachute's lowest altitude, however fast",
+          "[gnc][R17][R48]") {
+    CHECK_FALSE(all_hold(sufr_start({600.0, 6000.0 + 18.1 * 150.0, 150.0}, 2.8, bounds)));
+    CHECK(all_hold(sufr_start({600.0, 6000.0 + 17.9 * 150.0, 150.0}, 2.8, bounds)));
+    CHECK_FALSE(all_hold(sufr_start({600.0, 5000.0, -10.0}, 2.8, bounds))); // it climbs
+}
+
+TEST_CASE("the descent rate that ground expects at the backshell moves the altitude at which it goes",
+          "[gnc][R17][R48]") {
+    // Faster than expected by 2.1 m/s needs more room than faster by 1 m/s.
+    CHECK(backshell_altitude_needed_m({1660.0, 78.0}, 80.1) > backshell_altitude_needed_m({1660.0, 79.1}, 80.1));
+    CHECK(backshell_altitude_needed_m({1660.0, 80.1}, 80.1) == Approx(1660.0));
 }
 
 TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {
@@ -26,10 +57,10 @@ TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {
 
 TEST_CASE("straightening up begins its lead time before the parachute's speed", "[gnc][R17]") {
     // OD137: 453 m/s at E+239, slowing at 2.8 m/s² [facts]
-    CHECK(all_hold(sufr_start(453.0, 2.8, 405.0)));
-    CHECK_FALSE(all_hold(sufr_start(460.0, 2.8, 405.0)));
-    CHECK_FALSE(all_hold(sufr_start(453.0, -1.0, 405.0)));  // it gains speed
-    CHECK_FALSE(all_hold(sufr_start(600.0, 100.0, 405.0))); // far above a straight line means nothing
+    CHECK(all_hold(sufr_start({453.0, 14000.0, 120.0}, 2.8, bounds)));
+    CHECK_FALSE(all_hold(sufr_start({460.0, 14000.0, 120.0}, 2.8, bounds)));
+    CHECK_FALSE(all_hold(sufr_start({453.0, 14000.0, 120.0}, -1.0, bounds)));  // it gains speed
+    CHECK_FALSE(all_hold(sufr_start({600.0, 14000.0, 120.0}, 100.0, bounds))); // far above a straight line means nothing
 }
 
 TEST_CASE("the heatshield stays on for twenty seconds after the mortar", "[gnc][R17]") {
@@ -39,11 +70,11 @@ TEST_CASE("the heatshield stays on for twenty seconds after the mortar", "[gnc][
 }
 
 TEST_CASE("the backshell goes at ground's altitude at 79.1 m/s, earlier when faster", "[gnc][R17]") {
-    CHECK(backshell_altitude_needed_m(1660.0, 79.1) == Approx(1660.0));
-    CHECK(backshell_altitude_needed_m(1660.0, 80.1) - 1660.0 == Approx(31.6).epsilon(0.02));
-    CHECK_FALSE(all_hold(backshell(1661.0, 79.1, 1660.0, 3)));
-    CHECK_FALSE(all_hold(backshell(1659.0, 79.1, 1660.0, 2)));
-    CHECK(all_hold(backshell(1659.0, 79.1, 1660.0, 3)));
+    CHECK(backshell_altitude_needed_m(design, 79.1) == Approx(1660.0));
+    CHECK(backshell_altitude_needed_m(design, 80.1) - 1660.0 == Approx(31.6).epsilon(0.02));
+    CHECK_FALSE(all_hold(backshell(1661.0, 79.1, design, 3)));
+    CHECK_FALSE(all_hold(backshell(1659.0, 79.1, design, 2)));
+    CHECK(all_hold(backshell(1659.0, 79.1, design, 3)));
 }
 
 TEST_CASE("engines are primed a quarter of a minute before the backshell goes", "[gnc][R17]") {

@@ -22,7 +22,7 @@ inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolu
     arguments.put_double(solution.target.latitude_deg);
     arguments.put_double(solution.target.longitude_deg);
     arguments.put_double(solution.target.radius_m);
-    for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.0F}) arguments.put_float(value);
+    for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.1F}) arguments.put_float(value);
     seal_tc_packet(packet, Apid{1}, 0, flight::command::EDL_SET_PARAMETERS::opcode);
     return packet;
 }

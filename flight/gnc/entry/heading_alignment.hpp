@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/gnc/entry/target_geometry.hpp"
+#include "generated/dictionary_flight.hpp"
 
 // Below about 1100 m/s range is left as it is, and bank points the velocity at the target.
 //
@@ -10,8 +11,8 @@
 // Source   [facts] Guidance: gain 100, limit 30°, start at 1100 m/s
 namespace aeolis::flight::gnc {
 
-inline constexpr double heading_alignment_speed_mps = 1100.0;
-inline constexpr double heading_alignment_limit_rad = 30.0 * degree;
+inline constexpr double heading_alignment_speed_mps = ParameterDefaults{}.heading_alignment_speed_mps;
+inline constexpr double heading_alignment_limit_rad = ParameterDefaults{}.heading_alignment_bank_max_deg * degree;
 
 double heading_alignment_bank_rad(const TargetGeometry& geometry);
 

@@ -1,11 +1,13 @@
 #include "flight/gnc/entry/lateral_logic.hpp"
 
+#include "generated/dictionary_flight.hpp"
+
 namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double deadband_0_m = 3500.0;    // ours, tuned
-constexpr double deadband_2_s2pm = 1.8e-4; // ours, tuned
+constexpr double deadband_0_m = ParameterDefaults{}.crossrange_deadband_m;
+constexpr double deadband_2_s2pm = ParameterDefaults{}.crossrange_deadband_s2pm;
 
 } // namespace
 

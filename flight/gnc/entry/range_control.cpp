@@ -7,10 +7,8 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-// Of the lift there is; beyond it the deadband is halved. Apollo's C17/C18 logic limits at like values; ours.
-constexpr double saturation = 0.95;
-// The smallest ∂R/∂(L/D) to divide by: near the end of the reference it goes to nil; ours.
-constexpr double sensitivity_min_m = 2000.0;
+constexpr double saturation = ParameterDefaults{}.guidance_saturation;
+constexpr double sensitivity_min_m = ParameterDefaults{}.guidance_sensitivity_min_m;
 
 double between(double a, double b, double part) {
     return a + part * (b - a);

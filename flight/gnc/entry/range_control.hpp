@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/load.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <cstdint>
 
@@ -12,11 +13,11 @@
 //
 // In       V, D, ḣ relative to rotating Mars; R range to go; L/D as sensed       Out   vertical L/D and |bank|
 // Rate     64 Hz         Memory   none: a pure function of the reference
-// Source   [apollo-entry-guidance]; K = 5 [facts] Guidance (M)
+// Source   [apollo-entry-guidance]; K from parameters.csv
 // Valid    within the reference's velocities; held at its ends
 namespace aeolis::flight::gnc {
 
-inline constexpr double overcontrol_gain = 5.0; ///< K, [facts] Guidance (M)
+inline constexpr double overcontrol_gain = ParameterDefaults{}.guidance_gain; ///< K
 
 /// The reference at a velocity, linear between its rows, held at its ends. An empty reference gives a row of zeros.
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps);

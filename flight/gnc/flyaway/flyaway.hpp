@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
 
 // Takes the stage away from the rover once the bridle is cut, to fall far off.
 //
@@ -12,11 +13,11 @@
 // limit Source   [facts] Timeline: burn of 6.66 s, stage falls ≥ 450 m away; phases, pitch and azimuth (north) are ours
 namespace aeolis::flight::gnc::flyaway {
 
-inline constexpr double clear_s = 0.2;
-inline constexpr double upright_s = 2.0;
-inline constexpr double pitch_time_s = 1.5;
-inline constexpr double pitch_rad = 45.0 * degree;
-inline constexpr double azimuth_rad = 0.0;
+inline constexpr double clear_s = ParameterDefaults{}.flyaway_clear_s;
+inline constexpr double upright_s = ParameterDefaults{}.flyaway_upright_s;
+inline constexpr double pitch_time_s = ParameterDefaults{}.flyaway_pitch_time_s;
+inline constexpr double pitch_rad = ParameterDefaults{}.flyaway_pitch_deg * degree;
+inline constexpr double azimuth_rad = ParameterDefaults{}.flyaway_azimuth_deg * degree;
 
 struct Command {
     Vector3 direction_M = Vector3::UnitX(); ///< unit, of thrust

@@ -1,6 +1,9 @@
 #pragma once
 
 #include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
+
+#include <algorithm>
 
 // Drag and lift as the accelerometers feel them, smoothed.
 //
@@ -24,16 +27,16 @@ class ForceFilter {
 
     double drag_mps2() const { return drag_mps2_; }
 
-    /// Lift over drag; `otherwise` while drag is too weak to tell. Held within 0.15 … 0.40, ours: wider than all flown.
+    /// Lift over drag; `otherwise` while drag is too weak to tell. Held within bounds wider than all flown.
     double lift_to_drag(double otherwise) const {
         if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
         const double ratio = lift_mps2_ / slow_drag_mps2_;
-        return ratio < 0.15 ? 0.15 : ratio > 0.40 ? 0.40 : ratio;
+        return std::clamp(ratio, ParameterDefaults{}.lift_to_drag_min, ParameterDefaults{}.lift_to_drag_max);
     }
 
-    static constexpr double drag_time_s = 0.5;
-    static constexpr double lift_time_s = 4.0;
-    static constexpr double enough_drag_mps2 = 5.0;
+    static constexpr double drag_time_s = ParameterDefaults{}.drag_filter_time_s;
+    static constexpr double lift_time_s = ParameterDefaults{}.lift_filter_time_s;
+    static constexpr double enough_drag_mps2 = ParameterDefaults{}.lift_to_drag_felt_mps2;
 
   private:
     double drag_mps2_ = 0.0;

@@ -7,12 +7,10 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr std::uint16_t beams_min = 12;     // in a quarter of a second, of thirty; ours
-constexpr double cosine_min = 0.2588;       // 75°: below that range says little of altitude; ours
-constexpr double quarters_per_second = 4.0; // bins
+constexpr ParameterDefaults parameters{};
 
 std::int64_t quarter_of(Sclk time) {
-    return static_cast<std::int64_t>(std::floor(time.seconds * quarters_per_second));
+    return static_cast<std::int64_t>(std::floor(time.seconds * radar_bins_per_second));
 }
 
 } // namespace
@@ -24,14 +22,14 @@ void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion
         if (!beam.valid) continue;
         const Vector3 d_M = q_MB * to_vector(beam.direction_B);
         const double down = -d_M.dot(up_M);
-        if (!(down >= cosine_min)) continue;
+        if (!(down >= parameters.radar_beam_cosine_min)) continue;
         if (bin.quarter != quarter) {
             bin = Bin{};
             bin.quarter = quarter;
             bin.first = now;
         }
         bin.last = now;
-        bin.time_sum_s += now.seconds - static_cast<double>(quarter) / quarters_per_second;
+        bin.time_sum_s += now.seconds - static_cast<double>(quarter) / radar_bins_per_second;
         bin.altitude_sum_m += beam.range_m * down;
         bin.normal += d_M * d_M.transpose();
         bin.right -= beam.range_rate_mps * d_M;
@@ -47,7 +45,7 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
     double altitude_sum_m = 0.0, time_sum_s = 0.0, bins = 0.0;
     Sclk first = now, last{0.0};
     for (const Bin& bin : bins_) {
-        if (bin.beams < beams_min || bin.quarter < oldest || bin.quarter >= newest) continue;
+        if (bin.beams < parameters.radar_beams_min || bin.quarter < oldest || bin.quarter >= newest) continue;
         const double count = bin.beams;
         // Directions that span space: the determinant of their mean square is far from nil (0.004 with MSL's beams).
         if (!((bin.normal / count).determinant() > 1.0e-4)) continue;
@@ -55,7 +53,7 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
         v_sum += bin.normal.inverse() * bin.right;
         altitude_sum_m += bin.altitude_sum_m / count;
         // Times relative to `newest` keep the sum small and so exact enough.
-        time_sum_s += bin.time_sum_s / count + static_cast<double>(bin.quarter - newest) / quarters_per_second;
+        time_sum_s += bin.time_sum_s / count + static_cast<double>(bin.quarter - newest) / radar_bins_per_second;
         solution.beams = static_cast<std::uint16_t>(solution.beams + bin.beams);
         first = std::min(first, bin.first);
         last = std::max(last, bin.last);
@@ -64,7 +62,7 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
     if (bins == 0.0) return std::nullopt;
     solution.v_MB_M_mps = to_array(Vector3(v_sum / bins));
     solution.altitude_m = altitude_sum_m / bins;
-    solution.time = {static_cast<double>(newest) / quarters_per_second + time_sum_s / bins};
+    solution.time = {static_cast<double>(newest) / radar_bins_per_second + time_sum_s / bins};
     solution.span_s = last - first;
     return solution;
 }

@@ -3,6 +3,7 @@
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <array>
 #include <cstdint>
@@ -32,13 +33,15 @@ struct RadarSolution {
     std::uint16_t beams = 0;
 };
 
+inline constexpr double radar_bins_per_second = 4.0; ///< a quarter of a second: five measurements of each beam
+
 class RadarBatch {
   public:
     /// The beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
     void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
 
-    /// The average over the last whole quarters, 4.75 s; a quarter with fewer than 12 measurements or all in one plane
-    /// is left out. None when all are.
+    /// The average over the last whole quarters, 4.75 s; a quarter with too few measurements or all in one plane is left
+    /// out. None when all are.
     std::optional<RadarSolution> solve(Sclk now) const;
 
     void clear() { bins_ = {}; }
@@ -53,7 +56,7 @@ class RadarBatch {
         Vector3 right = Vector3::Zero();
         std::uint16_t beams = 0;
     };
-    std::array<Bin, 20> bins_{};
+    std::array<Bin, static_cast<std::size_t>(ParameterDefaults{}.radar_average_s * radar_bins_per_second)> bins_{};
 };
 
 } // namespace aeolis::flight::gnc

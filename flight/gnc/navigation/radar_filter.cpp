@@ -7,12 +7,8 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double gain_later = 0.3;
-// Gates after the first solution: 2 % of range and three sigma of what an accelerometer can drift in 5 s; ours.
-constexpr double altitude_gate_m = 60.0;
-constexpr double altitude_gate_fraction = 0.05;
-constexpr double velocity_gate_mps = 5.0;
-constexpr std::uint32_t refused_max = 5;
+constexpr ParameterDefaults parameters{};
+constexpr auto refused_max = static_cast<std::uint32_t>(parameters.radar_refused_max);
 
 } // namespace
 
@@ -51,14 +47,14 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     const double residual_h_m = solution.altitude_m - altitude_m;
     const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
 
-    const bool outside = std::abs(residual_h_m) > altitude_gate_m + altitude_gate_fraction * solution.altitude_m ||
-                         residual_v.norm() > velocity_gate_mps;
+    const bool outside = std::abs(residual_h_m) > parameters.radar_altitude_gate_m + parameters.radar_altitude_gate_fraction * solution.altitude_m ||
+                         residual_v.norm() > parameters.radar_velocity_gate_mps;
     if (accepted_ > 0 && outside && refused_in_a_row_ < refused_max) {
         ++refused_;
         ++refused_in_a_row_;
         return std::nullopt;
     }
-    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max ? 1.0 : gain_later;
+    const double gain = accepted_ == 0 || refused_in_a_row_ >= refused_max ? 1.0 : parameters.radar_gain;
     refused_in_a_row_ = 0;
     ++accepted_;
 

@@ -9,8 +9,7 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-// Bias is the mean of at most this many increments: a minute of them; ours.
-constexpr std::uint32_t bias_samples_max = 12000;
+constexpr auto bias_samples_max = static_cast<std::uint32_t>(ParameterDefaults{}.imu_bias_samples_max);
 
 /// The rotation by a small vector, to third order; its caller keeps the angle below 0.1 rad.
 Quaternion small_rotation(const Vector3& angle) {

@@ -2,6 +2,7 @@
 
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <cstdint>
 
@@ -19,7 +20,7 @@
 namespace aeolis::flight::gnc {
 
 inline constexpr double imu_period_s = 1.0 / 200.0; ///< [facts] Vehicle
-inline constexpr std::uint32_t gap_max = 64;        ///< ours: a third of a second
+inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(ParameterDefaults{}.imu_gap_max);
 
 struct NavigatedState {
     Vector3 p_MoB_M = Vector3::Zero(); ///< [m]

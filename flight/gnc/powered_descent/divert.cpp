@@ -1,5 +1,7 @@
 #include "flight/gnc/powered_descent/divert.hpp"
 
+#include "generated/dictionary_flight.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,8 +9,8 @@ namespace aeolis::flight::gnc::powered_descent {
 
 namespace {
 
-constexpr double velocity_gain_per_s = 1.0;
-constexpr double position_gain_per_s2 = 0.25; // with the one above: critically damped, 2 s
+constexpr double velocity_gain_per_s = ParameterDefaults{}.divert_velocity_gain_per_s;
+constexpr double position_gain_per_s2 = ParameterDefaults{}.divert_position_gain_per_s2;
 
 } // namespace
 

@@ -2,6 +2,7 @@
 
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
 
 // From a wanted acceleration to a direction of thrust and the throttles of eight engines, or of four.
 //
@@ -11,9 +12,9 @@
 // Source   [facts] Vehicle: each engine 400 … 3060 N used; the tilt limit is ours
 namespace aeolis::flight::gnc::powered_descent {
 
-inline constexpr double engine_used_min_N = 400.0;  ///< [facts] Vehicle
-inline constexpr double engine_used_max_N = 3060.0; ///< [facts] Vehicle
-inline constexpr double tilt_max_rad = 60.0 * degree;
+inline constexpr double engine_used_min_N = ParameterDefaults{}.engine_used_min_N;
+inline constexpr double engine_used_max_N = ParameterDefaults{}.engine_used_max_N;
+inline constexpr double tilt_max_rad = ParameterDefaults{}.tilt_max_deg * degree;
 
 struct Thrust {
     Vector3 direction_M = Vector3::UnitX(); ///< unit

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "generated/dictionary_flight.hpp"
+
 // The vertical part of powered descent: which descent rate belongs to which altitude, and what acceleration keeps it.
 //
 //   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left
@@ -12,16 +14,19 @@
 // Valid    90 … 0.75 m/s; net decelerations are kept within 1 … 6 m/s², what thrust of [facts] Vehicle can give
 namespace aeolis::flight::gnc::powered_descent {
 
+/// The bridle, and from its end to the wheels.
 inline constexpr double stage_height_at_touchdown_m =
-    8.5; ///< bridle 7.5 m [facts]; 1 m from its end to the wheels is ours
-inline constexpr double constant_velocity_mps = 32.0;
-inline constexpr double sky_crane_mps = 0.75;
-inline constexpr double approach_end_altitude_m = 235.0 + stage_height_at_touchdown_m;
-inline constexpr double sky_crane_altitude_m = 18.0 + stage_height_at_touchdown_m;
-inline constexpr double approach_deceleration_mps2 = 3.19; ///< net; design value
-inline constexpr double constant_deceleration_mps2 = 4.26; ///< net; design value
-inline constexpr double free_fall_s = 3.2;                 ///< from backshell separation to powered approach
-inline constexpr double rate_gain_per_s = 1.0;             ///< ours
+    ParameterDefaults{}.bridle_length_m + ParameterDefaults{}.stage_above_bridle_m;
+inline constexpr double constant_velocity_mps = ParameterDefaults{}.constant_velocity_mps;
+inline constexpr double sky_crane_mps = ParameterDefaults{}.sky_crane_descent_rate_mps;
+inline constexpr double approach_end_altitude_m =
+    ParameterDefaults{}.powered_approach_end_altitude_m + stage_height_at_touchdown_m;
+inline constexpr double sky_crane_altitude_m = ParameterDefaults{}.sky_crane_altitude_m + stage_height_at_touchdown_m;
+inline constexpr double approach_deceleration_mps2 = ParameterDefaults{}.approach_deceleration_mps2;
+inline constexpr double constant_deceleration_mps2 = ParameterDefaults{}.constant_deceleration_mps2;
+/// From backshell separation to powered approach.
+inline constexpr double free_fall_s = ParameterDefaults{}.powered_approach_delay_s;
+inline constexpr double rate_gain_per_s = ParameterDefaults{}.descent_rate_gain_per_s;
 
 /// Altitude that free fall and the approach use up by design, from a descent rate at backshell separation.
 double altitude_used_until_constant_velocity_m(double descent_rate_mps);

@@ -1,16 +1,19 @@
 #include "flight/gnc/sky_crane/rate_control.hpp"
 
+#include "generated/dictionary_flight.hpp"
+
 #include <algorithm>
 
 namespace aeolis::flight::gnc::sky_crane {
 
 namespace {
 
-constexpr double proportional_per_s = 4.0;
-constexpr double integral_per_s2 = 4.0; // critically damped with the one above: 0.5 s
-constexpr double integral_max_mps2 = 2.5;
-constexpr double command_max_mps2 = 3.0;
-constexpr double level_per_s = 0.8;
+constexpr ParameterDefaults parameters{};
+constexpr double proportional_per_s = parameters.sky_crane_proportional_per_s;
+constexpr double integral_per_s2 = parameters.sky_crane_integral_per_s2;
+constexpr double integral_max_mps2 = parameters.sky_crane_integral_max_mps2;
+constexpr double command_max_mps2 = parameters.sky_crane_command_max_mps2;
+constexpr double level_per_s = parameters.sky_crane_level_per_s;
 
 } // namespace
 

@@ -4,7 +4,7 @@
 
 // Holds the descent rate and nulls the drift while four engines carry the stage, the rover below it on the bridle.
 //
-//   a_up = k_p e + k_i ∫e,  e = rate − wanted;   a_level = −k v_level;   a_up within ±2.5 m/s²
+//   a_up = k_p e + k_i ∫e,  e = rate − wanted;   a_level = −k v_level;   both within limits
 //
 // Frame    M; rate positive down, a positive up         Units   m/s, m/s²
 // The integral takes up what the mass is not known: when the rover stands, thrust settles at the stage's own weight.

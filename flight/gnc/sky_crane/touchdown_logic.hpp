@@ -1,6 +1,8 @@
 #pragma once
 
+#include "common/time.hpp"
 #include "flight/gnc/quantities.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <cstdint>
 
@@ -14,8 +16,8 @@
 // Valid    while the stage hovers upright at a steady rate
 namespace aeolis::flight::gnc::sky_crane {
 
-inline constexpr std::uint32_t touchdown_cycles = 80; ///< 1.25 s
-inline constexpr double thrust_tolerance = 0.12;
+inline constexpr auto touchdown_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.touchdown_settle_s / seconds_per_tick);
+inline constexpr double thrust_tolerance = ParameterDefaults{}.touchdown_thrust_tolerance;
 
 class TouchdownLogic {
   public:

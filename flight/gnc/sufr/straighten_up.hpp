@@ -1,5 +1,8 @@
 #pragma once
 
+#include "flight/gnc/vector.hpp"
+#include "generated/dictionary_flight.hpp"
+
 // Straighten up and fly right: the balance masses go, the angle of attack with them, and bank turns to lift up.
 //
 //   bank(t) = bank at start, brought to nil at 10°/s;  done after 14.00 s
@@ -8,8 +11,8 @@
 // Source   [facts] Timeline: lasts 14.00 s; the rate is ours, half of what the thrusters can [facts] Vehicle
 namespace aeolis::flight::gnc::sufr {
 
-inline constexpr double duration_s = 14.0;
-inline constexpr double roll_rate_rps = 0.174533;
+inline constexpr double duration_s = ParameterDefaults{}.sufr_duration_s;
+inline constexpr double roll_rate_rps = ParameterDefaults{}.sufr_roll_rate_dps * degree;
 
 double bank_rad(double since_start_s, double bank_at_start_rad);
 

@@ -25,9 +25,6 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-// Descent rate to which the altitude of ground's solution belongs. [facts] Timeline: 79.1 m/s at 1.662 km
-constexpr double backshell_descent_rate_mps = 79.1;
-
 } // namespace
 
 Conditions guidance_start(double filtered_drag_mps2) {
@@ -38,16 +35,24 @@ Conditions heading_alignment(double speed_mps) {
     return list(at_most(Quantity::speed_mps, speed_mps, heading_alignment_speed_mps));
 }
 
-Conditions sufr_start(double speed_mps, double deceleration_mps2, double parachute_speed_mps) {
-    // Far above the parachute's speed a straight line says nothing; 100 m/s above is well before any lead time. Ours.
-    constexpr double near_mps = 100.0;
-    const double to_parachute_s = (speed_mps - parachute_speed_mps) / std::max(deceleration_mps2, 1.0e-3);
+Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds) {
+    const double to_lowest_s = (at.altitude_m - bounds.altitude_min_m) / std::max(at.descent_rate_mps, 1.0);
+    const Conditions low = list(at_most(Quantity::time_to_parachute_s, to_lowest_s, sufr_lead_s),
+                                at_least(Quantity::descent_rate_mps, at.descent_rate_mps, 1.0));
+    if (all_hold(low)) return low;
+    const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
     return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, sufr_lead_s),
-                at_most(Quantity::speed_mps, speed_mps, parachute_speed_mps + near_mps));
+                at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + ParameterDefaults{}.sufr_near_mps));
 }
 
-Conditions parachute(double speed_mps, double parachute_speed_mps, std::uint32_t cycles_held) {
-    return list(at_most(Quantity::speed_mps, speed_mps, parachute_speed_mps),
+bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {
+    return at.speed_mps <= bounds.speed_mps || at.altitude_m <= bounds.altitude_min_m;
+}
+
+Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held) {
+    const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps);
+    const Condition low = at_most(Quantity::altitude_m, at.altitude_m, bounds.altitude_min_m);
+    return list(low.holds && !slow.holds ? low : slow,
                 at_least(Quantity::cycles_held, cycles_held, parachute_cycles));
 }
 
@@ -56,9 +61,9 @@ Conditions heatshield(double speed_mps, double heatshield_speed_mps, double sinc
                 at_least(Quantity::time_since_parachute_s, since_parachute_s, heatshield_delay_s));
 }
 
-double backshell_altitude_needed_m(double backshell_altitude_m, double descent_rate_mps) {
-    return backshell_altitude_m + powered_descent::altitude_used_until_constant_velocity_m(descent_rate_mps) -
-           powered_descent::altitude_used_until_constant_velocity_m(backshell_descent_rate_mps);
+double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps) {
+    return bounds.altitude_m + powered_descent::altitude_used_until_constant_velocity_m(descent_rate_mps) -
+           powered_descent::altitude_used_until_constant_velocity_m(bounds.descent_rate_mps);
 }
 
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m) {
@@ -67,10 +72,10 @@ Conditions engine_priming(double altitude_m, double descent_rate_mps, double bac
                 at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0));
 }
 
-Conditions backshell(double altitude_m, double descent_rate_mps, double backshell_altitude_m,
+Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held) {
     return list(
-        at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(backshell_altitude_m, descent_rate_mps)),
+        at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(bounds, descent_rate_mps)),
         at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
         at_least(Quantity::cycles_held, cycles_held, backshell_cycles));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/gnc/quantities.hpp"
+#include "generated/dictionary_flight.hpp"
 
 #include <cstdint>
 
@@ -12,16 +13,14 @@
 // Source   [facts] Timeline; bounds that ground may change come with its solution
 namespace aeolis::flight::gnc::triggers {
 
-inline constexpr double guidance_start_drag_mps2 = 1.96; ///< 0.2 g, filtered [facts]
-/// From the start of SUFR to the parachute: 16.9 s [facts], and a second because drag grows as it straightens up
-/// (ours).
-inline constexpr double sufr_lead_s = 18.0;
-inline constexpr std::uint32_t parachute_cycles = 3; ///< persistence; ours
-inline constexpr std::uint32_t backshell_cycles = 3; ///< persistence; ours
-inline constexpr double heatshield_delay_s = 20.0;   ///< after the mortar [facts]
-inline constexpr double priming_lead_s = 15.5;       ///< before backshell separation: 15 … 16 s [facts]
-inline constexpr double radar_patience_s = 60.0;     ///< after heatshield separation, without a lock; ours
-inline constexpr double sky_crane_settling_s = 2.5;  ///< from throttle-down to rover separation [facts]
+inline constexpr double guidance_start_drag_mps2 = ParameterDefaults{}.guidance_start_drag_mps2;
+inline constexpr double sufr_lead_s = ParameterDefaults{}.sufr_lead_s; ///< before the parachute
+inline constexpr auto parachute_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.parachute_cycles);
+inline constexpr auto backshell_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.backshell_cycles);
+inline constexpr double heatshield_delay_s = ParameterDefaults{}.heatshield_delay_min_s; ///< after the mortar
+inline constexpr double priming_lead_s = ParameterDefaults{}.priming_lead_s;             ///< before backshell separation
+inline constexpr double radar_patience_s = ParameterDefaults{}.radar_patience_s; ///< after heatshield separation
+inline constexpr double sky_crane_settling_s = ParameterDefaults{}.sky_crane_settle_s; ///< to rover separation
 
 /// Counts how long a condition has held without a break.
 class Persistence {
@@ -35,19 +34,41 @@ class Persistence {
 Conditions guidance_start(double filtered_drag_mps2);
 Conditions heading_alignment(double speed_mps);
 
-/// `deceleration_mps2`: of the speed, drag less what gravity adds; nil or less tells nothing and never fires.
-Conditions sufr_start(double speed_mps, double deceleration_mps2, double parachute_speed_mps);
+/// What the triggers of the entry look at.
+struct InAir {
+    double speed_mps = 0.0;
+    double altitude_m = 0.0;
+    double descent_rate_mps = 0.0;
+};
+/// From ground's solution: the speed to wait for, and the altitude down to which that is allowed.
+struct ParachuteBounds {
+    double speed_mps = 0.0;
+    double altitude_min_m = 0.0;
+};
 
-Conditions parachute(double speed_mps, double parachute_speed_mps, std::uint32_t cycles_held);
+/// `deceleration_mps2`: of the speed, drag less what gravity adds; nil or less tells nothing and never fires.
+///
+/// Two ways: the parachute's speed is near, or its lowest altitude is. The second leaves time for the balance masses.
+Conditions sufr_start(const InAir& at, double deceleration_mps2, const ParachuteBounds& bounds);
+
+/// Slow enough; or so low that waiting to be slower is over: better too fast than too low.
+bool parachute_due(const InAir& at, const ParachuteBounds& bounds);
+Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held);
 Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s);
 
-/// Altitude at which the backshell must go at a descent rate so that the same powered approach fits below: at 79.1 m/s
-/// the altitude of ground's solution; faster, higher by what free fall and the approach then need more.
-double backshell_altitude_needed_m(double backshell_altitude_m, double descent_rate_mps);
+/// From ground's solution: an altitude, and the descent rate that it belongs to.
+struct BackshellBounds {
+    double altitude_m = 0.0;
+    double descent_rate_mps = 0.0;
+};
+
+/// Altitude at which the backshell must go at a descent rate so that the same powered approach fits below: at the rate of
+/// ground's solution its altitude; faster, higher by what free fall and the approach then need more.
+double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
 
 /// Time is counted to the altitude of ground's solution: by then the descent rate is near its design value.
 Conditions engine_priming(double altitude_m, double descent_rate_mps, double backshell_altitude_m);
-Conditions backshell(double altitude_m, double descent_rate_mps, double backshell_altitude_m,
+Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held);
 
 } // namespace aeolis::flight::gnc::triggers

@@ -1,0 +1,72 @@
+#include "tests/structure/source_tree.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <array>
+#include <regex>
+#include <set>
+
+// One source for parameters: what parameters.csv names, flight uses, and what flight is tuned by stands nowhere else.
+namespace {
+
+using namespace aeolis;
+
+const std::vector<std::string>& flight_sources() {
+    static const std::vector<std::string> files = structure::files_under("flight", {".hpp", ".cpp"});
+    return files;
+}
+
+/// Without what stands behind //.
+std::string code_of(const std::string& line) {
+    return line.substr(0, line.find("//"));
+}
+
+} // namespace
+
+TEST_CASE("each parameter of parameters.csv is used in flight", "[dictionary][R48]") {
+    // Members are named behind a dot: ParameterDefaults{}.name.
+    static const std::regex member{R"(\.([A-Za-z_][A-Za-z0-9_]*))"};
+    std::set<std::string> used;
+    for (const std::string& file : flight_sources())
+        for (const std::string& line : structure::lines_of(file)) {
+            const std::string code = code_of(line);
+            for (std::sregex_iterator match{code.begin(), code.end(), member}, end; match != end; ++match)
+                used.insert((*match)[1]);
+        }
+    const auto& parameters = tests::shipped_dictionary().parameters;
+    CHECK(parameters.size() > 60);
+    std::string unused;
+    for (const auto& parameter : parameters)
+        if (!used.contains(parameter.name)) unused += parameter.name + "\n";
+    INFO("parameters that nothing in flight uses: use or remove them\n" << unused);
+    CHECK(unused.empty());
+    CHECK_FALSE(used.contains("a_parameter_that_is_not_there"));
+}
+
+TEST_CASE("no module of EDL has a constant of its own that tunes it: they come from parameters.csv", "[dictionary][R48]") {
+    // constexpr TYPE NAME = a number. What remains are units, the world, and the interface to a device.
+    static const std::regex literal{R"(constexpr\s+[A-Za-z_:0-9]+\s+([A-Za-z_0-9]+)\s*=\s*-?[0-9])"};
+    static const std::set<std::string> no_tuning{
+        "pi",           "degrees_per_radian",    "parts_in_percent",   "standard_gravity_mps2",
+        "mars_j2",      "mars_gm_m3ps2",         "mars_spin_rps",      "mars_equator_radius_m",
+        "imu_period_s", "radar_bins_per_second", "mars_weight_mps2",   "reports_per_cycle_max",
+    };
+    std::string tuning;
+    std::size_t seen = 0;
+    for (const std::string& file : flight_sources()) {
+        const bool of_edl = std::ranges::any_of(
+            std::array{"flight/gnc/", "flight/edl/", "flight/edl_bg/", "flight/mfsk/", "flight/fault_protection/"},
+            [&](const char* folder) { return file.starts_with(folder); });
+        const auto lines = of_edl ? structure::lines_of(file) : std::vector<std::string>{};
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            std::smatch match;
+            const std::string code = code_of(lines[i]);
+            if (!std::regex_search(code, match, literal)) continue;
+            ++seen;
+            if (!no_tuning.contains(match[1])) tuning += file + ":" + std::to_string(i + 1) + ": " + code + "\n";
+        }
+    }
+    CHECK(seen >= 9);
+    INFO("put the value in parameters.csv and take it from ParameterDefaults\n" << tuning);
+    CHECK(tuning.empty());
+}
