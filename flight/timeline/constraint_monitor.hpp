@@ -46,6 +46,7 @@ static_assert(constraint_count <= constraint_rows_max, "constraints.csv has more
 /// Rule    a row is judged when its `to` comes, and again when that moves (an anchor set anew); when `from` was not
 ///         known by then, as soon as it is. A row whose `from` or `to` never comes is never judged
 /// Rate    each cycle; at most four reports a cycle, so that the outbox always has room for what EDL itself must send
+/// Reset   what a computer saw before a restart or a hand-over is not handed on: rows that reach back over it are not judged
 /// Memory  fixed; the rows are read where the autocoder put them
 /// Faults  with 64 reports waiting the next are dropped; each report tells how many violations there were in all
 class ConstraintMonitor {

@@ -38,6 +38,11 @@ class ForceFilter {
     static constexpr double lift_time_s = ParameterDefaults{}.lift_filter_time_s;
     static constexpr double enough_drag_mps2 = ParameterDefaults{}.lift_to_drag_felt_mps2;
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(drag_mps2_, lift_mps2_, slow_drag_mps2_);
+    }
+
   private:
     double drag_mps2_ = 0.0;
     double lift_mps2_ = 0.0;
