@@ -192,6 +192,19 @@ struct ParameterRow {
     std::string source;
 };
 
+/// A row of state_machines.csv: in `from`, `event` leads to `to`.
+struct StateTransition {
+    std::string from, event, to;
+    std::string note;
+    unsigned line = 0;  ///< in state_machines.csv
+};
+/// One state machine of flight; its name is that of the XTCE enumeration whose labels are its states.
+struct StateMachineTable {
+    std::string name;
+    std::string initial;
+    std::vector<StateTransition> transitions;
+};
+
 /// An instant that constraints.csv speaks of.
 struct Moment {
     enum class Kind {
@@ -234,6 +247,7 @@ struct Dictionary {
     std::vector<ToneRow> tones;        ///< 256, by id
     std::vector<ParameterRow> parameters;
     std::vector<ConstraintRow> constraints;
+    std::vector<StateMachineTable> state_machines;
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -257,7 +271,8 @@ struct Loaded {
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv. All are on
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv,
+/// state_machines.csv. All are on
 /// board, so `id` follows each; the last changes nothing that the timeline does, so `timeline_version` does not follow it.
 Loaded load(const std::filesystem::path& directory);
 

@@ -14,6 +14,9 @@ class Findings {
   public:
     Findings(std::string file, std::vector<Finding>& all) : file_(std::move(file)), all_(all) {}
 
+    /// So far, those of other files too.
+    std::size_t size() const { return all_.size(); }
+
     void add(unsigned line, std::string message) { all_.push_back({file_, line, std::move(message)}); }
 
   private:

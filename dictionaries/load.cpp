@@ -2,6 +2,8 @@
 
 #include "common/crc.hpp"
 #include "dictionaries/findings.hpp"
+#include "dictionaries/enumerations.hpp"
+#include "dictionaries/spreadsheet/state_machines.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
 #include "dictionaries/xtce/space_system.hpp"
 
@@ -108,13 +110,20 @@ Loaded load(const std::filesystem::path& directory) {
         return read_constraints(text, moments, findings);
     });
 
+    const File state_machines_csv = read_file(directory / "state_machines.csv", all);
+    std::vector<const Type*> enumerations;
+    if (system) enumerations = enumerations_of(system->packets, system->commands);
+    auto state_machines = read(state_machines_csv, [&](std::string_view text, Findings& findings) {
+        return read_state_machines(text, system ? &enumerations : nullptr, findings);
+    });
+
     std::ranges::stable_sort(
         all, [](const Finding& a, const Finding& b) { return std::tie(a.file, a.line) < std::tie(b.file, b.line); });
     if (!all.empty()) return loaded;
 
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
-    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv});
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv, &state_machines_csv});
     // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
@@ -126,6 +135,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.tones = std::move(*tones);
     dictionary.parameters = std::move(*parameters);
     dictionary.constraints = std::move(*constraints);
+    dictionary.state_machines = std::move(*state_machines);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

@@ -2,10 +2,10 @@
 
 #include "common/space_packet.hpp"
 #include "dictionaries/autocoder/cpp_text.hpp"
+#include "dictionaries/enumerations.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <sstream>
 
 namespace aeolis::dictionary::autocoder {
@@ -71,23 +71,15 @@ class HeaderWriter {
 
   private:
     void write_enumerations() {
-        std::map<std::string, const Type*> seen;
-        const auto write_once = [&](const Type& type) {
-            if (type.kind != ValueKind::enumerated || !seen.emplace(type.name, &type).second) return;
-            const bool is_signed = type.encoding == Encoding::twos_complement;
-            Type integer = type;
+        for (const Type* type : enumerations_of(dictionary_.packets, dictionary_.commands)) {
+            const bool is_signed = type->encoding == Encoding::twos_complement;
+            Type integer = *type;
             integer.kind = ValueKind::integer;
-            out_ << "enum class " << camel_case(type.name) << " : " << value_type(integer) << " {\n";
-            for (const EnumValue& entry : type.enumeration)
+            out_ << "enum class " << camel_case(type->name) << " : " << value_type(integer) << " {\n";
+            for (const EnumValue& entry : type->enumeration)
                 out_ << "    " << entry.label << " = " << entry.value << (is_signed ? "" : "U") << ",\n";
             out_ << "};\n\n";
-        };
-        for (const Packet& packet : dictionary_.packets)
-            for (const Field& field : packet.fields)
-                write_once(field.type);
-        for (const Command& command : dictionary_.commands)
-            for (const Argument& argument : command.arguments)
-                write_once(argument.type);
+        }
     }
 
     /// A packet's data in the order of bits, spare bits included. `event_id` of an event is a constant, no member.

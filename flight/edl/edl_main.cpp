@@ -107,11 +107,9 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
 }
 
 void EdlMain::update_phase(Sclk now, Outbox& out) {
-    const EdlPhase phase = phase_of(output_.mode, configuration_, late_cruise(now));
-    if (phase == phase_) return;
-    phase_ = phase;
-    out.send(ModuleId::edl_comm, PhaseChanged{phase});
-    out.event(evr::EDL_PHASE_CHANGED{.phase = phase});
+    if (!phase_.follow(output_.mode, configuration_, late_cruise(now))) return;
+    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
+    out.event(evr::EDL_PHASE_CHANGED{.phase = phase()});
 }
 
 // ---- what the device managers send -----------------------------------------------------------------------------

@@ -57,7 +57,7 @@ class EdlMain {
     }
 
     const Timeline& timeline() const { return timeline_; }
-    EdlPhase phase() const { return phase_; }
+    EdlPhase phase() const { return phase_.state(); }
 
   private:
     enum class Activity : std::uint8_t { flies, tracks, stands_by };
@@ -94,7 +94,7 @@ class EdlMain {
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
     gnc::Mode mode_ = gnc::Mode::off;
-    EdlPhase phase_ = EdlPhase::pre_edl;
+    Phase phase_;
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
     bool refused_to_hold_ = false;  // told once a fault, not once a report

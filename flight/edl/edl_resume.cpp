@@ -37,7 +37,7 @@ void EdlMain::restart(Sclk now, Outbox& out) {
         activity_ = Activity::stands_by;
         return out.event(evr::PRIME_STANDS_BY{});
     }
-    out.send(ModuleId::edl_comm, PhaseChanged{phase_});
+    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
     if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // what was navigated then is old by now
     if (!timeline_.begun()) return;
     const TimepointId from = timeline_.current();
@@ -56,7 +56,7 @@ void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
     }
     out.event(evr::SECOND_CHANCE_TAKES_OVER{.silence_s = now - prime.time, .timepoint = timeline_.current().value});
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
-    out.send(ModuleId::edl_comm, PhaseChanged{phase_});
+    out.send(ModuleId::edl_comm, PhaseChanged{phase()});
     ++revision_;
 }
 

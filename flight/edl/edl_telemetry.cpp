@@ -128,7 +128,7 @@ packet::Wideband wideband(Sclk now) {
 
 void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (due(now, 1)) {
-        out.record(packet::EdlStatus{.edl_phase = phase_,
+        out.record(packet::EdlStatus{.edl_phase = phase(),
                                      .edl_enabled = timeline_.begun(),
                                      .parameters_received = parameters_.has_value(),
                                      .late_cruise = late_cruise(now),
@@ -153,11 +153,11 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));
     if (!configuration_.enabled) return;
 
-    const bool in_atmosphere = phase_ >= EdlPhase::wait_for_guidance;
+    const bool in_atmosphere = phase() >= EdlPhase::wait_for_guidance;
     if (due(now, in_atmosphere ? 64 : 8)) out.record(navigation(output_));
     if (due(now, in_atmosphere ? 16 : 8)) out.record(imu(output_));
-    if (in_atmosphere && phase_ < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
-    if (phase_ >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_, bridle_m_));
+    if (in_atmosphere && phase() < EdlPhase::parachute_descent && due(now, 8)) out.record(entry_guidance(output_));
+    if (phase() >= EdlPhase::powered_descent && due(now, 8)) out.record(descent(output_, bridle_m_));
 }
 
 packet::ParametersHeld EdlMain::parameters_held() const {

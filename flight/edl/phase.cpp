@@ -1,29 +1,42 @@
 #include "flight/edl/phase.hpp"
 
-namespace aeolis::flight {
+#include <optional>
 
-EdlPhase phase_of(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise) {
+namespace aeolis::flight {
+namespace {
+
+/// What a mode of GNC means for the phase; nothing while GNC is off.
+std::optional<EdlPhaseEvent> event_of(gnc::Mode mode) {
     using gnc::Mode;
     switch (mode) {
-    case Mode::off:
-        if (configuration.cruise_stage_gone) return EdlPhase::exo_atmospheric;
-        return late_cruise ? EdlPhase::late_cruise : EdlPhase::pre_edl;
-    case Mode::approach: return EdlPhase::exo_atmospheric;
-    case Mode::wait_for_guidance_start: return EdlPhase::wait_for_guidance;
-    case Mode::range_control: return EdlPhase::range_control;
-    case Mode::heading_alignment: return EdlPhase::heading_alignment;
-    case Mode::straighten_up: return EdlPhase::straighten_up;
-    case Mode::wait_for_parachute: return EdlPhase::wait_for_parachute;
-    case Mode::parachute_descent: return EdlPhase::parachute_descent;
+    case Mode::off: return std::nullopt;
+    case Mode::approach: return EdlPhaseEvent::approach;
+    case Mode::wait_for_guidance_start: return EdlPhaseEvent::wait_for_guidance;
+    case Mode::range_control: return EdlPhaseEvent::range_control;
+    case Mode::heading_alignment: return EdlPhaseEvent::heading_alignment;
+    case Mode::straighten_up: return EdlPhaseEvent::straighten_up;
+    case Mode::wait_for_parachute: return EdlPhaseEvent::wait_for_parachute;
+    case Mode::parachute_descent: return EdlPhaseEvent::parachute_descent;
     case Mode::free_fall:
     case Mode::powered_approach:
     case Mode::constant_velocity:
-    case Mode::constant_deceleration: return EdlPhase::powered_descent;
-    case Mode::sky_crane: return EdlPhase::sky_crane;
+    case Mode::constant_deceleration: return EdlPhaseEvent::powered_descent;
+    case Mode::sky_crane: return EdlPhaseEvent::sky_crane;
     case Mode::touchdown:
-    case Mode::flyaway: return configuration.engines_off ? EdlPhase::landed : EdlPhase::flyaway;
+    case Mode::flyaway: return EdlPhaseEvent::touchdown;
     }
-    return EdlPhase::pre_edl;
+    return std::nullopt;
+}
+
+}  // namespace
+
+bool Phase::follow(gnc::Mode mode, const gnc::Configuration& configuration, bool late_cruise) {
+    const EdlPhase before = state();
+    machine_.take(late_cruise ? EdlPhaseEvent::late_cruise_begins : EdlPhaseEvent::entry_moves_away);
+    if (configuration.cruise_stage_gone) machine_.take(EdlPhaseEvent::cruise_stage_gone);
+    if (const auto event = event_of(mode)) machine_.take(*event);
+    if (configuration.engines_off) machine_.take(EdlPhaseEvent::engines_off);
+    return state() != before;
 }
 
 }  // namespace aeolis::flight

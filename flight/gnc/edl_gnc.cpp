@@ -28,7 +28,7 @@ void EdlGnc::set_solution(const Solution& solution, Sclk now) {
     solution_ = solution;
     target_M_ = direction_of(solution.target_latitude_rad, solution.target_longitude_rad);
     // Once the air is felt, what is on board knows better than what ground knew hours ago: only bounds are taken.
-    if (navigating_ && mode_ >= Mode::range_control) return;
+    if (navigating_ && mode() >= Mode::range_control) return;
     NavigatedState state;
     state.p_MoB_M = to_vector(solution.p_MoB_M_m);
     state.v_MB_M = to_vector(solution.v_MB_M_mps);
@@ -86,9 +86,11 @@ void EdlGnc::measure(Sclk now) {
     m.target = target_geometry(state.p_MoB_M, state.v_MB_M, target_M_, solution_.target_radius_m);
 }
 
-void EdlGnc::enter(Mode mode, Sclk now) {
-    mode_ = mode;
+// The one place where the mode changes, and only as state_machines.csv says.
+bool EdlGnc::take(GncModeEvent event, Sclk now) {
+    if (!mode_machine_.take(event)) return false;
     mode_since_ = now;
+    return true;
 }
 
 bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
@@ -128,26 +130,19 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
     report(out);
 }
 
-// Modes that follow what the timeline has done. Each step is taken once, and in order.
+// Modes that follow what the timeline has done. What stays true is offered each cycle; the table knows when it counts.
 void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) {
-    if (mode_ == Mode::off && configuration.enabled) enter(Mode::approach, now);
-    if (mode_ == Mode::approach && configuration.guidance_armed) enter(Mode::wait_for_guidance_start, now);
-    if (mode_ == Mode::straighten_up && since(mode_since_) >= sufr::duration_s) enter(Mode::wait_for_parachute, now);
-    if (mode_ >= Mode::range_control && mode_ < Mode::parachute_descent && configuration.parachute_out)
-        enter(Mode::parachute_descent, now);
-    if (mode_ >= Mode::range_control && mode_ < Mode::free_fall && configuration.backshell_gone) {
-        enter(Mode::free_fall, configuration.backshell_time.value_or(now));
+    using Event = GncModeEvent;
+    if (configuration.enabled) take(Event::enabled, now);
+    if (configuration.guidance_armed) take(Event::guidance_armed, now);
+    if (since(mode_since_) >= sufr::duration_s) take(Event::straightened_up, now);
+    if (configuration.parachute_out) take(Event::parachute_out, now);
+    if (configuration.backshell_gone && take(Event::backshell_gone, configuration.backshell_time.value_or(now)))
         mass_kg_ = load_.powered_descent_mass_kg;
-    }
-    if (mode_ == Mode::constant_deceleration && configuration.sky_crane_started) {
-        enter(Mode::sky_crane, now);
-        rate_control_.start();
-    }
-    if (mode_ == Mode::sky_crane && configuration.touchdown_declared) enter(Mode::touchdown, now);
-    if ((mode_ == Mode::touchdown || mode_ == Mode::sky_crane) && configuration.flyaway_started) {
-        enter(Mode::flyaway, now);
+    if (configuration.sky_crane_started && take(Event::throttled_down, now)) rate_control_.start();
+    if (configuration.touchdown_declared) take(Event::touchdown_declared, now);
+    if (configuration.flyaway_started && take(Event::flyaway_started, now))
         mass_kg_ -= load_.rover_mass_kg; // the bridle is cut before fly-away starts
-    }
 }
 
 // Entry and parachute: decisions by what is navigated.
@@ -155,22 +150,23 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     const Measured& m = measured_;
     const triggers::InAir in_air{m.speed_mps, m.altitude_m, m.descent_rate_mps};
     const triggers::ParachuteBounds parachute{solution_.parachute_speed_mps, solution_.parachute_altitude_min_m};
-    if (mode_ == Mode::wait_for_guidance_start &&
+    const GncModeMachine& machine = mode_machine_;
+    if (machine.can(GncModeEvent::drag_felt) &&
         fire(Trigger::guidance_start, triggers::guidance_start(force_filter_.drag_mps2()), out))
-        enter(Mode::range_control, now);
-    if (mode_ == Mode::range_control && fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
-        enter(Mode::heading_alignment, now);
-    if ((mode_ == Mode::range_control || mode_ == Mode::heading_alignment) && configuration.sufr_allowed &&
-        fire(Trigger::sufr_start, triggers::sufr_start(in_air, m.deceleration_mps2, parachute),
-             out)) {
+        take(GncModeEvent::drag_felt, now);
+    if (machine.can(GncModeEvent::slow_for_heading) &&
+        fire(Trigger::heading_alignment, triggers::heading_alignment(m.speed_mps), out))
+        take(GncModeEvent::slow_for_heading, now);
+    if (machine.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
+        fire(Trigger::sufr_start, triggers::sufr_start(in_air, m.deceleration_mps2, parachute), out)) {
         bank_at_sufr_rad_ = m.bank_rad;
-        enter(Mode::straighten_up, now);
+        take(GncModeEvent::parachute_near, now);
     }
-    if (mode_ >= Mode::range_control && mode_ <= Mode::wait_for_parachute) {
+    if (mode() >= Mode::range_control && mode() <= Mode::wait_for_parachute) {
         const auto held = due_for_parachute_.on(triggers::parachute_due(in_air, parachute));
         fire(Trigger::parachute, triggers::parachute(in_air, parachute, held), out);
     }
-    if (mode_ != Mode::parachute_descent) return;
+    if (mode() != Mode::parachute_descent) return;
     const double since_parachute_s = configuration.parachute_time ? now - *configuration.parachute_time : 0.0;
     if (!configuration.heatshield_gone)
         fire(Trigger::heatshield, triggers::heatshield(m.speed_mps, solution_.heatshield_speed_mps, since_parachute_s),
@@ -194,31 +190,31 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
     using namespace powered_descent;
     const Measured& m = measured_;
     Conditions conditions;
-    if (mode_ == Mode::free_fall) {
+    if (mode() == Mode::free_fall) {
         conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), free_fall_s));
         if (!fire(Trigger::powered_approach, conditions, out)) return;
-        enter(Mode::powered_approach, now);
+        take(GncModeEvent::fallen_clear, now);
         approach_.start(m.altitude_m, m.descent_rate_mps);
         const double duration_s = (m.descent_rate_mps - constant_velocity_mps) / approach_.deceleration_mps2();
         const Vector3& p_MoB_M = strapdown_.state().p_MoB_M;
         divert_.start(load_.divert_m * azimuth_direction(p_MoB_M, load_.divert_azimuth_deg * degree),
                       m.level_velocity_M, duration_s);
         divert_from_M_ = p_MoB_M;
-    } else if (mode_ == Mode::powered_approach) {
+    } else if (mode() == Mode::powered_approach) {
         if (approach_.done(m.altitude_m, m.descent_rate_mps))
             conditions.push_back(below(Quantity::descent_rate_mps, m.descent_rate_mps, 2.0 * constant_velocity_mps));
-        if (fire(Trigger::constant_velocity, conditions, out)) enter(Mode::constant_velocity, now);
-    } else if (mode_ == Mode::constant_velocity) {
+        if (fire(Trigger::constant_velocity, conditions, out)) take(GncModeEvent::approached, now);
+    } else if (mode() == Mode::constant_velocity) {
         conditions.push_back(
             at_most(Quantity::altitude_m, m.altitude_m, constant_deceleration_altitude_m(m.descent_rate_mps)));
         if (!fire(Trigger::constant_deceleration, conditions, out)) return;
-        enter(Mode::constant_deceleration, now);
+        take(GncModeEvent::low_enough, now);
         deceleration_.start(m.altitude_m, m.descent_rate_mps);
-    } else if (mode_ == Mode::constant_deceleration) {
+    } else if (mode() == Mode::constant_deceleration) {
         conditions.push_back(
             at_most(Quantity::descent_rate_mps, m.descent_rate_mps, sky_crane_mps + parameters.sky_crane_rate_tolerance_mps));
         fire(Trigger::sky_crane, conditions, out);
-    } else if (mode_ == Mode::sky_crane) {
+    } else if (mode() == Mode::sky_crane) {
         conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), triggers::sky_crane_settling_s));
         fire(Trigger::rover_separation, conditions, out);
         if (configuration.rover_separated && configuration.touchdown_logic_ready)
@@ -229,15 +225,15 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
 void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& out) {
     const Measured& m = measured_;
     AttitudeCommand& attitude = out.attitude;
-    if (mode_ < Mode::wait_for_guidance_start) {
-        if (mode_ == Mode::approach && configuration.turning_to_entry) {
+    if (mode() < Mode::wait_for_guidance_start) {
+        if (mode() == Mode::approach && configuration.turning_to_entry) {
             bank_command_rad_ = bank_before_guidance_rad;
             attitude.mode = AttitudeCommand::Mode::entry_bank;
         }
-    } else if (mode_ == Mode::wait_for_guidance_start) {
+    } else if (mode() == Mode::wait_for_guidance_start) {
         bank_command_rad_ = bank_before_guidance_rad;
         attitude.mode = AttitudeCommand::Mode::entry_bank;
-    } else if (mode_ == Mode::range_control) {
+    } else if (mode() == Mode::range_control) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         RangeControlInput input;
         input.velocity_mps = m.speed_mps;
@@ -253,16 +249,16 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         if (lateral_.on(m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
             out.bank_reversal = lateral_.reversals();
         bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
-    } else if (mode_ == Mode::heading_alignment) {
+    } else if (mode() == Mode::heading_alignment) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         bank_command_rad_ = heading_alignment_bank_rad(m.target);
-    } else if (mode_ == Mode::straighten_up) {
+    } else if (mode() == Mode::straighten_up) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         bank_command_rad_ = sufr::bank_rad(now - mode_since_, bank_at_sufr_rad_);
-    } else if (mode_ == Mode::wait_for_parachute) {
+    } else if (mode() == Mode::wait_for_parachute) {
         attitude.mode = AttitudeCommand::Mode::entry_bank;
         bank_command_rad_ = 0.0;
-    } else if (mode_ == Mode::parachute_descent) {
+    } else if (mode() == Mode::parachute_descent) {
         attitude.mode = AttitudeCommand::Mode::suspended;
     }
     attitude.bank_rad = bank_command_rad_;
@@ -280,7 +276,7 @@ void EdlGnc::push(const Vector3& acceleration_M, int engines, Output& out) {
 void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output& out) {
     using namespace powered_descent;
     const Measured& m = measured_;
-    if (mode_ < Mode::free_fall) return;
+    if (mode() < Mode::free_fall) return;
     out.attitude.mode = AttitudeCommand::Mode::thrust;
     out.attitude.thrust_direction_M = to_array(m.up_M);
     out.engines.ignited = configuration.engines_ignited && !configuration.engines_off;
@@ -291,24 +287,24 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     const int engines = configuration.sky_crane_started ? 4 : 8;
     // Once the divert is flown, what is left of drift is nulled.
     const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
-    if (mode_ == Mode::free_fall) {
+    if (mode() == Mode::free_fall) {
         out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N); // warm-up
         thrust_command_N_ = 8.0 * load_.engine_min_thrust_N;
-    } else if (mode_ == Mode::powered_approach) {
+    } else if (mode() == Mode::powered_approach) {
         const Vector3 moved = strapdown_.state().p_MoB_M - divert_from_M_;
         const Vector3 level =
             divert_.command_M(now - mode_since_, moved - moved.dot(m.up_M) * m.up_M, m.level_velocity_M);
         const double up = approach_.acceleration_mps2(m.altitude_m, m.descent_rate_mps);
         push(level - level.dot(m.up_M) * m.up_M + up * m.up_M, engines, out);
-    } else if (mode_ == Mode::constant_velocity) {
+    } else if (mode() == Mode::constant_velocity) {
         push(null_drift + hold_rate_mps2(m.descent_rate_mps, constant_velocity_mps) * m.up_M, engines, out);
-    } else if (mode_ == Mode::constant_deceleration) {
+    } else if (mode() == Mode::constant_deceleration) {
         deceleration_.advance(cycle_s);
         push(null_drift + deceleration_.acceleration_mps2(m.descent_rate_mps) * m.up_M, engines, out);
-    } else if (mode_ == Mode::sky_crane || mode_ == Mode::touchdown) {
-        const double wanted_mps = mode_ == Mode::sky_crane ? sky_crane_mps : 0.0;
+    } else if (mode() == Mode::sky_crane || mode() == Mode::touchdown) {
+        const double wanted_mps = mode() == Mode::sky_crane ? sky_crane_mps : 0.0;
         push(rate_control_.command_M(v_M, m.up_M, wanted_mps, cycle_s), engines, out);
-    } else if (mode_ == Mode::flyaway) {
+    } else if (mode() == Mode::flyaway) {
         const flyaway::Command wanted = flyaway::command(now - mode_since_, strapdown_.state().p_MoB_M);
         const double thrust_N = wanted.full ? engines * engine_used_max_N : mass_kg_ * mars_weight_mps2;
         out.engines.throttle = throttles_for(thrust_N, engines, load_.engine_max_thrust_N, thrust_command_N_);
@@ -317,7 +313,7 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
 }
 
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
-    if (mode_ < Mode::free_fall || configuration.engines_off) return;
+    if (mode() < Mode::free_fall || configuration.engines_off) return;
     // What the engines say they gave; what was asked of them until they say something.
     const double thrust_N = in.engines ? in.engines->thrust_N : thrust_command_N_;
     mass_kg_ -= thrust_N / (load_.engine_isp_s * standard_gravity_mps2) * cycle_s;
@@ -326,7 +322,7 @@ void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {
 void EdlGnc::report(Output& out) const {
     const NavigatedState& state = strapdown_.state();
     const Measured& m = measured_;
-    out.mode = mode_;
+    out.mode = mode();
     out.p_MoB_M_m = to_array(state.p_MoB_M);
     out.v_MB_M_mps = to_array(state.v_MB_M);
     out.q_MB = to_array(state.q_MB);
@@ -343,8 +339,8 @@ void EdlGnc::report(Output& out) const {
     out.predicted_range_m = predicted_range_m_;
     out.bank_command_deg = bank_command_rad_ / degree;
     out.lift_to_drag_command = lift_to_drag_command_;
-    if (mode_ < Mode::free_fall) {
-        const double area_m2 = mode_ == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
+    if (mode() < Mode::free_fall) {
+        const double area_m2 = mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
         out.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
     }
     out.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);
@@ -352,9 +348,9 @@ void EdlGnc::report(Output& out) const {
     out.acceleration_B_mps2 = to_array(strapdown_.specific_force_B_mps2());
     out.rate_B_rps = to_array(strapdown_.rate_B_rps());
     out.thrust_command_N = thrust_command_N_;
-    const bool on_engines = mode_ >= Mode::free_fall;
+    const bool on_engines = mode() >= Mode::free_fall;
     out.mass_kg = on_engines ? mass_kg_ : load_.entry_mass_kg;
-    const double carried_kg = load_.descent_stage_dry_kg + (mode_ == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
+    const double carried_kg = load_.descent_stage_dry_kg + (mode() == Mode::flyaway ? 0.0 : load_.rover_mass_kg);
     out.propellant_kg = (on_engines ? mass_kg_ : load_.powered_descent_mass_kg) - carried_kg;
     out.radar_locked = radar_filter_.locked();
     out.radar_beams = last_radar_beams_;

@@ -15,6 +15,7 @@
 #include "flight/gnc/sky_crane/touchdown_logic.hpp"
 #include "flight/gnc/triggers/triggers.hpp"
 #include "flight/load.hpp"
+#include "generated/state_machines.hpp"
 
 #include <array>
 #include <cstdint>
@@ -166,13 +167,13 @@ class EdlGnc {
     template <typename Exchange>
     void carry(Exchange& exchange) {
         exchange(solution_, target_M_, navigating_, navigated_to_, strapdown_, smooth_force_B_mps2_, force_filter_,
-                 radar_filter_, measured_.altitude_m, mode_, mode_since_, fired_, due_for_parachute_,
+                 radar_filter_, measured_.altitude_m, mode_machine_, mode_since_, fired_, due_for_parachute_,
                  low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_, predicted_range_m_,
                  lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_,
                  rate_control_, touchdown_logic_, last_radar_beams_);
     }
 
-    Mode mode() const { return mode_; }
+    Mode mode() const { return mode_machine_.state(); }
     bool navigating() const { return navigating_; }
 
   private:
@@ -191,7 +192,7 @@ class EdlGnc {
 
     void navigate(std::span<const ImuSample> imu, Sclk now);
     void measure(Sclk now);
-    void enter(Mode mode, Sclk now);
+    bool take(GncModeEvent event, Sclk now);
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
     bool fired(Trigger trigger) const { return fired_[static_cast<std::size_t>(trigger)]; }
     void follow_configuration(const Configuration& configuration, Sclk now);
@@ -217,7 +218,7 @@ class EdlGnc {
     Measured measured_;
     Sclk measured_at_;
 
-    Mode mode_ = Mode::off;
+    GncModeMachine mode_machine_;
     Sclk mode_since_;
     std::array<bool, trigger_count> fired_{};
     triggers::Persistence due_for_parachute_, low_for_backshell_;

@@ -33,6 +33,8 @@ struct RehearseOptions {
 int rehearse(const RehearseOptions& options);
 
 int dictionary_check(const std::filesystem::path& directory);
+/// Prints the state machines as diagrams.
+int dictionary_diagram(const std::filesystem::path& directory);
 
 struct TimelineAnalyseOptions {
     std::filesystem::path directory;

@@ -1,3 +1,4 @@
+#include "dictionaries/autocoder/state_diagram.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 
@@ -12,11 +13,18 @@ int dictionary_check(const std::filesystem::path& directory) {
     const auto dictionary = loaded_dictionary(directory);
     if (!dictionary) return 1;
     fmt::print("{}: no rule is broken: {} channels, {} packets, {} events, {} commands, {} timepoints, {} anchors, {} "
-               "tones, {} parameters, {} constraints; id {}, timeline version {}\n",
+               "tones, {} parameters, {} constraints, {} state machines; id {}, timeline version {}\n",
                dictionary->mission, dictionary->channels.size(), dictionary->packets.size(), dictionary->events.size(),
                dictionary->commands.size(), dictionary->timeline.size(), dictionary->anchors.size(),
-               dictionary->tones.size(), dictionary->parameters.size(), dictionary->constraints.size(), dictionary->id,
-               dictionary->timeline_version);
+               dictionary->tones.size(), dictionary->parameters.size(), dictionary->constraints.size(),
+               dictionary->state_machines.size(), dictionary->id, dictionary->timeline_version);
+    return 0;
+}
+
+int dictionary_diagram(const std::filesystem::path& directory) {
+    const auto dictionary = loaded_dictionary(directory);
+    if (!dictionary) return 1;
+    fmt::print("{}", dictionary::autocoder::state_diagrams(*dictionary));
     return 0;
 }
 

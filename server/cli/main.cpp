@@ -95,6 +95,9 @@ int main(int argc, char** argv) {
     auto* check = dictionary_command->add_subcommand("check", "every rule, every error with file and line");
     check->add_option("DIR", checked, "the dictionary's directory")->capture_default_str();
     check->callback([&] { exit_code = dictionary_check(checked); });
+    auto* diagram = dictionary_command->add_subcommand("diagram", "the state machines as diagrams (Mermaid)");
+    diagram->add_option("DIR", checked, "the dictionary's directory")->capture_default_str();
+    diagram->callback([&] { exit_code = dictionary_diagram(checked); });
     auto* exported = dictionary_command->add_subcommand("export", "(comes with a later issue)");
     exported->allow_extras();
     exported->callback([&] { exit_code = failed("dictionary export comes with a later issue", 2); });

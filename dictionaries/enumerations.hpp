@@ -1,0 +1,12 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+
+#include <vector>
+
+namespace aeolis::dictionary {
+
+/// The enumerated types of packets and commands, each once, in the order in which they are first used.
+std::vector<const Type*> enumerations_of(const std::vector<Packet>& packets, const std::vector<Command>& commands);
+
+} // namespace aeolis::dictionary
