@@ -205,6 +205,20 @@ struct StateMachineTable {
     std::vector<StateTransition> transitions;
 };
 
+/// A row of owners.csv: the one module that is the point of contact for an action, a device or a decision. R5
+struct OwnerRow {
+    enum class Kind {
+        action,    ///< of timeline.csv
+        device,    ///< a part of what leaves the flight computer
+        decision,  ///< a label of the XTCE enumeration Decision
+    };
+    Kind kind = Kind::action;
+    std::string name;
+    std::string module;  ///< a name of flight's ModuleId; the compiler checks it
+    std::string note;
+    unsigned line = 0;  ///< in owners.csv
+};
+
 /// An instant that constraints.csv speaks of.
 struct Moment {
     enum class Kind {
@@ -248,6 +262,7 @@ struct Dictionary {
     std::vector<ParameterRow> parameters;
     std::vector<ConstraintRow> constraints;
     std::vector<StateMachineTable> state_machines;
+    std::vector<OwnerRow> owners;
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -272,7 +287,7 @@ struct Loaded {
 };
 
 /// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv,
-/// state_machines.csv. All are on
+/// state_machines.csv, owners.csv. All are on
 /// board, so `id` follows each; the last changes nothing that the timeline does, so `timeline_version` does not follow it.
 Loaded load(const std::filesystem::path& directory);
 

@@ -3,6 +3,7 @@
 #include "common/crc.hpp"
 #include "dictionaries/findings.hpp"
 #include "dictionaries/enumerations.hpp"
+#include "dictionaries/spreadsheet/owners.hpp"
 #include "dictionaries/spreadsheet/state_machines.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
 #include "dictionaries/xtce/space_system.hpp"
@@ -117,13 +118,20 @@ Loaded load(const std::filesystem::path& directory) {
         return read_state_machines(text, system ? &enumerations : nullptr, findings);
     });
 
+    const File owners_csv = read_file(directory / "owners.csv", all);
+    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr, system ? &enumerations : nullptr};
+    auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {
+        return read_owners(text, owned, findings);
+    });
+
     std::ranges::stable_sort(
         all, [](const Finding& a, const Finding& b) { return std::tie(a.file, a.line) < std::tie(b.file, b.line); });
     if (!all.empty()) return loaded;
 
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
-    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv, &state_machines_csv});
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv, &state_machines_csv,
+                          &owners_csv});
     // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
@@ -136,6 +144,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.parameters = std::move(*parameters);
     dictionary.constraints = std::move(*constraints);
     dictionary.state_machines = std::move(*state_machines);
+    dictionary.owners = std::move(*owners);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

@@ -1,4 +1,5 @@
 #include "dictionaries/autocoder/flight_header.hpp"
+#include "dictionaries/autocoder/owners_header.hpp"
 #include "dictionaries/autocoder/state_machines_header.hpp"
 #include "dictionaries/autocoder/timeline_source.hpp"
 
@@ -7,7 +8,7 @@
 #include <iostream>
 #include <iterator>
 
-// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp and timeline.cpp, or prints every finding and writes
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, owners.hpp and timeline.cpp, or prints every finding and writes
 // nothing. A file that would not change is left alone, so that flight is not compiled anew when only the autocoder was.
 // Ends with 0 done, 1 findings or not writable, 2 bad use.
 namespace {
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
     const bool written =
         write(out / "dictionary_flight.hpp", dictionary::autocoder::flight_header(*loaded.dictionary)) &&
         write(out / "state_machines.hpp", dictionary::autocoder::state_machines_header(*loaded.dictionary)) &&
+        write(out / "owners.hpp", dictionary::autocoder::owners_header(*loaded.dictionary)) &&
         write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary));
     return written ? 0 : 1;
 }

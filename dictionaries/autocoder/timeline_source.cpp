@@ -32,7 +32,8 @@ void write_timeline(const Dictionary& dictionary, std::ostringstream& out) {
             << optional_literal(row.reply_timeout_s) << ", "
             << id_literal("TimepointId", id_of(dictionary.timeline, row.backtrack)) << ", "
             << (row.essential ? "true" : "false") << ", " << id_literal("ToneId", row.tone) << ", "
-            << (row.event.empty() ? "nullptr" : "&announce<evr::" + row.event + ">") << "},\n";
+            << (row.event.empty() ? "nullptr" : "&announce<evr::" + row.event + ">") << ", "
+            << (row.action.empty() ? "std::nullopt" : "action_owner::" + row.action) << "},\n";
     out << "}};\n\n";
 }
 
@@ -64,7 +65,7 @@ std::string timeline_source(const Dictionary& dictionary) {
     out << "// Made by the autocoder from the dictionary of " << dictionary.mission
         << ". Not to be edited: change the spreadsheets.\n"
            "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
-           "#include \"flight/timeline/timepoint.hpp\"\n\n"
+           "#include \"flight/timeline/timepoint.hpp\"\n#include \"generated/owners.hpp\"\n\n"
            "namespace aeolis::flight {\n\n";
     write_timeline(dictionary, out);
     write_anchors(dictionary, out);

@@ -2,8 +2,10 @@
 
 #include "common/bytes.hpp"
 #include "flight/kernel/message.hpp"
+#include "generated/owners.hpp"
 
 #include <span>
+#include <type_traits>
 
 namespace aeolis::flight {
 
@@ -35,6 +37,8 @@ class Outbox {
     template <typename Packet>
     void record(const Packet& packet) {
         static_assert(Packet::octets - tm_overhead_octets <= record_octets_max);
+        // A decision is explained by the one module that may make it. R5
+        if constexpr (std::is_same_v<Packet, packet::Explanation>) AEOLIS_CHECK(owner_of(packet.decision) == from_);
         Record record{Packet::apid, now_, static_cast<std::uint16_t>(Packet::octets - tm_overhead_octets), {}};
         BitWriter writer{std::span{record.data}.first(record.size)};
         packet.encode(writer);

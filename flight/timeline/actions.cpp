@@ -3,18 +3,23 @@
 namespace aeolis::flight {
 
 void ActionContext::fire(PyroId pyro) {
-    out_.send(ModuleId::pyro, FirePyro{pyro});
+    command(ModuleId::pyro, FirePyro{pyro});
     await({ReplyKind::pyro, static_cast<std::uint8_t>(pyro)});
 }
 
 void ActionContext::set_switch(SwitchId id, bool on) {
-    out_.send(ModuleId::power, SetSwitch{id, on});
+    command(ModuleId::power, SetSwitch{id, on});
     await({ReplyKind::device_switch, static_cast<std::uint8_t>(id)});
 }
 
 void ActionContext::enable_thrusters(bool enabled) {
-    out_.send(ModuleId::thrusters, EnableThrusters{enabled});
+    command(ModuleId::thrusters, EnableThrusters{enabled});
     await({ReplyKind::thrusters, 0});
+}
+
+void ActionContext::pay_out_bridle() {
+    command(ModuleId::descent_engines, PayOutBridle{});
+    await({ReplyKind::bridle, 0});
 }
 
 void ActionContext::request_tone(ToneId tone) {
@@ -149,8 +154,7 @@ void fire_rover_separation(ActionContext& context) {
     context.fire(PyroId::rover_separation);
 }
 void release_bridle(ActionContext& context) {
-    context.out().send(ModuleId::descent_engines, PayOutBridle{});
-    context.await({ReplyKind::bridle, 0});
+    context.pay_out_bridle();
 }
 void enable_touchdown_logic(ActionContext& context) {
     context.configuration().touchdown_logic_ready = true;

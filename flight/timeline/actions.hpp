@@ -11,7 +11,11 @@ class ActionContext {
   public:
     ActionContext(Outbox& out, gnc::Configuration& configuration) : out_(out), configuration_(configuration) {}
 
-    void begin(const TimepointSpec&) { awaited_ = {}; }
+    void begin(const TimepointSpec& row) {
+        awaited_ = {};
+        owner_ = row.owner;
+    }
+    void pay_out_bridle();
     void fire(PyroId pyro);
     void set_switch(SwitchId id, bool on);
     void enable_thrusters(bool enabled);
@@ -27,7 +31,15 @@ class ActionContext {
   private:
     Outbox& out_;
     gnc::Configuration& configuration_;
+    /// To the manager of a device, which is the one that owns the action. R5
+    template <typename M>
+    void command(ModuleId manager, const M& message) {
+        AEOLIS_CHECK(!owner_ || *owner_ == manager);
+        out_.send(manager, message);
+    }
+
     ActionReply awaited_;
+    std::optional<ModuleId> owner_;  // of the action that runs
 };
 
 /// Announces that a timepoint fires; the event column of the timeline names these.

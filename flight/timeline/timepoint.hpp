@@ -2,6 +2,7 @@
 
 #include "common/ids.hpp"
 #include "common/time.hpp"
+#include "flight/kernel/message.hpp"
 #include "generated/dictionary_flight.hpp"
 
 #include <array>
@@ -26,6 +27,7 @@ struct TimepointSpec {
     bool essential;
     std::optional<ToneId> tone;
     Action event;                    ///< announces the row's event; nullptr: none
+    std::optional<ModuleId> owner{}; ///< that the action may command; none: not said, as in tests. R5
 };
 
 /// Parents stand before their children: one sweep computes all times.
