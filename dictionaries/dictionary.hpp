@@ -3,6 +3,7 @@
 #include "common/ids.hpp"
 #include "common/result.hpp"
 #include "common/time.hpp"
+#include "dictionaries/telemetry_plan.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -51,6 +52,7 @@ struct Type {
     ValueKind kind = ValueKind::integer;
     Encoding encoding = Encoding::unsigned_integer;
     unsigned bits = 0;
+    bool binary = false;  ///< no number but bits / 8 octets: never a field, only Packet::content
     std::string unit;  ///< "1" for a pure number
     Polynomial calibrator;
     std::vector<EnumValue> enumeration;
@@ -78,6 +80,13 @@ struct Field {
     std::optional<unsigned> validity_bit;        ///< position of the bit that says whether the value is defined
 };
 
+/// Octets in a packet that are no number: a part of a data product. They stand at a whole octet.
+struct Content {
+    std::string name;
+    unsigned offset_octets = 0;  ///< from the first octet of the packet
+    unsigned octets = 0;
+};
+
 /// One concrete container: what a packet with this APID (and, for events, this event id) holds.
 struct Packet {
     std::string name;  ///< "GncNavigation"
@@ -87,6 +96,7 @@ struct Packet {
     unsigned octets = 0;         ///< whole packet with headers and CRC
     std::vector<Field> fields;   ///< after the secondary header, in order
     std::optional<double> expected_rate_hz;
+    std::optional<Content> content;
 };
 
 enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
@@ -231,6 +241,7 @@ struct Dictionary {
     std::vector<ToneRow> tones;        ///< 256, by id
     std::vector<ParameterRow> parameters;
     std::vector<ConstraintRow> constraints;
+    std::vector<TelemetryPlanRow> telemetry_plan;
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -254,8 +265,8 @@ struct Loaded {
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv. The last
-/// changes nothing on board, so neither `id` nor `timeline_version` follows it.
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, telemetry_plan.csv,
+/// constraints.csv. The last changes nothing on board, so neither `id` nor `timeline_version` follows it.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

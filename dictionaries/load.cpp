@@ -3,6 +3,7 @@
 #include "common/crc.hpp"
 #include "dictionaries/findings.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
+#include "dictionaries/spreadsheet/telemetry_plan.hpp"
 #include "dictionaries/xtce/space_system.hpp"
 
 #include <algorithm>
@@ -97,6 +98,12 @@ Loaded load(const std::filesystem::path& directory) {
         return read_timeline(text, context, findings);
     });
 
+    const File plan_csv = read_file(directory / "telemetry_plan.csv", all);
+    const bool packets_sound = std::ranges::find(all, xml.name, &Finding::file) == all.end();
+    auto telemetry_plan = read(plan_csv, [&](std::string_view text, Findings& findings) {
+        return read_telemetry_plan(text, system && packets_sound ? &system->packets : nullptr, findings);
+    });
+
     const File constraints_csv = read_file(directory / "constraints.csv", all);
     // A name that its own sheet has wrong is one fault, not one more for each constraint that uses it.
     const auto is_sound = [&](const File& file) {
@@ -115,7 +122,7 @@ Loaded load(const std::filesystem::path& directory) {
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
     // Without constraints.csv: flight is not made from it, and a claim about the timeline must not make flight another.
-    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv});
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &plan_csv});
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
     dictionary.packets = std::move(system->packets);
@@ -126,6 +133,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.tones = std::move(*tones);
     dictionary.parameters = std::move(*parameters);
     dictionary.constraints = std::move(*constraints);
+    dictionary.telemetry_plan = std::move(*telemetry_plan);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

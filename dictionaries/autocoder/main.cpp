@@ -1,4 +1,5 @@
 #include "dictionaries/autocoder/flight_header.hpp"
+#include "dictionaries/autocoder/telemetry_plan_source.hpp"
 #include "dictionaries/autocoder/timeline_source.hpp"
 
 #include <filesystem>
@@ -6,7 +7,7 @@
 #include <iostream>
 #include <iterator>
 
-// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp and timeline.cpp, or prints every finding and writes
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, timeline.cpp and telemetry_plan.cpp, or prints every finding and writes
 // nothing. A file that would not change is left alone, so that flight is not compiled anew when only the autocoder was.
 // Ends with 0 done, 1 findings or not writable, 2 bad use.
 namespace {
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(out, error);
     const bool written =
         write(out / "dictionary_flight.hpp", dictionary::autocoder::flight_header(*loaded.dictionary)) &&
-        write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary));
+        write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary)) &&
+        write(out / "telemetry_plan.cpp", dictionary::autocoder::telemetry_plan_source(*loaded.dictionary));
     return written ? 0 : 1;
 }

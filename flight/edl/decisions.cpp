@@ -30,7 +30,7 @@ Decision decision_of(gnc::Trigger trigger) {
     case gnc::Trigger::guidance_start: return Decision::guidance_start;
     case gnc::Trigger::heading_alignment: return Decision::heading_alignment;
     case gnc::Trigger::sufr_start: return Decision::sufr_start;
-    case gnc::Trigger::parachute: return Decision::parachute;
+    case gnc::Trigger::parachute: return Decision::parachute_deploy;
     case gnc::Trigger::heatshield: return Decision::heatshield;
     case gnc::Trigger::radar_lock: return Decision::radar_lock;
     case gnc::Trigger::engine_priming: return Decision::engine_priming;
