@@ -63,6 +63,7 @@ class EdlMain {
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
+    HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     EdlPhase phase_ = EdlPhase::pre_edl;
     std::uint32_t cycle_count_ = 0;

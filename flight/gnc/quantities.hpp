@@ -23,6 +23,7 @@ enum class Quantity : std::uint16_t {
     cycles_held,
     radar_beams,
     time_in_mode_s,
+    radar_locked = 39,
 };
 
 /// One condition behind a decision, for its explanation. R38

@@ -4,6 +4,7 @@
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace aeolis::flight::gnc::triggers {
 
@@ -28,7 +29,23 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
 // Descent rate to which the altitude of ground's solution belongs. [facts] Timeline: 79.1 m/s at 1.662 km
 constexpr double backshell_descent_rate_mps = 79.1;
 
+constexpr double near_fraction = 0.05; // of the bound
+
 } // namespace
+
+bool near(const Conditions& conditions) {
+    if (conditions.empty()) return false;
+    const Condition& first = conditions[0];
+    return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
+}
+
+Conditions worth_telling(const Conditions& conditions) {
+    Conditions told;
+    for (const Condition& condition : conditions)
+        if (condition.quantity != static_cast<std::uint16_t>(Quantity::cycles_held) || condition.value > 0.0)
+            told.push_back(condition);
+    return told;
+}
 
 Conditions guidance_start(double filtered_drag_mps2) {
     return list(at_least(Quantity::drag_mps2, filtered_drag_mps2, guidance_start_drag_mps2));
