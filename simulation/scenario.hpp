@@ -90,6 +90,11 @@ struct SystemFault {
     double duration_s = 0.0;
 };
 
+/// The prime computer fails and starts anew. R32, R33
+struct ComputerReset {
+    double before_entry_s = 0.0; ///< a multiple of 1/64 s; negative after entry
+};
+
 struct Scenario {
     std::string name;
     std::string title;            ///< a line for people
@@ -113,6 +118,7 @@ struct Scenario {
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
     std::vector<SystemFault> system_faults;
+    std::vector<ComputerReset> computer_resets;
 };
 
 /// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 // The managers of the devices: each is the only one that commands its device, turns its interrupts into messages and
 // its replies into answers for the timeline. Those in the rate group confirm every tick, idle or not. R5, R10, R22
@@ -9,6 +10,8 @@ namespace aeolis::flight {
 /// Landing radar. In: RadarReturns (interrupt), Tick. Out: RadarReturns to EdlBg once a cycle when there are any.
 class RadarManager {
   public:
+    explicit RadarManager(const Load&) {}
+
     void on(const RadarReturns& returns, Outbox& out);
     void on(const Tick& tick, Outbox& out);
 
@@ -16,9 +19,11 @@ class RadarManager {
     RadarReturns latest_;
 };
 
-/// IMU. In: ImuReadings at 200 Hz (3 or 4 a cycle), Tick. Out: ImuReadings to Edl before its turn.
+/// IMU. In: ImuReadings at 200 Hz (3 or 4 a cycle), Tick. Out: ImuReadings to Edl before its turn, and to EdlComm.
 class ImuManager {
   public:
+    explicit ImuManager(const Load&) {}
+
     void on(const ImuReadings& readings, Outbox& out);
     void on(const Tick& tick, Outbox& out);
 
@@ -29,6 +34,8 @@ class ImuManager {
 /// Pyros. In: FirePyro, PyroReply, Tick. Out: fires at its tick; ActionReply to Edl.
 class PyroManager {
   public:
+    explicit PyroManager(const Load&) {}
+
     void on(const FirePyro& command, Outbox& out);
     void on(const PyroReply& reply, Outbox& out);
     void on(const Tick& tick, Outbox& out);
@@ -41,6 +48,8 @@ class PyroManager {
 /// Out: engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when running, when payed out.
 class DescentEngines {
   public:
+    explicit DescentEngines(const Load&) {}
+
     void on(const RunEngines& command, Outbox& out);
     void on(const PayOutBridle& command, Outbox& out);
     void on(const EngineReply& reply, Outbox& out);
@@ -57,6 +66,8 @@ class DescentEngines {
 /// Thrusters. In: PointVehicle, EnableThrusters, ThrusterReply, Tick. Out: attitude command at its tick; ActionReply.
 class Thrusters {
   public:
+    explicit Thrusters(const Load&) {}
+
     void on(const PointVehicle& command, Outbox& out);
     void on(const EnableThrusters& command, Outbox& out);
     void on(const ThrusterReply& reply, Outbox& out);
@@ -69,6 +80,8 @@ class Thrusters {
 /// Power switches and telecom settings; outside the rate group. In: SetSwitch, SwitchReply. Out: ActionReply. R28
 class PowerManager {
   public:
+    explicit PowerManager(const Load&) {}
+
     void on(const SetSwitch& command, Outbox& out);
     void on(const SwitchReply& reply, Outbox& out);
 };

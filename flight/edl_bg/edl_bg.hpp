@@ -2,6 +2,7 @@
 
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 #include <optional>
 
@@ -14,6 +15,8 @@ namespace aeolis::flight {
 /// Out     RadarSolution to Edl at 1 Hz, GncRadar; ParametersUpdate to Edl, or the outcome "refused"
 class EdlBg {
   public:
+    explicit EdlBg(const Load&) {}
+
     void on(const RadarReturns& returns, Outbox& out);
     void on(const NavigatedAttitude& attitude, Outbox& out);
     void on(const SetParametersCommand& command, Outbox& out);

@@ -68,7 +68,10 @@ void DataProducts::on(const ImuReadings& readings) {
 }
 
 void DataProducts::on(const PhaseChanged& change) {
-    if (change.phase == EdlPhase::parachute_descent) imu_burst_.begin();
+    // Only who flew the entry saw the mortar: a computer that takes over under the parachute did not.
+    const bool in_entry = phase_ >= EdlPhase::range_control && phase_ < EdlPhase::parachute_descent;
+    if (in_entry && change.phase == EdlPhase::parachute_descent) imu_burst_.begin();
+    phase_ = change.phase;
     // While UHF still has some seconds: what was flown up to touchdown.
     if (change.phase == EdlPhase::landed) static_cast<void>(due_.try_push(ProductKind::as_flown));
 }

@@ -71,6 +71,7 @@ class DataProducts {
 
     AsFlown as_flown_;
     ImuBurst imu_burst_;
+    EdlPhase phase_{};
     bool imu_burst_due_ = false;  // was asked for: once
     FixedQueue<ProductKind, 4> due_;
     std::optional<Sending> sending_;

@@ -7,7 +7,11 @@
 namespace aeolis::flight {
 
 EdlComm::EdlComm(const Load& load)
-    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), plan_(load.telemetry_plan) {}
+    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), plan_(load.telemetry_plan) {
+    // So that a unit of one computer never has the name of one of the other's.
+    if (load.string == String::b)
+        for (Stream& stream : streams_) stream.count = counts_of_string_b;
+}
 
 void EdlComm::on(const Record& record, Outbox& out) {
     if (record.size > record_octets_max) {
@@ -95,10 +99,11 @@ void EdlComm::on(const ClockTick& tick, Outbox& out) {
 }
 
 packet::CommStatus EdlComm::status() const {
+    const std::uint32_t low_octets = queue_.waiting_octets(TelemetryPriority::low);
     return {.nvm_used_octets = nvm_.used_octets,
             .nvm_records = records_,
             .uhf_sent_octets = sent_octets_,
-            .uhf_queue_octets = queue_.waiting_octets(),
+            .uhf_queue_octets = queue_.waiting_octets() - low_octets,
             .uhf_dropped_packets = queue_.dropped(),
             .tone_current = tone_.tone,
             .tone_requests = tone_.outstanding,
@@ -107,6 +112,7 @@ packet::CommStatus EdlComm::status() const {
             .uhf_dropped_normal_packets = queue_.dropped(TelemetryPriority::normal),
             .uhf_dropped_low_packets = queue_.dropped(TelemetryPriority::low),
             .uhf_waiting_packets = static_cast<std::uint8_t>(queue_.waiting()),
+            .uhf_low_queue_octets = low_octets,
             .nvm_unrecorded_packets = unrecorded_packets_,
             .products_made = products_.made()};
 }

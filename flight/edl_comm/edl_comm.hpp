@@ -34,6 +34,7 @@ class EdlComm {
     const RealtimeQueue& queue() const { return queue_; }
 
   private:
+    static constexpr std::uint16_t counts_of_string_b = 0x2000;  ///< half of the 14 bits
     static constexpr std::uint32_t nvm_reserve_octets = 65536;
     struct Stream {  // one for each APID of the dictionary, by its low 7 bits
         std::uint16_t count = 0;

@@ -1,5 +1,6 @@
 #include "flight/edl_comm/realtime_queue.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace aeolis::flight {
@@ -21,7 +22,7 @@ bool RealtimeQueue::offer(const TelemetryPacket& packet, TelemetryPriority prior
     free_.pop_back();
     packets_[slot] = packet;
     AEOLIS_CHECK(waiting_[index(priority)].try_push(slot));
-    waiting_octets_ += packet.size;
+    waiting_octets_[index(priority)] += packet.size;
     return !full;
 }
 
@@ -43,8 +44,12 @@ std::size_t RealtimeQueue::most_important() const {
 void RealtimeQueue::release_oldest(std::size_t priority) {
     const Slot slot = waiting_[priority].front();
     waiting_[priority].pop();
-    waiting_octets_ -= packets_[slot].size;
+    waiting_octets_[priority] -= packets_[slot].size;
     free_.push_back(slot);
+}
+
+std::uint32_t RealtimeQueue::waiting_octets() const {
+    return std::accumulate(waiting_octets_.begin(), waiting_octets_.end(), std::uint32_t{0});
 }
 
 std::uint32_t RealtimeQueue::dropped() const {

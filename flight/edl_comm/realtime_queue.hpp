@@ -41,7 +41,8 @@ class RealtimeQueue {
     void pop();
 
     std::size_t waiting() const { return packets_max - free_.size(); }
-    std::uint32_t waiting_octets() const { return waiting_octets_; }
+    std::uint32_t waiting_octets(TelemetryPriority priority) const { return waiting_octets_[index(priority)]; }
+    std::uint32_t waiting_octets() const;
     std::uint32_t dropped(TelemetryPriority priority) const { return dropped_[index(priority)]; }
     std::uint32_t dropped() const;
 
@@ -55,7 +56,7 @@ class RealtimeQueue {
     std::array<TelemetryPacket, packets_max> packets_{};
     std::array<FixedQueue<Slot, packets_max>, telemetry_priorities> waiting_;
     FixedVector<Slot, packets_max> free_;
-    std::uint32_t waiting_octets_ = 0;
+    std::array<std::uint32_t, telemetry_priorities> waiting_octets_{};
     std::array<std::uint32_t, telemetry_priorities> dropped_{};
 };
 

@@ -13,7 +13,13 @@ void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, std::initiali
 
 }  // namespace
 
-void ToneSelector::on(const ToneRequest& request, Outbox& out) {
+void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
+    ToneRequest request = asked;
+    if (role_ == Role::second_chance) {
+        const auto& counterpart = tones_[asked.tone.value].second_chance;
+        if (!counterpart) return;  // no tone of prime's is ever sent, whoever asks
+        request.tone = *counterpart;
+    }
     const auto& spec = tones_[request.tone.value];
     if (spec.supersedes) drop_overtaken(*spec.supersedes, request.tone, out);
     for (auto& same : outstanding_)

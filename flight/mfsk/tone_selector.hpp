@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 #include "flight/timeline/timepoint.hpp"
 
 #include <optional>
@@ -16,10 +17,12 @@ namespace aeolis::flight {
 ///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
 /// Each drop and each choice between several is explained by the values that led to it: age and limit, the tone that
 /// overtook it, or its priority against the other's when there is no more room. R38
+/// In Second Chance each request is for the tone of its own set that means the same. R35
 /// With no request outstanding the carrier goes out without a tone.
 class ToneSelector {
   public:
-    explicit ToneSelector(std::span<const ToneSpec> tones) : tones_(tones) {}
+    explicit ToneSelector(const Load& load, std::span<const ToneSpec> tones = tone_specs)
+        : tones_(tones), role_(load.role) {}
 
     void on(const ToneRequest& request, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
@@ -40,6 +43,7 @@ class ToneSelector {
     double expires_s(ToneId tone) const { return tones_[tone.value].expires_s; }
 
     std::span<const ToneSpec> tones_;
+    Role role_;
     FixedVector<ToneRequest, 64> outstanding_;
     std::optional<Sending> sending_;
 };

@@ -91,6 +91,9 @@ const Bindings<simulation::SystemFault> fault_fields = {
     AEOLIS_BIND(SystemFault, begin_before_entry_s),
     AEOLIS_BIND(SystemFault, duration_s),
 };
+const Bindings<simulation::ComputerReset> reset_fields = {
+    AEOLIS_BIND(ComputerReset, before_entry_s),
+};
 #undef AEOLIS_BIND
 
 const google::protobuf::FieldDescriptor& field_of(const Message& message, const char* name) {
@@ -210,6 +213,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     }
     for (const auto& row : message.system_faults())
         read(row, fault_fields, scenario.system_faults.emplace_back());
+    for (const auto& row : message.computer_resets())
+        read(row, reset_fields, scenario.computer_resets.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -245,6 +250,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     }
     for (const auto& fault : scenario.system_faults)
         write(fault, fault_fields, *message.add_system_faults());
+    for (const auto& reset : scenario.computer_resets)
+        write(reset, reset_fields, *message.add_computer_resets());
     return message;
 }
 

@@ -98,6 +98,7 @@ TEST_CASE("the ground puts a product together from its packets in any order, equ
     ImuBurst same;
     for (std::uint32_t count = 0; count < 2000; ++count) {
         if (count == 700) {
+            products.on(PhaseChanged{EdlPhase::wait_for_parachute});
             products.on(PhaseChanged{EdlPhase::parachute_descent});
             same.begin();
         }
@@ -120,6 +121,14 @@ TEST_CASE("the ground puts a product together from its packets in any order, equ
     REQUIRE_FALSE(ground.decommutator.decode(rows->front(), decoded));
     CHECK(decoded.value[0] == 500.0);
     CHECK(decoded.value[1] == 50.0); // delta_v_x_mps
+}
+
+TEST_CASE("a computer that takes over under the parachute makes no burst of a mortar that it did not see",
+          "[products][R30]") {
+    DataProducts products;
+    products.on(PhaseChanged{EdlPhase::parachute_descent});
+    for (std::uint32_t count = 0; count < 2000; ++count) products.on(reading(count));
+    CHECK(all_parts(products).empty());
 }
 
 TEST_CASE("a part that is lost is named", "[products][R30]") {

@@ -23,6 +23,9 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
     CHECK(near(heatshield(120.0, 142.0, 12.0)));
     CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0))); // the speed is its subject, not the time
     CHECK_FALSE(near({}));
+    Conditions timer;
+    timer.push_back(at_least(Quantity::time_in_mode_s, 3.15, 3.2));
+    CHECK_FALSE(near(timer));
 }
 
 TEST_CASE("a count of cycles that has not begun is not worth telling", "[gnc][R38]") {

@@ -12,7 +12,7 @@ using namespace aeolis::flight;
 namespace {
 
 /// A packet that can be told from every other.
-TelemetryPacket packet(std::uint32_t number, std::uint16_t size = 20) {
+TelemetryPacket numbered(std::uint32_t number, std::uint16_t size = 20) {
     TelemetryPacket made;
     made.size = size;
     for (unsigned i = 0; i < 4; ++i) made.octets[i] = static_cast<std::uint8_t>(number >> (8 * i));
@@ -28,11 +28,12 @@ std::uint32_t number_of(const TelemetryPacket& packet) {
 
 TEST_CASE("the most important packet goes first, of equals the oldest", "[realtime_queue][R30]") {
     RealtimeQueue queue;
-    CHECK(queue.offer(packet(1), TelemetryPriority::low));
-    CHECK(queue.offer(packet(2), TelemetryPriority::high));
-    CHECK(queue.offer(packet(3), TelemetryPriority::first));
-    CHECK(queue.offer(packet(4), TelemetryPriority::high));
+    CHECK(queue.offer(numbered(1), TelemetryPriority::low));
+    CHECK(queue.offer(numbered(2), TelemetryPriority::high));
+    CHECK(queue.offer(numbered(3), TelemetryPriority::first));
+    CHECK(queue.offer(numbered(4), TelemetryPriority::high));
     CHECK(queue.waiting_octets() == 80);
+    CHECK(queue.waiting_octets(TelemetryPriority::high) == 40);
     for (const std::uint32_t next : {3U, 2U, 4U, 1U}) {
         CHECK(number_of(queue.front()) == next);
         queue.pop();
@@ -44,12 +45,12 @@ TEST_CASE("the most important packet goes first, of equals the oldest", "[realti
 TEST_CASE("a full queue gives up the least important, of equals the oldest", "[realtime_queue][R30]") {
     RealtimeQueue queue;
     for (std::uint32_t i = 0; i < RealtimeQueue::packets_max; ++i)
-        CHECK(queue.offer(packet(i), i < 2 ? TelemetryPriority::low : TelemetryPriority::normal));
-    CHECK_FALSE(queue.offer(packet(1000), TelemetryPriority::normal)); // packet 0 gives way
-    CHECK_FALSE(queue.offer(packet(1001), TelemetryPriority::low));    // packet 1 does, not the newcomer
-    CHECK_FALSE(queue.offer(packet(1002), TelemetryPriority::first));  // and then 1001
+        CHECK(queue.offer(numbered(i), i < 2 ? TelemetryPriority::low : TelemetryPriority::normal));
+    CHECK_FALSE(queue.offer(numbered(1000), TelemetryPriority::normal)); // packet 0 gives way
+    CHECK_FALSE(queue.offer(numbered(1001), TelemetryPriority::low));    // packet 1 does, not the newcomer
+    CHECK_FALSE(queue.offer(numbered(1002), TelemetryPriority::first));  // and then 1001
     CHECK(queue.dropped(TelemetryPriority::low) == 3);
-    CHECK_FALSE(queue.offer(packet(1003), TelemetryPriority::low)); // all that wait are more important
+    CHECK_FALSE(queue.offer(numbered(1003), TelemetryPriority::low)); // all that wait are more important
     CHECK(queue.dropped(TelemetryPriority::low) == 4);
     CHECK(queue.dropped() == 4);
     CHECK(queue.waiting() == RealtimeQueue::packets_max);
@@ -71,7 +72,7 @@ TEST_CASE("under any load the queue does what its rule says, and its counts add 
         for (int step = 0; step < 3000; ++step) {
             if (random() % (load + 1) != 0) {
                 const std::size_t priority = random() % telemetry_priorities;
-                queue.offer(packet(offered), static_cast<TelemetryPriority>(priority));
+                queue.offer(numbered(offered), static_cast<TelemetryPriority>(priority));
                 wanted[priority].push_back(offered++);
                 if (waiting() > RealtimeQueue::packets_max) {
                     std::size_t least = 0;

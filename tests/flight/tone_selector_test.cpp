@@ -13,7 +13,7 @@ namespace {
 
 std::array<ToneSpec, 256> tones() {
     std::array<ToneSpec, 256> specs{};
-    for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}};
+    for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}, {}};
     specs[50].supersedes = ToneId{40};
     return specs;
 }
@@ -57,7 +57,7 @@ std::vector<Told> told_in(const test::OutboxRecorder& recorder) {
 
 struct Fixture {
     std::array<ToneSpec, 256> specs = tones();
-    ToneSelector selector{specs};
+    ToneSelector selector{Load{}, specs};
     test::OutboxRecorder recorder{ModuleId::mfsk};
 
     void request(std::uint8_t tone, double at_s) {

@@ -36,6 +36,7 @@ constexpr double near_fraction = 0.05; // of the bound
 bool near(const Conditions& conditions) {
     if (conditions.empty()) return false;
     const Condition& first = conditions[0];
+    if (first.quantity == static_cast<std::uint16_t>(Quantity::time_in_mode_s)) return false; // a timer decides nothing
     return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
 }
 

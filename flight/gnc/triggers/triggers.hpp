@@ -28,12 +28,17 @@ class Persistence {
   public:
     std::uint32_t on(bool holds) { return cycles_ = holds ? cycles_ + 1 : 0; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(cycles_);
+    }
+
   private:
     std::uint32_t cycles_ = 0;
 };
 
 /// Whether a decision that does not fire is near enough to tell ground what holds it: its first condition, which is its
-/// subject, holds or is within a twentieth of its bound. Ours.
+/// subject, holds or is within a twentieth of its bound. A mere timer never is. Ours.
 bool near(const Conditions& conditions);
 
 /// Without a count of cycles that has not begun: it says no more than the condition that it counts.
