@@ -30,10 +30,10 @@ struct Explanation {
 /// Of the packet named "Explanation", else none.
 ///
 /// The packet's fields: decision, verdict, subject, condition_count, then for each slot k from 1 to 4: condition_k (the
-/// quantity), value_k, bound_k, comparison_k (lt, le, eq, ge, gt), holds_k; and suppressed. A condition that does not hold
-/// is told by what holds instead: "speed 407.1 m/s > 405.0 m/s". `subject` is the number of a timepoint, a
-/// tone, a bank reversal, an opcode or the new value of a channel, as the decision's label says; of other decisions the
-/// label is enough.
+/// quantity), value_k, bound_k, comparison_k (lt, le, eq, ge, gt), holds_k; and suppressed. A condition that does not
+/// hold is told by what holds instead: "speed 407.1 m/s > 405.0 m/s". `subject` is the number of a timepoint, a tone, a
+/// bank reversal, an opcode or the new value of a channel, as the decision's label says; of other decisions the label
+/// is enough.
 std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
 } // namespace aeolis::telemetry

@@ -36,8 +36,8 @@ std::optional<ProductPart> part_of(const dictionary::Dictionary& dictionary, con
     read.row_apid = Apid{static_cast<std::uint16_t>(number("row_apid"))};
     read.part = static_cast<std::uint16_t>(part);
     read.parts = static_cast<std::uint16_t>(parts);
-    const auto content = packet.subspan(container.content->offset_octets,
-                                        std::min(part_octets, octets - (part - 1) * part_octets));
+    const auto content =
+        packet.subspan(container.content->offset_octets, std::min(part_octets, octets - (part - 1) * part_octets));
     read.content.assign(content.begin(), content.end());
     return read;
 }
@@ -57,7 +57,8 @@ std::string Product::gaps() const {
     for (std::size_t first = 0; first < received.size(); ++first) {
         if (received[first]) continue;
         std::size_t last = first;
-        while (last + 1 < received.size() && !received[last + 1]) ++last;
+        while (last + 1 < received.size() && !received[last + 1])
+            ++last;
         text += (text.empty() ? "" : ", ") + std::to_string(first + 1);
         if (last > first) text += "-" + std::to_string(last + 1);
         first = last;
@@ -93,8 +94,8 @@ std::string text_of(const ProductIdentity& identity, const Product& product) {
     return text + (product.content(identity) ? "whole" : "all parts are here, but their CRC is wrong");
 }
 
-std::optional<std::vector<std::vector<std::uint8_t>>>
-rows_of(const dictionary::Dictionary& dictionary, Apid row_apid, std::span<const std::uint8_t> content) {
+std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::Dictionary& dictionary, Apid row_apid,
+                                                              std::span<const std::uint8_t> content) {
     const auto container = std::ranges::find(dictionary.packets, row_apid, &dictionary::Packet::apid);
     if (container == dictionary.packets.end() || container->event || container->octets <= tm_overhead_octets)
         return std::nullopt;

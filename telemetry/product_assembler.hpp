@@ -30,8 +30,8 @@ struct ProductPart {
     std::vector<std::uint8_t> content; ///< without what fills up the last part
 };
 
-/// None when the packet is no part of a product, or when its numbers disagree with one another. `packet`: the octets that
-/// `decoded` was made of.
+/// None when the packet is no part of a product, or when its numbers disagree with one another. `packet`: the octets
+/// that `decoded` was made of.
 std::optional<ProductPart> part_of(const dictionary::Dictionary& dictionary, const Decoded& decoded,
                                    std::span<const std::uint8_t> packet);
 
@@ -80,7 +80,7 @@ std::string text_of(const ProductIdentity& identity, const Product& product);
 
 /// The rows of a whole product's content as whole packets of their container, so that the decommutator reads them as it
 /// reads all telemetry. None when the dictionary lacks the container, or the content is not a number of whole rows.
-std::optional<std::vector<std::vector<std::uint8_t>>>
-rows_of(const dictionary::Dictionary& dictionary, Apid row_apid, std::span<const std::uint8_t> content);
+std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::Dictionary& dictionary, Apid row_apid,
+                                                              std::span<const std::uint8_t> content);
 
 } // namespace aeolis::telemetry

@@ -44,7 +44,8 @@ class HeaderWriter {
              << ". Not to be edited: change the dictionary.\n"
                 "#pragma once\n\n"
                 "#include \"common/bytes.hpp\"\n#include \"common/ids.hpp\"\n\n"
-                "#include <array>\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include <optional>\n#include <span>\n\n"
+                "#include <array>\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include "
+                "<optional>\n#include <span>\n\n"
                 "namespace aeolis::flight {\n\n"
                 "enum class EventLevel : std::uint8_t {\n"
                 "    fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic\n};\n\n"
@@ -127,7 +128,8 @@ class HeaderWriter {
                 out_ << "    " << value_type(field.type) << " " << field.name << "{};\n";
         }
         if (packet.content)
-            out_ << "    std::array<std::uint8_t, " << packet.content->octets << "> " << packet.content->name << "{};\n";
+            out_ << "    std::array<std::uint8_t, " << packet.content->octets << "> " << packet.content->name
+                 << "{};\n";
         out_ << "\n    void encode(BitWriter& out) const {\n";
         write_body(packet, event);
         out_ << "    }\n    bool operator==(const " << packet.name << "&) const = default;\n};\n\n";

@@ -7,9 +7,9 @@
 #include <iostream>
 #include <iterator>
 
-// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, timeline.cpp and telemetry_plan.cpp, or prints every finding and writes
-// nothing. A file that would not change is left alone, so that flight is not compiled anew when only the autocoder was.
-// Ends with 0 done, 1 findings or not writable, 2 bad use.
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, timeline.cpp and telemetry_plan.cpp, or prints every
+// finding and writes nothing. A file that would not change is left alone, so that flight is not compiled anew when only
+// the autocoder was. Ends with 0 done, 1 findings or not writable, 2 bad use.
 namespace {
 
 bool write(const std::filesystem::path& path, const std::string& text) {

@@ -69,9 +69,8 @@ void check_complete(const std::vector<TelemetryPlanRow>& rows, const std::map<st
 
 } // namespace
 
-std::optional<std::vector<TelemetryPlanRow>> read_telemetry_plan(std::string_view text,
-                                                                 const std::vector<Packet>* packets,
-                                                                 Findings& findings) {
+std::optional<std::vector<TelemetryPlanRow>>
+read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, Findings& findings) {
     const auto table = Table::read(
         text, {"plan", "packet", "priority", "before_entry", "entry", "descent", "landed", "note"}, findings);
     if (!table) return std::nullopt;

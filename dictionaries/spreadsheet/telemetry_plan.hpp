@@ -14,8 +14,7 @@ inline constexpr std::int64_t telemetry_every_max = 4096;    ///< ours: of a pac
 /// In the order of the file. Each plan says once what becomes of each packet, in its own rows or in those of "all"; a
 /// packet that goes first is never thinned. `packets` null: unknown because their file could not be read, so references
 /// and completeness are not checked. R30
-std::optional<std::vector<TelemetryPlanRow>> read_telemetry_plan(std::string_view text,
-                                                                 const std::vector<Packet>* packets,
-                                                                 Findings& findings);
+std::optional<std::vector<TelemetryPlanRow>>
+read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, Findings& findings);
 
 } // namespace aeolis::dictionary

@@ -91,7 +91,8 @@ class PacketReader {
             flags.insert(placed.parameter->valid_by);
         for (const Placed& placed : layout.entries) {
             const Parameter& parameter = *placed.parameter;
-            if (placed.position_bits < header_bits || flags.contains(parameter.path) || parameter.type->binary) continue;
+            if (placed.position_bits < header_bits || flags.contains(parameter.path) || parameter.type->binary)
+                continue;
             if (is_taken_in_packets(parameter.name))
                 report_.fault(placed.element, in_quotes(parameter.name) + " is a name of the encoder's own");
             Field field{parameter.name, *parameter.type, parameter.channel, placed.position_bits, std::nullopt};

@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <utility>
 
-// Values of any type of message from a fuzzer's octets. What a type is made of is taken from the type itself; a field that
-// is added to a message is filled too.
+// Values of any type of message from a fuzzer's octets. What a type is made of is taken from the type itself; a field
+// that is added to a message is filled too.
 namespace aeolis::fuzz {
 
 /// The fuzzer's octets, then zeros.
@@ -39,7 +39,9 @@ struct AnyField {
 
 template <typename T, std::size_t... I>
 constexpr bool takes_fields(std::index_sequence<I...>) {
-    return requires { T{(static_cast<void>(I), AnyField{})...}; };
+    return requires {
+        T{(static_cast<void>(I), AnyField{})...};
+    };
 }
 /// How many fields an aggregate has.
 template <typename T, std::size_t N = 24>
@@ -59,7 +61,8 @@ void fill_each(Source& from, Fields&... fields) {
 }
 template <typename T, std::size_t N>
 void fill(Source& from, std::array<T, N>& values) {
-    for (T& value : values) fill(from, value);
+    for (T& value : values)
+        fill(from, value);
 }
 template <typename T, std::size_t N>
 void fill(Source& from, FixedVector<T, N>& values) {
@@ -97,7 +100,8 @@ void fill_fields(Source& from, T& value) {
         fill_each(from, a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r);
     }
     // clang-format on
-    else static_assert(n == 0, "a message with so many fields: add its line here");
+    else
+        static_assert(n == 0, "a message with so many fields: add its line here");
 }
 
 template <typename T>

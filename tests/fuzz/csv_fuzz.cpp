@@ -1,5 +1,5 @@
-// A spreadsheet as anyone may have left it: each reader says what is wrong with it, with a line of the text, or takes it.
-// The first octet chooses the sheet. The other files are the shipped ones, so that references are followed.
+// A spreadsheet as anyone may have left it: each reader says what is wrong with it, with a line of the text, or takes
+// it. The first octet chooses the sheet. The other files are the shipped ones, so that references are followed.
 #include "dictionaries/dictionary.hpp"
 #include "dictionaries/spreadsheet/csv.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"

@@ -1,6 +1,6 @@
 // Any message to any module of a computer at any time, any uplink, anything from any device: the computer counts and
-// reports what it does not expect, refuses what it cannot do, and goes on. A failed check is a bug here, though in flight
-// it would only be a reset.
+// reports what it does not expect, refuses what it cannot do, and goes on. A failed check is a bug here, though in
+// flight it would only be a reset.
 #include "flight/computer.hpp"
 #include "flight/kernel/dispatch.hpp"
 #include "flight/kernel/executive.hpp"
@@ -56,7 +56,8 @@ void fill_inputs(fuzz::Source& from, DeviceInputs& in) {
 void add_uplink(fuzz::Source& from, DeviceInputs& in) {
     UplinkPacket uplink;
     uplink.size = static_cast<std::uint16_t>(from.take<std::uint8_t>() * 2U);
-    for (std::size_t i = 0; i < uplink.size; ++i) uplink.octets[i] = from.take<std::uint8_t>();
+    for (std::size_t i = 0; i < uplink.size; ++i)
+        uplink.octets[i] = from.take<std::uint8_t>();
     static_cast<void>(in.uplink.try_push_back(uplink));
 }
 

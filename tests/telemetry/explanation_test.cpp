@@ -79,7 +79,8 @@ TEST_CASE("what does not hold is told by what holds instead", "[explanation][R38
     }
 }
 
-TEST_CASE("how often flight held its tongue is said, and a tone in a condition has its name", "[explanation][R31][R38]") {
+TEST_CASE("how often flight held its tongue is said, and a tone in a condition has its name",
+          "[explanation][R31][R38]") {
     const auto& dictionary = tests::shipped_dictionary();
     const Decommutator decommutator{dictionary};
     Decoded decoded;

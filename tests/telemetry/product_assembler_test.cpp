@@ -14,7 +14,8 @@ namespace {
 
 std::vector<std::uint8_t> some_content(std::size_t octets) {
     std::vector<std::uint8_t> content(octets);
-    for (std::size_t i = 0; i < octets; ++i) content[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+    for (std::size_t i = 0; i < octets; ++i)
+        content[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
     return content;
 }
 
@@ -27,7 +28,10 @@ std::vector<ProductPart> parts_of(const std::vector<std::uint8_t>& content, std:
         const auto begin = content.begin() + i * static_cast<std::ptrdiff_t>(part_octets);
         const auto size = std::min(part_octets, content.size() - i * part_octets);
         all.push_back({{id, crc16(content), static_cast<std::uint32_t>(content.size())},
-                       "imu_burst", Apid{0x035}, static_cast<std::uint16_t>(i + 1), parts,
+                       "imu_burst",
+                       Apid{0x035},
+                       static_cast<std::uint16_t>(i + 1),
+                       parts,
                        {begin, begin + static_cast<std::ptrdiff_t>(size)}});
     }
     return all;
@@ -48,7 +52,8 @@ TEST_CASE("a product is put together from parts in any order, with repeats", "[p
         std::ranges::shuffle(parts, std::mt19937{seed});
         ProductAssembler assembler;
         int again = 0;
-        for (const auto& part : parts) again += assembler.add(part) == PartStanding::again;
+        for (const auto& part : parts)
+            again += assembler.add(part) == PartStanding::again;
         CHECK(again == 5);
         const auto& [identity, product] = only(assembler);
         CHECK(product.content(identity) == content);
@@ -60,7 +65,8 @@ TEST_CASE("a product is put together from parts in any order, with repeats", "[p
 TEST_CASE("what is missing of a product is named, and it has no content until it is whole", "[products][R30]") {
     const auto parts = parts_of(some_content(1234));
     ProductAssembler assembler;
-    for (const std::size_t part : {1U, 2U, 6U, 8U, 13U}) CHECK(assembler.add(parts[part - 1]) == PartStanding::taken);
+    for (const std::size_t part : {1U, 2U, 6U, 8U, 13U})
+        CHECK(assembler.add(parts[part - 1]) == PartStanding::taken);
     const auto& [identity, product] = only(assembler);
     CHECK_FALSE(product.content(identity));
     CHECK(product.gaps() == "3-5, 7, 9-12");
@@ -86,10 +92,13 @@ TEST_CASE("a part that contradicts one before is not taken, and a wrong whole is
 
 TEST_CASE("products of two computers with the same number stay apart", "[products][R30]") {
     ProductAssembler assembler;
-    for (const auto& part : parts_of(some_content(250))) CHECK(assembler.add(part) == PartStanding::taken);
-    for (const auto& part : parts_of(some_content(251))) CHECK(assembler.add(part) == PartStanding::taken);
+    for (const auto& part : parts_of(some_content(250)))
+        CHECK(assembler.add(part) == PartStanding::taken);
+    for (const auto& part : parts_of(some_content(251)))
+        CHECK(assembler.add(part) == PartStanding::taken);
     CHECK(assembler.products().size() == 2);
-    for (const auto& [identity, product] : assembler.products()) CHECK(product.content(identity));
+    for (const auto& [identity, product] : assembler.products())
+        CHECK(product.content(identity));
 }
 
 TEST_CASE("an assembler takes no more than its memory", "[products][R30]") {
