@@ -15,7 +15,7 @@ void handle(Module& module, test::OutboxRecorder& recorder, ModuleId id, const M
 }  // namespace
 
 TEST_CASE("a pyro fires at its manager's turn, once, and its reply goes to Edl", "[devices][R5][R10][R14]") {
-    PyroManager pyro;
+    PyroManager pyro{Load{}};
     test::OutboxRecorder recorder;
     handle(pyro, recorder, ModuleId::pyro, FirePyro{PyroId::parachute_mortar});
     CHECK(recorder.bus->pyros.empty());
@@ -31,7 +31,7 @@ TEST_CASE("a pyro fires at its manager's turn, once, and its reply goes to Edl",
 }
 
 TEST_CASE("a pyro that did not fire is reported and does not answer the timeline", "[devices][R14]") {
-    PyroManager pyro;
+    PyroManager pyro{Load{}};
     test::OutboxRecorder recorder;
     handle(pyro, recorder, ModuleId::pyro, PyroReply{PyroId::bridle_cutter, false});
     CHECK(recorder.sent<ActionReply>().empty());
@@ -44,15 +44,15 @@ TEST_CASE("every manager of the rate group confirms a tick, idle or not", "[devi
         handle(module, recorder, id, Tick{Sclk{1.0}});
         return recorder.sent<Confirm>().size() == 1 && recorder.sent<Confirm>()[0].from == id;
     };
-    CHECK(confirms(RadarManager{}, ModuleId::radar));
-    CHECK(confirms(ImuManager{}, ModuleId::imu));
-    CHECK(confirms(PyroManager{}, ModuleId::pyro));
-    CHECK(confirms(DescentEngines{}, ModuleId::descent_engines));
-    CHECK(confirms(Thrusters{}, ModuleId::thrusters));
+    CHECK(confirms(RadarManager{Load{}}, ModuleId::radar));
+    CHECK(confirms(ImuManager{Load{}}, ModuleId::imu));
+    CHECK(confirms(PyroManager{Load{}}, ModuleId::pyro));
+    CHECK(confirms(DescentEngines{Load{}}, ModuleId::descent_engines));
+    CHECK(confirms(Thrusters{Load{}}, ModuleId::thrusters));
 }
 
 TEST_CASE("IMU samples reach Edl once, in the cycle in which they came", "[devices][R2]") {
-    ImuManager imu;
+    ImuManager imu{Load{}};
     test::OutboxRecorder recorder;
     ImuReadings readings;
     readings.samples.push_back({.count = 5});
@@ -65,7 +65,7 @@ TEST_CASE("IMU samples reach Edl once, in the cycle in which they came", "[devic
 }
 
 TEST_CASE("engines answer the timeline when they start to run, once", "[devices][R14]") {
-    DescentEngines engines;
+    DescentEngines engines{Load{}};
     test::OutboxRecorder recorder;
     handle(engines, recorder, ModuleId::descent_engines, EngineReply{false, 0.0});
     CHECK(recorder.sent<ActionReply>().empty());
@@ -77,7 +77,7 @@ TEST_CASE("engines answer the timeline when they start to run, once", "[devices]
 }
 
 TEST_CASE("switches go to the bus and their replies to Edl", "[devices][R28]") {
-    PowerManager power;
+    PowerManager power{Load{}};
     test::OutboxRecorder recorder;
     handle(power, recorder, ModuleId::power, SetSwitch{SwitchId::radar, true});
     REQUIRE(recorder.bus->switches.size() == 1);

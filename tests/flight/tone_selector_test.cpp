@@ -181,3 +181,27 @@ TEST_CASE("when full, the less important of two requests goes, and says against 
     CHECK(told[0].of(Quantity::tone_priority).bound == 101);
     CHECK(f.tick(0) == ToneId{200});
 }
+
+TEST_CASE("in Second Chance only tones of its own set go out, whoever asks for which", "[mfsk][R35]") {
+    Load load;
+    load.role = Role::second_chance;
+    ToneSelector selector{load};
+    test::OutboxRecorder recorder{ModuleId::mfsk};
+    const auto sent_after = [&](ToneId asked, double at_s) {
+        recorder.begin(ModuleId::mfsk, Sclk{at_s});
+        selector.on(ToneRequest{asked, Sclk{at_s}}, recorder.out);
+        selector.on(ClockTick{Sclk{at_s}}, recorder.out);
+        return recorder.bus->tone;
+    };
+    CHECK(sent_after(tone::touchdown, 100.0) == tone::sc_touchdown);
+    double at_s = 120.0;
+    for (const ToneSpec& spec : tone_specs) {
+        if (spec.set != 0 || spec.priority == 0) continue;
+        const auto sent = sent_after(ToneId{static_cast<std::uint8_t>(&spec - tone_specs.data())}, at_s);
+        REQUIRE(sent.has_value());
+        CHECK(tone_specs[sent->value].set == 1);
+        at_s += 200.0;
+    }
+    recorder.begin(ModuleId::mfsk, Sclk{at_s});
+    CHECK_FALSE(sent_after(tone::sc_touchdown, at_s).has_value());  // no prime tone means it: it is not asked for
+}

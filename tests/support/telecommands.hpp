@@ -33,4 +33,17 @@ inline std::vector<std::uint8_t> do_edl() {
     return packet;
 }
 
+inline std::vector<std::uint8_t> with_one_octet(Opcode opcode, std::uint8_t argument) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + 1);
+    packet[tc_arguments_offset_octets] = argument;
+    seal_tc_packet(packet, Apid{1}, 2, opcode);
+    return packet;
+}
+inline std::vector<std::uint8_t> enable_second_chance() {
+    return with_one_octet(flight::command::SECOND_CHANCE_ENABLE::opcode, 1);
+}
+inline std::vector<std::uint8_t> select_prime_b() {
+    return with_one_octet(flight::command::SELECT_PRIME::opcode, 1);
+}
+
 }  // namespace aeolis::test
