@@ -27,6 +27,7 @@ void ImuManager::on(const ImuReadings& readings, Outbox&) {
 
 void ImuManager::on(const Tick&, Outbox& out) {
     out.send(ModuleId::edl, latest_);
+    if (!latest_.samples.empty()) out.send(ModuleId::edl_comm, latest_);
     latest_.samples.clear();
     out.send(ModuleId::sync, Confirm{ModuleId::imu});
 }

@@ -19,7 +19,7 @@ class RadarManager {
     RadarReturns latest_;
 };
 
-/// IMU. In: ImuReadings at 200 Hz (3 or 4 a cycle), Tick. Out: ImuReadings to Edl before its turn.
+/// IMU. In: ImuReadings at 200 Hz (3 or 4 a cycle), Tick. Out: ImuReadings to Edl before its turn, and to EdlComm.
 class ImuManager {
   public:
     explicit ImuManager(const Load&) {}

@@ -93,6 +93,7 @@ class EdlMain {
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
+    HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     Phase phase_;
     std::uint32_t cycle_count_ = 0;

@@ -51,16 +51,19 @@ TEST_CASE("every manager of the rate group confirms a tick, idle or not", "[devi
     CHECK(confirms(Thrusters{Load{}}, ModuleId::thrusters));
 }
 
-TEST_CASE("IMU samples reach Edl once, in the cycle in which they came", "[devices][R2]") {
+TEST_CASE("IMU samples reach Edl and EdlComm once, in the cycle in which they came", "[devices][R2]") {
     ImuManager imu{Load{}};
     test::OutboxRecorder recorder;
     ImuReadings readings;
     readings.samples.push_back({.count = 5});
     handle(imu, recorder, ModuleId::imu, readings);
     handle(imu, recorder, ModuleId::imu, Tick{Sclk{1.0}});
-    REQUIRE(recorder.sent<ImuReadings>().size() == 1);
-    CHECK(recorder.sent<ImuReadings>()[0].samples.size() == 1);
+    REQUIRE(recorder.out.sent().size() == 3); // the third confirms the tick
+    CHECK(recorder.out.sent()[0].to == ModuleId::edl);
+    CHECK(recorder.out.sent()[1].to == ModuleId::edl_comm);
+    for (const auto& readings_sent : recorder.sent<ImuReadings>()) CHECK(readings_sent.samples.size() == 1);
     handle(imu, recorder, ModuleId::imu, Tick{Sclk{1.0}});
+    REQUIRE(recorder.sent<ImuReadings>().size() == 1); // to Edl, which has its turn without any too
     CHECK(recorder.sent<ImuReadings>()[0].samples.empty());
 }
 
