@@ -2,7 +2,14 @@
 
 #include "common/fixed_queue.hpp"
 #include "flight/commands/command_dispatcher.hpp"
-#include "flight/devices/device_managers.hpp"
+#include "flight/devices/descent_engines.hpp"
+#include "flight/devices/imu.hpp"
+#include "flight/devices/power.hpp"
+#include "flight/devices/pyro.hpp"
+#include "flight/devices/radar.hpp"
+#include "flight/devices/telecom.hpp"
+#include "flight/devices/thrusters.hpp"
+#include "flight/devices/unit_selector.hpp"
 #include "flight/edl/edl_main.hpp"
 #include "flight/edl_bg/edl_bg.hpp"
 #include "flight/edl_comm/edl_comm.hpp"
@@ -34,6 +41,8 @@ struct ComputerState {
     DescentEngines descent_engines;
     Thrusters thrusters;
     PowerManager power;
+    TelecomManager telecom;
+    UnitSelector units;
     SystemFaultProtection system_fault_protection;
     CommandDispatcher command_dispatcher;
     EdlBg edl_bg;

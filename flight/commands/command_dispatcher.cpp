@@ -52,6 +52,10 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
         return route<command::EDL_SET_ANCHOR_OFFSET>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::edl, SetAnchorOffsetCommand{tag, command});
         });
+    case command::EDL_SELECT_UNITS::opcode.value:
+        return route<command::EDL_SELECT_UNITS>(out, tag, packet->arguments, [&](const auto& command) {
+            out.send(ModuleId::units, SelectUnitsCommand{tag, command});
+        });
     default: return refuse(out, tag, CommandRefusal::unknown_opcode);
     }
 }

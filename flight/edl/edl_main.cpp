@@ -212,6 +212,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     if (!refused) {
         timeline_.begin(out.now());
         out.event(evr::EDL_BEGUN{});
+        out.send(ModuleId::units, EdlBegun{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
     answer(out, command.tag, refused);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-// The two commands of a landing, packed field by field here and not by the encoder of commands/.
+// The commands of a landing, packed field by field here and not by the encoder of commands/.
 namespace aeolis::test {
 
 inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolution& solution) {
@@ -30,6 +30,15 @@ inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolu
 inline std::vector<std::uint8_t> do_edl() {
     std::vector<std::uint8_t> packet(tc_overhead_octets);
     seal_tc_packet(packet, Apid{1}, 1, flight::command::EDL_DO_EDL::opcode);
+    return packet;
+}
+
+/// Units in the order of flight::Device, 0 for A and 1 for B.
+inline std::vector<std::uint8_t> select_units(std::span<const std::uint8_t> units) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SELECT_UNITS::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    for (const std::uint8_t unit : units) arguments.put(unit, 8);
+    seal_tc_packet(packet, Apid{1}, 2, flight::command::EDL_SELECT_UNITS::opcode);
     return packet;
 }
 
