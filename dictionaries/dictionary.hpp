@@ -169,6 +169,9 @@ struct AnchorRow {
 
 enum class ToneSet { prime, second_chance, spare };
 
+/// A tone of prime's and the one that means the same in Second Chance: "touchdown" and "sc_touchdown". R35
+inline constexpr std::string_view second_chance_prefix = "sc_";
+
 struct ToneRow {
     ToneId id;
     ToneSet set = ToneSet::spare;

@@ -3,6 +3,26 @@
 #include "flight/kernel/executive.hpp"
 
 namespace aeolis::flight {
+namespace {
+
+bool in_command(const ComputerState& state) {
+    return state.load.role == Role::prime ? !state.edl.stands_by() : state.cross_string.in_control();
+}
+
+/// Everything that a device could take for a command. What is recorded and told to ground stays.
+void command_nothing(DeviceOutputs& out) {
+    out.pyros.clear();
+    out.switches.clear();
+    out.thrusters_enabled.reset();
+    out.attitude = {};
+    out.engines = {};
+    out.pay_out_bridle = false;
+    out.tone.reset();
+    out.cross_string.clear();
+    out.designate_b_prime.reset();
+}
+
+}  // namespace
 
 Computer::Computer(const Load& load, Sclk start) : state_(std::make_unique<ComputerState>(load, start)) {}
 Computer::Computer(const Computer& other) : state_(std::make_unique<ComputerState>(*other.state_)) {}
@@ -15,24 +35,52 @@ Computer& Computer::operator=(Computer&&) noexcept = default;
 Computer::~Computer() = default;
 
 void Computer::step(const DeviceInputs& in, DeviceOutputs& out) {
+    const Role designated = in.prime_is_b == (state_->load.string == String::b) ? Role::prime : Role::second_chance;
+    if (designated != state_->load.role) start_anew(in.now, designated);
+    if (state_->runs_from && in.now < *state_->runs_from) {
+        out.begin_cycle();
+        command_nothing(out);
+        out.in_command = false;
+        out.wants_restart_record = in.now + seconds_per_tick >= *state_->runs_from;
+        return;
+    }
+    state_->runs_from.reset();
     try {
         Executive{*state_}.cycle(in, out);
+        out.in_command = in_command(*state_);
     } catch (const CheckFailed& bug) {
-        // A bug on board stays on board: the computer starts anew, and says so in its first cycle.
-        const std::uint32_t resets = state_->resets + 1;
-        const Load load = state_->load;
-        std::destroy_at(state_.get());
-        std::construct_at(state_.get(), load, in.now);
-        state_->resets = resets;
+        // A bug on board stays on board: the computer starts anew, and says why in its first cycle.
+        start_anew(in.now, designated);
         state_->outbox.begin(ModuleId::sync, in.now, out);
-        state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = resets});
+        state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = state_->resets});
+        state_->outbox.send(ModuleId::mfsk, ToneRequest{tone::check_failed, in.now + restart_s});
         for (const Envelope& envelope : state_->outbox.sent()) state_->next_cycle.push_back(envelope);
+        out.in_command = false;
     }
+    if (!out.in_command) command_nothing(out);
+}
+
+void Computer::reset(Sclk now) {
+    start_anew(now, state_->load.role);
+}
+
+void Computer::start_anew(Sclk now, Role role) {
+    const std::uint32_t resets = state_->resets + 1;
+    Load load = state_->load;
+    load.role = role;
+    std::destroy_at(state_.get());
+    std::construct_at(state_.get(), load, now);
+    state_->resets = resets;
+    state_->runs_from = now + restart_s;
 }
 
 Computer::Counters Computer::counters() const {
     return {state_->sync.cycles(), state_->sync.overruns(), state_->mailbox_overflows, state_->unexpected_messages,
             state_->resets};
+}
+
+Role Computer::role() const {
+    return state_->load.role;
 }
 
 }  // namespace aeolis::flight

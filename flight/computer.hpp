@@ -9,11 +9,16 @@ namespace aeolis::flight {
 
 struct ComputerState;
 
+/// Ours: from a reset until the software runs again.
+inline constexpr double restart_s = 30.0;
+
 /// A flight computer: all of its state in one object of fixed size, made before the first tick.
 ///
 /// In       DeviceInputs, one for each 1/64 s            Out   DeviceOutputs of that cycle
 /// Memory   allocated when made and when copied, never in step()
 /// Faults   a failed check inside step() is a FATAL event and a reset of this computer; step() itself never throws
+/// Roles    prime, or Second Chance behind it, as the vehicle's latch says; when the latch changes it starts anew. R1
+/// Do no harm: whatever its modules put out, nothing of a computer that is not in command reaches a device. R34
 /// Copying a computer is a snapshot: two copies fed the same inputs stay bit-identical.
 class Computer {
   public:
@@ -27,6 +32,9 @@ class Computer {
     /// Runs one 64 Hz cycle. `out` holds the commands of the cycle before and is begun anew here.
     void step(const DeviceInputs& in, DeviceOutputs& out);
 
+    /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
+    void reset(Sclk now);
+
     /// What the executive counted: for reports and tests.
     struct Counters {
         std::uint64_t cycles = 0;
@@ -36,8 +44,11 @@ class Computer {
         std::uint32_t resets = 0;
     };
     Counters counters() const;
+    Role role() const;
 
   private:
+    void start_anew(Sclk now, Role role);
+
     std::unique_ptr<ComputerState> state_;
 };
 

@@ -2,6 +2,8 @@
 
 #include "common/fixed_queue.hpp"
 #include "flight/commands/command_dispatcher.hpp"
+#include "flight/cross_string/cross_string.hpp"
+#include "flight/devices/cruise_attitude.hpp"
 #include "flight/devices/descent_engines.hpp"
 #include "flight/devices/imu.hpp"
 #include "flight/devices/power.hpp"
@@ -14,6 +16,7 @@
 #include "flight/edl_bg/edl_bg.hpp"
 #include "flight/edl_comm/edl_comm.hpp"
 #include "flight/fault_protection/system_fault_protection.hpp"
+#include "flight/kernel/loads.hpp"
 #include "flight/kernel/sync.hpp"
 #include "flight/load.hpp"
 #include "flight/mfsk/tone_selector.hpp"
@@ -28,7 +31,10 @@ inline constexpr std::size_t mailbox_messages_max = 64;  ///< ours: an IMU, rada
 /// Everything that a flight computer holds: its modules, their mailboxes, and the messages of one cycle for the next.
 struct ComputerState {
     ComputerState(const Load& its_load, Sclk start)
-        : load(its_load), now(start), edl(its_load), mfsk(tone_specs), edl_comm(its_load) {}
+        : load(its_load), now(start), sync(load), radar(load), imu(load), edl(load), pyro(load), descent_engines(load),
+          thrusters(load), power(load), telecom(load), units(load), cruise_attitude(load),
+          system_fault_protection(load), cross_string(load), command_dispatcher(load),
+          edl_bg(load), mfsk(load), edl_comm(load) {}
 
     Load load;
     Sclk now;
@@ -43,13 +49,16 @@ struct ComputerState {
     PowerManager power;
     TelecomManager telecom;
     UnitSelector units;
+    CruiseAttitudeControl cruise_attitude;
     SystemFaultProtection system_fault_protection;
+    CrossString cross_string;
     CommandDispatcher command_dispatcher;
     EdlBg edl_bg;
     ToneSelector mfsk;
     EdlComm edl_comm;
 
     std::array<FixedQueue<Message, mailbox_messages_max>, module_count> mailboxes;
+    std::uint32_t ready = 0;  // a bit for each module that has something to run for
     // What modules outside the rate group sent: delivered at the start of the next cycle, whatever the executive.
     FixedVector<Envelope, 128> next_cycle;
     Outbox outbox;
@@ -57,6 +66,7 @@ struct ComputerState {
     std::uint32_t mailbox_overflows = 0;
     std::uint32_t unexpected_messages = 0;
     std::uint32_t resets = 0;
+    std::optional<Sclk> runs_from;  // while it starts after a reset
 };
 static_assert(std::is_copy_constructible_v<ComputerState> && std::is_trivially_destructible_v<ComputerState>,
               "copying a computer is a snapshot");

@@ -26,7 +26,14 @@ struct EntryReference {
 
 enum class Plan : std::uint8_t { mission, wideband };
 
+/// What a computer was started as: which is prime is designated by command before EDL, and the other stands behind it. R1
+enum class Role : std::uint8_t { prime, second_chance };
+/// Which of the two computers this is, by its place in the vehicle.
+enum class String : std::uint8_t { a, b };
+
 struct Load {
+    String string = String::a;
+    Role role = Role::prime;
     double uhf_rate_bps = 8000.0;             ///< rate of the real-time link
     Plan telemetry_plan = Plan::mission;      ///< wideband: a synthetic load for benchmarks
     double entry_mass_kg = 3153.0;

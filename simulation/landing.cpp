@@ -1,6 +1,7 @@
 #include "simulation/landing.hpp"
 
 #include "common/bytes.hpp"
+#include "simulation/devices/computers.hpp"
 #include "simulation/devices/recorder.hpp"
 #include "simulation/entry_reference.hpp"
 #include "simulation/links/in_flight.hpp"
@@ -62,8 +63,8 @@ struct Landing::State {
     Scenario scenario;
     std::vector<EventReportName> reports;
     World world;
-    flight::Computer computer;
-    flight::DeviceOutputs out;
+    Computers computers;
+    flight::OctetBuffer<16384> radiated; // by either computer in this cycle
     Recorder recorder;
     UhfLink uhf;
     XBandLink x_band;
@@ -83,11 +84,16 @@ struct Landing::State {
     CycleReport report;
 
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number, std::vector<EventReportName> names)
-        : scenario(s), reports(std::move(names)), world(s, seed, case_number), computer(load_for(s), world.sclk()),
+        : scenario(s), reports(std::move(names)), world(s, seed, case_number), computers(load_for(s), world.sclk()),
           uhf(s.radio, Random{seed, case_number, Stream::uhf}),
           x_band(s.radio, Random{seed, case_number, Stream::x_band}), relay(s.radio.relay_rate_bps),
           light_time_us(microseconds(s.radio.light_time_s)) {
         computer_on = world.outcome() == Outcome::running;
+    }
+
+    void inject_resets() {
+        for (const ComputerReset& reset : scenario.computer_resets)
+            if (scenario.entry_sclk - world.sclk() == reset.before_entry_s) computers.reset_prime(world.sclk());
     }
 
     Sclk sclk() const { return world.sclk() + static_cast<double>(ticks_without_computer) * seconds_per_tick; }
@@ -116,13 +122,23 @@ void Landing::State::fly() {
     world.set_nvm(static_cast<std::uint32_t>(recorder.octets().size()), Recorder::capacity_octets);
     remembered[static_cast<std::size_t>(world.sclk().ticks()) % remembered_ticks] = world.truth();
 
-    computer.step(world.sense(), out);
+    inject_resets();
+    computers.step(world.sense());
 
-    if (recorder.append(out.nvm.span())) report.recorded = out.nvm.span();
-    report.radiated = out.uhf.span();
+    const std::size_t recorded_before = recorder.octets().size();
+    radiated.clear();
+    for (const std::size_t place : {0, 1}) {
+        (void)recorder.append(computers.outputs(place).nvm.span());
+        radiated.append(computers.outputs(place).uhf.span());
+    }
+    report.recorded = recorder.octets().subspan(recorded_before);
+    report.radiated = radiated.span();
     radiate(cycle_start_us);
     receive_tone(cycle_start_us);
-    world.advance(out);
+    if (const flight::DeviceOutputs* commands = computers.commands())
+        world.advance(*commands);
+    else
+        world.advance_uncommanded();
     report.events.assign(world.events().begin(), world.events().end());
     read_event_reports();
 
@@ -133,7 +149,7 @@ void Landing::State::fly() {
 
 void Landing::State::radiate(std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
-    uhf.offer(out.uhf.span());
+    uhf.offer(radiated.span());
     uhf_delivered.clear();
     uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()}, uhf_delivered);
     for (UhfLink::Delivered& packet : uhf_delivered) {
@@ -147,7 +163,7 @@ void Landing::State::receive_tone(std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    if (auto tone = x_band.cycle(out.tone, {truth.sclk, truth.e_s, doppler_hz})) {
+    if (auto tone = x_band.cycle(computers.commands() != nullptr ? computers.commands()->tone : std::nullopt, {truth.sclk, truth.e_s, doppler_hz})) {
         tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         tones.send(tone->end.microseconds, *tone);
@@ -234,6 +250,10 @@ void Landing::uplink(std::span<const std::uint8_t> packet) {
     s.uplinks.send(s.now_us() + s.light_time_us, {packet.begin(), packet.end()});
 }
 
+void Landing::reset_prime() {
+    if (state_->computer_on) state_->computers.reset_prime(state_->sclk());
+}
+
 Sclk Landing::sclk() const {
     return state_->sclk();
 }
@@ -274,7 +294,7 @@ double Landing::peak_deceleration_mps2() const {
     return state_->world.peak_deceleration_mps2();
 }
 flight::Computer::Counters Landing::counters() const {
-    return state_->computer.counters();
+    return state_->computers.counters();
 }
 std::span<const std::uint8_t> Landing::recording() const {
     return state_->recorder.octets();

@@ -125,6 +125,9 @@ class Landing {
     /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> packet);
 
+    /// A fault: the prime computer starts anew with the next cycle.
+    void reset_prime();
+
     Sclk sclk() const; ///< at the vehicle
     Scet scet() const;
     Ert ert_now() const; ///< what Earth's clocks show at this moment: SCET of the vehicle's now

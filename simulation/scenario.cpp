@@ -160,6 +160,17 @@ void check_system_faults(const Scenario& scenario, std::vector<std::string>& fou
     }
 }
 
+void check_computer_resets(const Scenario& scenario, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < scenario.computer_resets.size(); ++i) {
+        const double before_entry_s = scenario.computer_resets[i].before_entry_s;
+        const bool possible = is_multiple_of_tick(before_entry_s) && before_entry_s < scenario.start_before_entry_s &&
+                              before_entry_s > -scenario.timeout_after_entry_s;
+        if (!possible)
+            found.push_back("computer_resets[" + std::to_string(i) + "].before_entry_s: " + number(before_entry_s) +
+                            " is no multiple of 1/64 s within the run");
+    }
+}
+
 } // namespace
 
 std::vector<std::string> impossible_values(const Scenario& scenario) {
@@ -184,6 +195,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_commands(scenario, found);
     check_system_faults(scenario, found);
     check_device_faults(scenario, found);
+    check_computer_resets(scenario, found);
     return found;
 }
 

@@ -102,6 +102,11 @@ struct DeviceFault {
     double late_s = 5.0; ///< ours: longer than every reply time-out of the timeline
 };
 
+/// The prime computer fails and starts anew. R32, R33
+struct ComputerReset {
+    double before_entry_s = 0.0; ///< a multiple of 1/64 s; negative after entry
+};
+
 struct Scenario {
     std::string name;
     std::string title;            ///< a line for people
@@ -126,6 +131,7 @@ struct Scenario {
     std::vector<ScriptedCommand> commands;
     std::vector<SystemFault> system_faults;
     std::vector<DeviceFault> device_faults;
+    std::vector<ComputerReset> computer_resets;
     double bus_message_error_fraction = 1.0e-4; ///< of the messages on the buses, each time they are sent. Ours
 };
 

@@ -269,7 +269,7 @@ World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
-const flight::DeviceInputs& World::sense() {
+flight::DeviceInputs& World::sense() {
     State& s = *state_;
     flight::DeviceInputs& in = s.in;
     in.now = s.sclk();

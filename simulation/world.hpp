@@ -41,7 +41,8 @@ class World {
     ~World();
 
     /// What reaches the computer with the tick that is now. Once for each tick; valid until the next call.
-    const flight::DeviceInputs& sense();
+    /// The vehicle's computers add what they tell each other.
+    flight::DeviceInputs& sense();
 
     /// The vehicle takes the commands of this cycle and flies on to the next tick.
     void advance(const flight::DeviceOutputs& out);

@@ -182,8 +182,18 @@ class HeaderWriter {
         if (!command.arguments.empty()) out_ << "        BitReader in{octets};\n";
         for (const Argument& argument : command.arguments)
             write_argument(argument);
-        out_ << "        return c;\n    }\n"
-             << "    bool operator==(const " << command.name << "&) const = default;\n};\n\n";
+        out_ << "        return c;\n    }\n";
+        write_carry(command);
+        out_ << "    bool operator==(const " << command.name << "&) const = default;\n};\n\n";
+    }
+
+    /// How a command that is held on board goes to another computer (flight/cross_string).
+    void write_carry(const Command& command) {
+        if (command.arguments.empty()) return;
+        out_ << "\n    template <typename Exchange>\n    void carry(Exchange& exchange) {\n        exchange(";
+        for (const Argument& argument : command.arguments)
+            out_ << (&argument == &command.arguments.front() ? "" : ", ") << argument.name;
+        out_ << ");\n    }\n";
     }
 
     void write_argument(const Argument& argument) {

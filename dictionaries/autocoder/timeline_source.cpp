@@ -48,6 +48,10 @@ void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
     for (const ToneRow& row : dictionary.tones)
         out << "    {" << static_cast<unsigned>(row.set) << ", " << row.priority << ", "
             << double_literal(row.expires_s) << ", " << id_literal("ToneId", id_of(dictionary.tones, row.supersedes))
+            << ", "
+            << id_literal("ToneId", row.set == ToneSet::prime
+                                        ? id_of(dictionary.tones, std::string{second_chance_prefix} + row.name)
+                                        : std::optional<ToneId>{})
             << "},\n";
     out << "}};\n\n";
 }

@@ -9,7 +9,6 @@ namespace aeolis::dictionary {
 namespace {
 
 constexpr std::int64_t priority_max = 255; // ToneSelected holds it in an octet
-constexpr std::string_view second_chance_prefix = "sc_";
 
 struct Read {
     ToneRow tone;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -12,7 +13,6 @@ namespace aeolis::flight {
 /// Faults  a quaternion that is none is dropped and reported (CRUISE_ATTITUDE_UNUSABLE): the one before it stays
 class CruiseAttitudeControl {
   public:
-    CruiseAttitudeControl() = default;
     explicit CruiseAttitudeControl(const Load&) {}
 
     void on(const CruiseAttitude& attitude, Outbox& out);

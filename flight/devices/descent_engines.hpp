@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -13,7 +14,6 @@ namespace aeolis::flight {
 /// Faults  engines that do not run and a bridle that stops answer nobody: the timeline's time-out does
 class DescentEngines {
   public:
-    DescentEngines() = default;
     explicit DescentEngines(const Load&) {}
 
     void on(const RunEngines& command, Outbox& out);

@@ -34,6 +34,11 @@ class UnitSelection {
     Unit& operator[](Device device) { return units_[static_cast<std::size_t>(device)]; }
     bool operator==(const UnitSelection&) const = default;
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(units_);
+    }
+
   private:
     std::array<Unit, device_count> units_{};
 };
@@ -116,9 +121,17 @@ struct UplinkPacket {
     std::uint16_t size = 0;
 };
 
+/// A computer's EDL state as it crosses the line between the two, or lies in non-volatile memory: a frame that only
+/// flight software reads (flight/cross_string). 2560 octets are ours: half as much again as it takes.
+inline constexpr std::size_t state_octets_max = 2560;
+using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
+
 /// Everything that reaches the computer with one tick of its clock.
 struct DeviceInputs {
     Sclk now;                                     ///< the tick
+    bool prime_is_b = false;                      ///< the latch that designates the prime computer. R1
+    StateOctets cross_string;                     ///< what the other computer sent in the cycle before; empty: nothing
+    StateOctets restart_record;                   ///< once, in the first cycle after a restart, if there is one
     FixedVector<ImuSample, 4> imu;                ///< 3 or 4 in a cycle
     std::optional<CruiseAttitude> cruise_attitude;
     FixedVector<RadarBeam, 6> radar;              ///< each beam at 20 Hz
@@ -181,6 +194,11 @@ struct DeviceOutputs {
     std::optional<ToneId> tone;                                ///< what X-band sends during this cycle; none: carrier only
     OctetBuffer<65536> nvm;                                    ///< packets to append to the recording, in order
     OctetBuffer<8192> uhf;                                     ///< packets to radiate, a subset of what was recorded
+    StateOctets cross_string;                                  ///< to the other computer; empty: nothing in this cycle
+    StateOctets restart_record;                                ///< to be kept in place of the one before; empty: keep
+    std::optional<bool> designate_b_prime;                     ///< set the latch
+    bool in_command = false;                                   ///< the bus listens to this computer
+    bool wants_restart_record = false;                         ///< starting: with the next tick, please
 
     /// Back to nothing commanded, for the next cycle; units, attitude and engines keep their last command.
     void begin_cycle() {
@@ -189,6 +207,10 @@ struct DeviceOutputs {
         thrusters_enabled.reset();
         nvm.clear();
         uhf.clear();
+        cross_string.clear();
+        restart_record.clear();
+        designate_b_prime.reset();
+        wants_restart_record = false;
     }
 };
 

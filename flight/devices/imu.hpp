@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -13,7 +14,6 @@ namespace aeolis::flight {
 ///         second at most, and not in the second in which the unit was changed
 class ImuManager {
   public:
-    ImuManager() = default;
     explicit ImuManager(const Load&) {}
 
     void on(const ImuReadings& readings, Outbox& out);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/devices/switch_replies.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -12,7 +13,6 @@ namespace aeolis::flight {
 ///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
 class PowerManager {
   public:
-    PowerManager() = default;
     explicit PowerManager(const Load&) {}
 
     void on(const SetSwitch& command, Outbox& out);

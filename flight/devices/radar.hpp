@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -11,7 +12,6 @@ namespace aeolis::flight {
 /// Faults  returns that do not come are missed by EdlBg, which needs them (RADAR_LOST)
 class RadarManager {
   public:
-    RadarManager() = default;
     explicit RadarManager(const Load&) {}
 
     void on(const RadarReturns& returns, Outbox& out);

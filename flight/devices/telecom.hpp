@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/devices/switch_replies.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -13,7 +14,6 @@ namespace aeolis::flight {
 /// Faults  as of power: DEVICE_REFUSED, REPLY_UNEXPECTED
 class TelecomManager {
   public:
-    TelecomManager() = default;
     explicit TelecomManager(const Load&) {}
 
     void on(const SetSwitch& command, Outbox& out);

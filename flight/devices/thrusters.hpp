@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -12,7 +13,6 @@ namespace aeolis::flight {
 ///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
 class Thrusters {
   public:
-    Thrusters() = default;
     explicit Thrusters(const Load&) {}
 
     void on(const PointVehicle& command, Outbox& out);

@@ -3,9 +3,8 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr std::array device_managers{ModuleId::radar,           ModuleId::imu,       ModuleId::pyro,
-                                     ModuleId::descent_engines, ModuleId::thrusters, ModuleId::power,
-                                     ModuleId::telecom};
+constexpr std::array told{ModuleId::radar,           ModuleId::imu,       ModuleId::edl,   ModuleId::pyro,
+                          ModuleId::descent_engines, ModuleId::thrusters, ModuleId::power, ModuleId::telecom};
 constexpr std::int64_t report_period_s = 10;  // ours: what does not change need not be said often
 
 static_assert(static_cast<Unit>(SelectedUnit::a) == Unit::a && static_cast<Unit>(SelectedUnit::b) == Unit::b);
@@ -48,6 +47,7 @@ void UnitSelector::on(const SelectUnitsCommand& command, Outbox& out) {
 
 void UnitSelector::on(const EdlBegun&, Outbox&) {
     edl_begun_ = true;
+    reports_ = true;
 }
 
 void UnitSelector::on(const UnitsSelected& taken_over, Outbox& out) {
@@ -55,13 +55,13 @@ void UnitSelector::on(const UnitsSelected& taken_over, Outbox& out) {
 }
 
 void UnitSelector::on(const ClockTick& tick, Outbox& out) {
-    if (tick.now.ticks() % (report_period_s * 64) == 0) out.record(held(selected_));
+    if (reports_ && tick.now.ticks() % (report_period_s * 64) == 0) out.record(held(selected_));
 }
 
 void UnitSelector::select(const UnitSelection& units, Outbox& out) {
     selected_ = units;
-    for (const ModuleId manager : device_managers) out.send(manager, UnitsSelected{units});
-    out.record(held(units));
+    for (const ModuleId module : told) out.send(module, UnitsSelected{units});
+    if (reports_) out.record(held(units));
 }
 
 }  // namespace aeolis::flight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -9,12 +10,12 @@ namespace aeolis::flight {
 ///
 /// In      SelectUnitsCommand; EdlBegun from Edl; ClockTick; UnitsSelected (as prime held them, for a computer that
 ///         takes over)
-/// Out     UnitsSelected to every device manager; CommandOutcome; channels of the choice, each 10 s and when it changes
+/// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels of
+///         the choice, each 10 s and when it changes, but none from a computer that only follows prime
 /// Faults  a selection after "do edl" is refused (wrong_phase): nothing is changed
 class UnitSelector {
   public:
-    UnitSelector() = default;
-    explicit UnitSelector(const Load&) {}
+    explicit UnitSelector(const Load& load) : reports_(load.role == Role::prime) {}
 
     void on(const SelectUnitsCommand& command, Outbox& out);
     void on(const EdlBegun& begun, Outbox& out);
@@ -28,6 +29,7 @@ class UnitSelector {
 
     UnitSelection selected_;  // A of each, until ground says otherwise
     bool edl_begun_ = false;
+    bool reports_;
 };
 
 }  // namespace aeolis::flight

@@ -22,6 +22,11 @@ class PeakDeceleration {
   public:
     void watch(const gnc::Output& gnc, Outbox& out);
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(largest_mps2_, altitude_m_, speed_mps_, passed_);
+    }
+
   private:
     double largest_mps2_ = 0.0;
     double altitude_m_ = 0.0;

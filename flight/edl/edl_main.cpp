@@ -1,42 +1,29 @@
 #include "flight/edl/edl_main.hpp"
 
+#include "flight/edl/solution.hpp"
 #include "flight/timeline/actions.hpp"
 
 #include <cmath>
-#include <numbers>
 
 namespace aeolis::flight {
 namespace {
 
-constexpr double radians_per_degree = std::numbers::pi / 180.0;
 constexpr ParameterDefaults parameters{};
 
 void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
 
-gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
-    gnc::Solution solution;
-    solution.epoch = Sclk{p.epoch_sclk};
-    solution.p_MoB_M_m = {p.position_x_m, p.position_y_m, p.position_z_m};
-    solution.v_MB_M_mps = {p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps};
-    solution.entry = Sclk{p.entry_sclk};
-    solution.target_latitude_rad = p.target_latitude_deg * radians_per_degree;
-    solution.target_longitude_rad = p.target_longitude_deg * radians_per_degree;
-    solution.target_radius_m = p.target_radius_m;
-    solution.parachute_speed_mps = p.parachute_speed_mps;
-    solution.heatshield_speed_mps = p.heatshield_speed_mps;
-    solution.backshell_altitude_m = p.backshell_altitude_m;
-    return solution;
-}
-
 }  // namespace
 
-EdlMain::EdlMain(const Load& load) : plan_(load.telemetry_plan), timeline_(timeline_specs, anchor_specs), gnc_(load) {}
+EdlMain::EdlMain(const Load& load)
+    : load_(load), activity_(load.role == Role::prime ? Activity::flies : Activity::tracks),
+      timeline_(timeline_specs, anchor_specs, load.role == Role::second_chance), gnc_(load) {}
 
 // ---- the cycle -------------------------------------------------------------------------------------------------
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
+    if (activity_ != Activity::flies) return out.send(ModuleId::sync, Confirm{ModuleId::edl});
     ++cycle_count_;
     timeline_.begin_cycle();
     watch_approach(tick.now, out);
@@ -46,6 +33,7 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     run_timeline(tick.now, out);
     update_phase(tick.now, out);
     record_channels(tick.now, out);
+    tell_state(tick.now, out);
     out.send(ModuleId::sync, Confirm{ModuleId::edl});
 }
 
@@ -76,7 +64,11 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
         out.event(evr::TIMEPOINT_TIMED_OUT{.timepoint = firing.timepoint.value});
         out.send(ModuleId::mfsk, ToneRequest{tone::timepoint_timed_out, now});
     }
-    if (!firings.empty() && timeline_.finished()) out.event(evr::TIMELINE_COMPLETE{});
+    if (firings.empty()) return;
+    ++revision_;
+    if (!timeline_.finished()) return;
+    out.event(evr::TIMELINE_COMPLETE{});
+    out.send(ModuleId::cross_string, EdlFinished{});
 }
 
 void EdlMain::run_gnc(Sclk now, Outbox& out) {
@@ -122,6 +114,10 @@ void EdlMain::update_phase(Sclk now, Outbox& out) {
 // ---- what the device managers send -----------------------------------------------------------------------------
 
 void EdlMain::on(const ImuReadings& readings, Outbox&) {
+    if (activity_ == Activity::tracks) {
+        if (recent_readings_.full()) recent_readings_.pop();
+        (void)recent_readings_.try_push(readings);
+    }
     gnc_inputs_.imu = readings.samples;
 }
 
@@ -185,6 +181,7 @@ bool EdlMain::too_late(Sclk now) const {
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than what it knows.
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
+    ++revision_;
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());
     const Sclk entry = Sclk::from_ticks(std::llround(parameters_->entry_sclk * 64.0));
@@ -211,6 +208,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
     explain_do_edl(refused, entry(), timeline_.first_desired(), out);
     if (!refused) {
         timeline_.begin(out.now());
+        ++revision_;
         out.event(evr::EDL_BEGUN{});
         out.send(ModuleId::units, EdlBegun{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
@@ -224,6 +222,7 @@ void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
                           is_multiple_of_tick(arguments.minimum_offset_s) &&
                           timeline_.set_timepoint_offsets(TimepointId{arguments.timepoint}, arguments.desired_offset_s,
                                                           arguments.minimum_offset_s);
+    if (possible) ++revision_;
     if (possible)
         out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
                                                 .desired_offset_s = arguments.desired_offset_s,
@@ -235,6 +234,7 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
     const bool possible = is_multiple_of_tick(arguments.offset_s) &&
                           timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
+    if (possible) ++revision_;
     if (possible)
         out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
     answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});

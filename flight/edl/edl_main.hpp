@@ -1,5 +1,7 @@
 #pragma once
 
+#include "common/fixed_queue.hpp"
+#include "flight/cross_string/state_frame.hpp"
 #include "flight/edl/decisions.hpp"
 #include "flight/edl/phase.hpp"
 #include "flight/gnc/edl_gnc.hpp"
@@ -13,10 +15,13 @@ namespace aeolis::flight {
 /// EdlMain: the one thread of EDL. Each 64 Hz cycle it runs the timeline, GNC exactly once, and the timeline again, so
 /// that what GNC decides happens in the same cycle. R15, R17, R18, R47
 ///
-/// In      Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
+/// In      StatePart and Resume: go on from a state of another computer, or of before a restart. R32, R33
+///         Tick; ImuReadings, EngineReply, BridleReply, CruiseAttitude, RadarSolution; ActionReply;
 ///         ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand; InhibitEdl
 /// Out     actions to the managers of devices; tones; events, firings, explanations and channels to EdlComm; Confirm
 /// Gate    nothing runs before parameters came and then "do edl", in late cruise, and not too late for it. R23
+/// Roles   prime flies, and tells its state each cycle; Second Chance waits with its IMU readings at hand until it must
+///         take over; a prime that was restarted after pre-EDL stands by. R33, R34
 ///         Before the end of pre-EDL system fault protection can hold all of it, afterwards it cannot. R24
 class EdlMain {
   public:
@@ -31,16 +36,35 @@ class EdlMain {
     void on(const gnc::RadarSolution& solution, Outbox& out);
     void on(const ActionReply& reply, Outbox& out);
     void on(const InhibitEdl& wish, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
 
     void on(const ParametersUpdate& update, Outbox& out);
     void on(const DoEdlCommand& command, Outbox& out);
     void on(const SetTimepointOffsetCommand& command, Outbox& out);
     void on(const SetAnchorOffsetCommand& command, Outbox& out);
+    void on(const SelectPrimeCommand& command, Outbox& out);
+
+    void on(const StatePart& part, Outbox& out);
+    void on(const Resume& resume, Outbox& out);
+
+    /// Whether this computer leaves the landing to the other one.
+    bool stands_by() const { return activity_ != Activity::flies; }
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_, inhibited_, was_pre_edl_,
+                 was_late_cruise_);
+    }
 
     const Timeline& timeline() const { return timeline_; }
     EdlPhase phase() const { return phase_; }
 
   private:
+    enum class Activity : std::uint8_t { flies, tracks, stands_by };
+
+    void tell_state(Sclk now, Outbox& out);
+    void restart(Sclk now, Outbox& out);
+    void take_over(const StateHeader& prime, Sclk now, Outbox& out);
     void watch_approach(Sclk now, Outbox& out);
     void set_inhibited(bool inhibited, Outbox& out);
     void run_timeline(Sclk now, Outbox& out);
@@ -54,17 +78,23 @@ class EdlMain {
     bool pre_edl(Sclk now) const;
     bool too_late(Sclk now) const;
 
-    Plan plan_;
+    Load load_;
+    Activity activity_;
     Timeline timeline_;
     gnc::EdlGnc gnc_;
     gnc::Configuration configuration_;
     gnc::Output output_;
     DeviceInputs gnc_inputs_;  // what the device managers sent for this cycle
+    StateAssembly assembly_;
+    std::optional<StateFrame> state_of_another_;
+    std::uint32_t revision_ = 0;
+    FixedQueue<ImuReadings, 64> recent_readings_;  // of the last second: what prime's last state does not hold yet
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
     gnc::Mode mode_ = gnc::Mode::off;
     EdlPhase phase_ = EdlPhase::pre_edl;
+    UnitSelection units_;  // for who takes over; they are no business of EDL's otherwise
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
     bool refused_to_hold_ = false;  // told once a fault, not once a report

@@ -135,7 +135,8 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                      .seconds_to_entry_s =
                                          entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
                                      .edl_cycle_count = cycle_count_,
-                                     .fault_inhibit = inhibited_});
+                                     .fault_inhibit = inhibited_,
+                                     .computer_role = static_cast<ComputerRole>(load_.role)});
         out.record(packet::TimelineStatus{.timeline_version = timeline_version,
                                           .timepoint_index = timeline_.current().value,
                                           .timepoint_state = timeline_.state(),
@@ -149,7 +150,7 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
     // Again and again while parameters may still come, so that a lost or early read-back is made good.
     if (parameters_ && !configuration_.enabled && due(now, 1) && now.ticks() / 64 % held_every_s == 0)
         out.record(parameters_held());
-    if (plan_ == Plan::wideband) out.record(wideband(now));
+    if (load_.telemetry_plan == Plan::wideband) out.record(wideband(now));
     if (!configuration_.enabled) return;
 
     const bool in_atmosphere = phase_ >= EdlPhase::wait_for_guidance;

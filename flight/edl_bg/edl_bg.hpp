@@ -2,6 +2,7 @@
 
 #include "flight/gnc/navigation/radar_batch.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 #include <optional>
 
@@ -16,6 +17,8 @@ namespace aeolis::flight {
 ///         outlive the last beam by 5 s, and navigation goes on without
 class EdlBg {
   public:
+    explicit EdlBg(const Load&) {}
+
     void on(const RadarReturns& returns, Outbox& out);
     void on(const NavigatedAttitude& attitude, Outbox& out);
     void on(const SetParametersCommand& command, Outbox& out);

@@ -7,7 +7,11 @@
 namespace aeolis::flight {
 
 EdlComm::EdlComm(const Load& load)
-    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), plan_(load.telemetry_plan) {}
+    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), plan_(load.telemetry_plan) {
+    // So that a unit of one computer never has the name of one of the other's.
+    if (load.string == String::b)
+        for (Stream& stream : streams_) stream.count = counts_of_string_b;
+}
 
 void EdlComm::on(const Record& record, Outbox& out) {
     Packet packet;

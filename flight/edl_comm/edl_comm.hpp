@@ -30,6 +30,7 @@ class EdlComm {
     std::uint32_t unrecorded_packets() const { return unrecorded_packets_; }
 
   private:
+    static constexpr std::uint16_t counts_of_string_b = 0x2000;  ///< half of the 14 bits
     static constexpr std::uint32_t nvm_reserve_octets = 65536;
     static constexpr std::size_t packet_max = tm_overhead_octets + record_octets_max;
     struct Packet {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 namespace aeolis::flight {
 
@@ -12,6 +13,8 @@ namespace aeolis::flight {
 /// Faults  the repair itself is the spacecraft's, not modelled here
 class SystemFaultProtection {
   public:
+    explicit SystemFaultProtection(const Load&) {}
+
     void on(const SystemFaultReport& report, Outbox& out);
 };
 

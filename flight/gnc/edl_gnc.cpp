@@ -67,14 +67,14 @@ void EdlGnc::on(const RadarSolution& solution) {
     strapdown_.correct(correction->altitude_m * measured_.up_M, correction->v_M_mps);
 }
 
-void EdlGnc::navigate(const DeviceInputs& in) {
+void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
     if (!navigating_) return;
-    const double passed_s = in.now - navigated_to_;
+    const double passed_s = now - navigated_to_;
     if (passed_s <= 0.0) return; // a solution was just taken in, as of now: these increments lie before it
-    navigated_to_ = in.now;
-    if (in.imu.empty()) strapdown_.coast(passed_s);
+    navigated_to_ = now;
+    if (imu.empty()) strapdown_.coast(passed_s);
     const bool in_air = measured_.altitude_m < no_air_above_m;
-    for (const ImuSample& sample : in.imu) {
+    for (const ImuSample& sample : imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
         smooth_force_B_mps2_ += imu_period_s / (smoothing_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
         strapdown_.on(sample, in_air || smooth_force_B_mps2_.squaredNorm() > pushed_mps2 * pushed_mps2);
@@ -116,7 +116,7 @@ bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
 
 void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, Output& out) {
     out = Output{};
-    navigate(in);
+    navigate(in.imu.span(), in.now);
     if (in.cruise_attitude) on(*in.cruise_attitude);
     // It is as of this tick, so it comes after the IMU's increments up to here, not before: the vehicle still spins.
     if (cruise_attitude_ && !configuration.cruise_stage_gone)

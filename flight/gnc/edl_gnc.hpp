@@ -19,6 +19,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <type_traits>
 
 // EdlGnc: the library that closes the loop from cruise-stage separation to touchdown. It has no thread; EdlMain runs it
@@ -38,6 +39,12 @@ struct Solution {
     double parachute_speed_mps = 405.0;
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(epoch, p_MoB_M_m, v_MB_M_mps, entry, target_latitude_rad, target_longitude_rad, target_radius_m,
+                 parachute_speed_mps, heatshield_speed_mps, backshell_altitude_m);
+    }
 };
 
 /// What the timeline has done, as GNC asks for it each cycle: the configuration that GNC must fly. R26
@@ -64,6 +71,14 @@ struct Configuration {
     bool bridle_cut = false;
     bool flyaway_started = false;
     bool engines_off = false;
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(enabled, cruise_stage_gone, turning_to_entry, guidance_armed, sufr_allowed, parachute_out,
+                 parachute_time, heatshield_gone, heatshield_time, radar_on, engines_primed, backshell_gone,
+                 backshell_time, engines_ignited, sky_crane_started, rover_separated, rover_separation_time,
+                 touchdown_logic_ready, touchdown_declared, bridle_cut, flyaway_started, engines_off);
+    }
 };
 
 /// "Now": GNC starts these; the timeline fires the timepoint in the second pass of the same cycle. R17
@@ -157,6 +172,19 @@ class EdlGnc {
     /// Exactly once in each 64 Hz cycle.
     void cycle(const DeviceInputs& in, const Configuration& configuration, Output& out);
 
+    /// Navigation alone, over a cycle that another computer may have missed.
+    void catch_up(std::span<const ImuSample> imu, Sclk now) { navigate(imu, now); }
+
+    /// What another computer must know to go on: all but our own past for the radar's filter.
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(solution_, target_M_, navigating_, navigated_to_, strapdown_, smooth_force_B_mps2_, force_filter_,
+                 radar_filter_, measured_.altitude_m, mode_, mode_since_, fired_, slow_for_parachute_,
+                 low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_, predicted_range_m_,
+                 lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_,
+                 rate_control_, touchdown_logic_, last_radar_beams_);
+    }
+
     Mode mode() const { return mode_; }
     bool navigating() const { return navigating_; }
 
@@ -174,7 +202,7 @@ class EdlGnc {
         TargetGeometry target;
     };
 
-    void navigate(const DeviceInputs& in);
+    void navigate(std::span<const ImuSample> imu, Sclk now);
     void measure(Sclk now);
     void enter(Mode mode, Sclk now);
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);

@@ -4,26 +4,32 @@
 
 namespace aeolis::flight {
 
-/// The deterministic executive: runs the modules of a computer in one thread, always the one of highest priority that
-/// has mail, one message at a time, until all mailboxes are empty.
+/// What the executive tells of each message that a module has handled; for reports only, never part of a computer.
+class MessageTap {
+  public:
+    virtual ~MessageTap() = default;
+    virtual void sent(ModuleId from, ModuleId to, const Message& message) = 0;
+};
+
+/// The deterministic executive: runs the modules of a computer in one thread. First the rate group, each module in its
+/// turn, then every other module that has mail, in order of priority, until all mailboxes are empty.
 ///
-/// What a module outside the rate group sends is kept for the start of the next cycle, so that the order in which such
-/// modules happen to run cannot be seen. (docs/decisions/0003-deterministic-executive.md)
+/// A module of the rate group takes its mail in its turn, all of it and last the Tick. What a module outside the group
+/// sends is kept for the start of the next cycle. So neither the order in which tasks happen to run nor the number of
+/// processors can be seen, and the threaded executive gives the same. (docs/decisions/0003-deterministic-executive.md)
 class Executive {
   public:
-    explicit Executive(ComputerState& state) : state_(state) {}
+    explicit Executive(ComputerState& state, MessageTap* tap = nullptr) : state_(state), tap_(tap) {}
 
     void cycle(const DeviceInputs& in, DeviceOutputs& out);
 
   private:
-    void post_interrupts(const DeviceInputs& in);
-    void deliver(ModuleId to, const Message& message);
-    void dispatch(ModuleId id, const Message& message, DeviceOutputs& out);
-    template <typename Module>
-    void handle(Module& module, const Message& message);
+    void run(ModuleId id, DeviceOutputs& out);
+    void deliver(const Envelope& envelope);
     void distribute(ModuleId from);
 
     ComputerState& state_;
+    MessageTap* tap_;
 };
 
 }  // namespace aeolis::flight

@@ -26,15 +26,22 @@ enum class ModuleId : std::uint8_t {
     descent_engines,
     thrusters,
     power,
+    telecom,
+    units,
+    cruise_attitude,
     system_fault_protection,
+    cross_string,
     command_dispatcher,
     edl_bg,
     mfsk,
     edl_comm,
 };
-inline constexpr std::size_t module_count = 13;
+inline constexpr std::size_t module_count = 17;
 constexpr bool in_rate_group(ModuleId id) {
     return id <= ModuleId::thrusters;
+}
+constexpr std::uint32_t bit_of(ModuleId id) {
+    return 1U << static_cast<unsigned>(id);
 }
 
 // ---- clock and rate group --------------------------------------------------------------------------------------
@@ -52,12 +59,32 @@ struct Confirm {  ///< to sync: done for this cycle
 // ---- interrupts turned into messages (R10) ---------------------------------------------------------------------
 
 struct ImuReadings {
+    Sclk now;
     FixedVector<ImuSample, 4> samples;
 };
 struct RadarReturns {
     Sclk now;
     FixedVector<RadarBeam, 6> beams;
 };
+/// A piece of the state that one computer hands to another, or to itself over a restart; the pieces of one state come
+/// in order, within one cycle. R33
+inline constexpr std::size_t state_part_octets_max = 240;  ///< ours: no larger than the largest other message
+struct StatePart {
+    Sclk time;               ///< of the state
+    std::uint8_t index = 0;  ///< 0 … count − 1
+    std::uint8_t count = 0;
+    std::uint8_t size = 0;
+    std::array<std::uint8_t, state_part_octets_max> octets{};
+};
+struct StoredStatePart {  ///< from non-volatile memory, once, after a restart
+    StatePart part;
+};
+enum class ResumeReason : std::uint8_t { restart, take_over };
+/// To Edl, after the parts: go on from there. R32, R33
+struct Resume {
+    ResumeReason reason{};
+};
+
 inline constexpr std::size_t uplink_octets_max = 256;  ///< ours: the longest command of the dictionary is 150 octets
 struct UplinkReceived {
     std::array<std::uint8_t, uplink_octets_max> octets{};
@@ -94,6 +121,10 @@ struct RunEngines {
     EngineCommand engines;
 };
 struct PayOutBridle {};
+struct UnitsSelected {  ///< to the managers of devices: address these from now on. R2
+    UnitSelection units;
+};
+struct EdlBegun {};  ///< "do edl" was accepted: what is chosen before EDL is chosen
 struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> up_M{};
@@ -130,6 +161,18 @@ struct SetAnchorOffsetCommand {
     CommandTag tag;
     command::EDL_SET_ANCHOR_OFFSET arguments;
 };
+struct EnableSecondChanceCommand {
+    CommandTag tag;
+    bool enabled = false;
+};
+struct SelectPrimeCommand {
+    CommandTag tag;
+    bool string_b = false;
+};
+struct SelectUnitsCommand {
+    CommandTag tag;
+    command::EDL_SELECT_UNITS arguments;
+};
 struct CommandOutcome {
     CommandTag tag;
     std::optional<CommandRefusal> refused;  ///< none: accepted and executed
@@ -152,19 +195,26 @@ struct ToneRequest {
 struct PhaseChanged {
     EdlPhase phase{};
 };
+struct EdlFinished {};  ///< from Edl: the last timepoint has fired
 struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
     std::uint8_t tone = 0;
     std::uint8_t outstanding = 0;
 };
 
 using Message =
-    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
+    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
                  EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
-                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, NavigatedAttitude, SystemFaultReport,
+                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
                  InhibitEdl, SetParametersCommand,
-                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, CommandOutcome,
-                 Record, ToneRequest, PhaseChanged, ToneStatus>;
+                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
+                 EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,
+                 Record, ToneRequest, PhaseChanged, EdlFinished, ToneStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
+
+/// Whether a message makes its module run. In the rate group that is the turn alone: other mail waits for it. R22
+inline bool wakes(ModuleId to, const Message& message) {
+    return to == ModuleId::sync || !in_rate_group(to) || std::holds_alternative<Tick>(message);
+}
 
 struct Envelope {
     ModuleId from{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 
 #include <array>
 
@@ -14,6 +15,8 @@ namespace aeolis::flight {
 ///          that cycle skipped; SCLK goes on, because the tick carries it
 class Sync {
   public:
+    explicit Sync(const Load&) {}
+
     void on(const ClockTick& tick, Outbox& out);
     void on(const Confirm& confirm, Outbox& out);
 

@@ -22,7 +22,13 @@ void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, double priori
 
 }  // namespace
 
-void ToneSelector::on(const ToneRequest& request, Outbox& out) {
+void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
+    ToneRequest request = asked;
+    if (role_ == Role::second_chance) {
+        const auto& counterpart = tones_[asked.tone.value].second_chance;
+        if (!counterpart) return;  // no tone of prime's is ever sent, whoever asks
+        request.tone = *counterpart;
+    }
     const auto& spec = tones_[request.tone.value];
     if (spec.supersedes)
         for (std::size_t i = outstanding_.size(); i-- > 0;)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
 #include "flight/timeline/timepoint.hpp"
 
 #include <optional>
@@ -14,10 +15,12 @@ namespace aeolis::flight {
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
 /// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
 ///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
+/// In Second Chance each request is for the tone of its own set that means the same. R35
 /// With no request outstanding the carrier goes out without a tone.
 class ToneSelector {
   public:
-    explicit ToneSelector(std::span<const ToneSpec> tones) : tones_(tones) {}
+    explicit ToneSelector(const Load& load, std::span<const ToneSpec> tones = tone_specs)
+        : tones_(tones), role_(load.role) {}
 
     void on(const ToneRequest& request, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
@@ -35,6 +38,7 @@ class ToneSelector {
     std::int16_t priority(ToneId tone) const { return tones_[tone.value].priority; }
 
     std::span<const ToneSpec> tones_;
+    Role role_;
     FixedVector<ToneRequest, 64> outstanding_;
     std::optional<Sending> sending_;
 };

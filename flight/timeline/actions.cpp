@@ -21,10 +21,22 @@ void ActionContext::request_tone(ToneId tone) {
     out_.send(ModuleId::mfsk, ToneRequest{tone, now()});
 }
 
+namespace {
+
+/// An action that is repeated after a hand-over happened when it happened first.
+void keep_first(std::optional<Sclk>& time, Sclk now) {
+    if (!time) time = now;
+}
+
+}  // namespace
+
 namespace actions {
 
 void no_operation(ActionContext&) {}
 
+void power_on_descent_imu(ActionContext& context) {
+    context.set_switch(SwitchId::descent_imu, true);
+}
 void power_on_radar(ActionContext& context) {
     context.set_switch(SwitchId::radar, true);
 }
@@ -96,7 +108,7 @@ void safe_pyros(ActionContext&) {}
 
 void fire_parachute_mortar(ActionContext& context) {
     context.configuration().parachute_out = true;
-    context.configuration().parachute_time = context.now();
+    keep_first(context.configuration().parachute_time, context.now());
     context.fire(PyroId::parachute_mortar);
 }
 void disable_thrusters(ActionContext& context) {
@@ -107,7 +119,7 @@ void enable_thrusters(ActionContext& context) {
 }
 void fire_heatshield_separation(ActionContext& context) {
     context.configuration().heatshield_gone = true;
-    context.configuration().heatshield_time = context.now();
+    keep_first(context.configuration().heatshield_time, context.now());
     context.fire(PyroId::heatshield_separation);
 }
 void start_radar_processing(ActionContext& context) {
@@ -120,7 +132,7 @@ void open_engine_valves(ActionContext& context) {
 
 void fire_backshell_separation(ActionContext& context) {
     context.configuration().backshell_gone = true;
-    context.configuration().backshell_time = context.now();
+    keep_first(context.configuration().backshell_time, context.now());
     context.fire(PyroId::backshell_separation);
 }
 void ignite_engines(ActionContext& context) {
@@ -133,7 +145,7 @@ void start_sky_crane(ActionContext& context) {
 }
 void fire_rover_separation(ActionContext& context) {
     context.configuration().rover_separated = true;
-    context.configuration().rover_separation_time = context.now();
+    keep_first(context.configuration().rover_separation_time, context.now());
     context.fire(PyroId::rover_separation);
 }
 void release_bridle(ActionContext& context) {

@@ -41,6 +41,7 @@ namespace actions {
 void no_operation(ActionContext& context);
 
 // power and telecom
+void power_on_descent_imu(ActionContext& context);
 void power_on_radar(ActionContext& context);
 void power_off_radar(ActionContext& context);
 void select_entry_antenna(ActionContext& context);

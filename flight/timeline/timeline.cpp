@@ -4,8 +4,8 @@
 
 namespace aeolis::flight {
 
-Timeline::Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors)
-    : rows_(rows), anchors_(anchors) {
+Timeline::Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors, bool essential_only)
+    : rows_(rows), anchors_(anchors), essential_only_(essential_only) {
     AEOLIS_CHECK(rows.size() <= timeline_rows_max && anchors.size() <= anchors_max);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         desired_offset_s_[i] = rows[i].desired_offset_s;
@@ -45,6 +45,10 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
 
         ++fired_in_cycle_;
         triggered_ = now;
+        if (!runs(row)) {
+            complete(now, FiringVerdict::no_operation, firings);
+            continue;
+        }
         context.begin(row);
         if (row.event) row.event(context);
         if (row.action) row.action(context);
@@ -102,7 +106,20 @@ MaybeTime Timeline::next_minimum() const {
 }
 
 MaybeTime Timeline::first_desired() const {
-    return rows_.empty() || !rows_[0].anchor ? MaybeTime{} : anchor_times_[rows_[0].anchor->value] + desired_offset_s_[0];
+    double before_s = 0.0;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        if (rows_[i].anchor) return anchor_times_[rows_[i].anchor->value] + desired_offset_s_[i] + MaybeOffset{-before_s};
+        before_s += desired_offset_s_[i].value_or(0.0) + rows_[i].reply_timeout_s.value_or(0.0);
+    }
+    return {};
+}
+
+bool Timeline::backtrack(Sclk now) {
+    await_nothing();
+    previous_fired_ = now;
+    if (finished() || !rows_[current_].backtrack) return false;
+    current_ = rows_[current_].backtrack->value;
+    return true;
 }
 
 TimepointState Timeline::state() const {

@@ -37,9 +37,11 @@ using Firings = FixedVector<Firing, firings_per_cycle_max + 1>;
 /// Out      actions through ActionContext; Firing for each timepoint that completed
 /// Memory   fixed; the rows are read where the autocoder put them
 /// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`.
+/// Actions may be repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still awaited.
 class Timeline {
   public:
-    Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors);
+    /// `essential_only`: Second Chance, where the other rows' actions are no operation. R33
+    Timeline(std::span<const TimepointSpec> rows, std::span<const AnchorSpec> anchors, bool essential_only = false);
 
     void begin(Sclk do_edl_accepted);
     bool begun() const { return begun_; }
@@ -66,16 +68,33 @@ class Timeline {
     /// Times from which the current timepoint may fire; undefined when it is not known yet.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;
-    /// Desired time of the first row, from the anchors alone. Undefined before the parameters came.
+    /// Latest time at which the timeline may begin without anything being overdue: when the first row that hangs on an
+    /// anchor is desired, less what the rows before it take. Undefined before the parameters came.
     MaybeTime first_desired() const;
     void compute_anchors();
+
+    /// After a restart: back to the timepoint that the current one names, with nothing awaited. False when it names
+    /// none and goes on where it was. R32
+    bool backtrack(Sclk now);
+    /// The action whose reply another computer awaited is run again at the next pass. R33
+    void await_nothing() { waiting_ = replied_ = false; }
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        for (std::size_t i = 0; i < rows_.size(); ++i) exchange(desired_offset_s_[i], minimum_offset_s_[i]);
+        for (std::size_t i = 0; i < anchors_.size(); ++i) exchange(anchor_offset_s_[i]);
+        exchange(previous_fired_, current_, begun_, waiting_, triggered_);
+        compute_anchors();
+    }
 
   private:
     void complete(Sclk now, FiringVerdict verdict, Firings& firings);
     MaybeTime desired_base(std::size_t row) const;
+    bool runs(const TimepointSpec& row) const { return !essential_only_ || row.essential || !row.action; }
 
     std::span<const TimepointSpec> rows_;
     std::span<const AnchorSpec> anchors_;
+    bool essential_only_;
     std::array<MaybeOffset, timeline_rows_max> desired_offset_s_{};
     std::array<MaybeOffset, timeline_rows_max> minimum_offset_s_{};
     std::array<MaybeOffset, anchors_max> anchor_offset_s_{};

@@ -40,6 +40,7 @@ struct ToneSpec {
     std::int16_t priority;
     double expires_s;
     std::optional<ToneId> supersedes;
+    std::optional<ToneId> second_chance;  ///< of a tone of prime's: the one that means the same on the backup. R35
 };
 
 extern const std::array<TimepointSpec, timepoint_count> timeline_specs;

@@ -97,6 +97,9 @@ const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, duration_s),
     AEOLIS_BIND(DeviceFault, late_s),
 };
+const Bindings<simulation::ComputerReset> reset_fields = {
+    AEOLIS_BIND(ComputerReset, before_entry_s),
+};
 #undef AEOLIS_BIND
 
 const google::protobuf::FieldDescriptor& field_of(const Message& message, const char* name) {
@@ -251,6 +254,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         if (!fault) return fault.error();
         scenario.device_faults.push_back(*fault);
     }
+    for (const auto& row : message.computer_resets())
+        read(row, reset_fields, scenario.computer_resets.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -288,6 +293,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
         write(fault, fault_fields, *message.add_system_faults());
     for (const auto& fault : scenario.device_faults)
         write_device_fault(fault, *message.add_device_faults());
+    for (const auto& reset : scenario.computer_resets)
+        write(reset, reset_fields, *message.add_computer_resets());
     return message;
 }
 

@@ -32,7 +32,7 @@ TEST_CASE("the selected units go to every device manager, to the channels and ba
             told.push_back(envelope.to);
             CHECK(selected->units == expected);
         }
-    CHECK(told == std::vector{ModuleId::radar, ModuleId::imu, ModuleId::pyro, ModuleId::descent_engines,
+    CHECK(told == std::vector{ModuleId::radar, ModuleId::imu, ModuleId::edl, ModuleId::pyro, ModuleId::descent_engines,
                               ModuleId::thrusters, ModuleId::power, ModuleId::telecom});
     CHECK(units.recorder.events<evr::UNITS_SELECTED>() == 1);
     CHECK(units.recorder.packets<packet::UnitsHeld>() == 1);
@@ -65,7 +65,7 @@ TEST_CASE("once EDL has begun the units stay as they are, and a selection is ref
 TEST_CASE("a computer that takes over addresses the units that the other held, EDL begun or not", "[devices][R2]") {
     test::Spoken<UnitSelector> units{ModuleId::units};
     units.on(EdlBegun{});
-    CHECK(units.on(test::all_b()).sent<UnitsSelected>().size() == 7);
+    CHECK(units.on(test::all_b()).sent<UnitsSelected>().size() == 8);
     CHECK(units.module.selected() == test::all_b().units);
 }
 
@@ -76,4 +76,15 @@ TEST_CASE("the selection is reported every ten seconds", "[devices][R2]") {
         reports += units.on(ClockTick{Sclk::from_ticks(64000 + tick)}, Sclk::from_ticks(64000 + tick))
                        .packets<packet::UnitsHeld>();
     CHECK(reports == 3);
+}
+
+TEST_CASE("the backup follows prime's units in silence, and reports them once EDL is its own", "[devices][R2][R33]") {
+    Load load;
+    load.role = Role::second_chance;
+    test::Spoken<UnitSelector> units{ModuleId::units, UnitSelector{load}};
+    CHECK(units.on(test::all_b()).packets<packet::UnitsHeld>() == 0);
+    CHECK(units.recorder.sent<UnitsSelected>().size() == 8);
+    CHECK(units.on(ClockTick{Sclk{1000.0}}, Sclk{1000.0}).packets<packet::UnitsHeld>() == 0);
+    units.on(EdlBegun{});
+    CHECK(units.on(ClockTick{Sclk{1010.0}}, Sclk{1010.0}).packets<packet::UnitsHeld>() == 1);
 }

@@ -23,6 +23,11 @@ class LateralLogic {
     int sign() const { return sign_; } ///< +1: lift to the right
     std::uint8_t reversals() const { return reversals_; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(sign_, reversals_);
+    }
+
   private:
     int sign_ = 1;
     std::uint8_t reversals_ = 0;

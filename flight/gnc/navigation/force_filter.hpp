@@ -35,6 +35,11 @@ class ForceFilter {
     static constexpr double lift_time_s = 4.0;
     static constexpr double enough_drag_mps2 = 5.0;
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(drag_mps2_, lift_mps2_, slow_drag_mps2_);
+    }
+
   private:
     double drag_mps2_ = 0.0;
     double lift_mps2_ = 0.0;

@@ -37,6 +37,12 @@ class RadarFilter {
     std::uint32_t accepted() const { return accepted_; }
     std::uint32_t refused() const { return refused_; }
 
+    /// Without our own past: five seconds after a hand-over it is there again.
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(accepted_, refused_, refused_in_a_row_);
+    }
+
   private:
     struct Past {
         Sclk time;

@@ -49,6 +49,12 @@ class Strapdown {
     const Vector3& bias_B_mps2() const { return bias_B_mps2_; }
     std::uint32_t filled() const { return filled_; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(state_.p_MoB_M, state_.v_MB_M, state_.q_MB, specific_force_B_mps2_, rate_B_rps_, bias_B_mps2_,
+                 bias_samples_, last_count_, filled_, counting_);
+    }
+
   private:
     void step(const Vector3& delta_angle_B, const Vector3& delta_v_B);
 

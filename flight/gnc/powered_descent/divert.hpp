@@ -28,6 +28,11 @@ class Divert {
 
     double duration_s() const { return duration_s_; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(v0_, c3_, c4_, c5_, duration_s_);
+    }
+
   private:
     Vector3 v0_ = Vector3::Zero(), c3_ = Vector3::Zero(), c4_ = Vector3::Zero(), c5_ = Vector3::Zero();
     double duration_s_ = 1.0;

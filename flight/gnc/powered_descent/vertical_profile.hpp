@@ -34,6 +34,11 @@ class ApproachProfile {
     bool done(double altitude_m, double descent_rate_mps) const;
     double deceleration_mps2() const { return deceleration_mps2_; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(deceleration_mps2_);
+    }
+
   private:
     double deceleration_mps2_ = approach_deceleration_mps2;
 };
@@ -51,6 +56,11 @@ class DecelerationProfile {
     double descent_rate_mps() const { return rate_mps_; }
     double acceleration_mps2(double descent_rate_mps) const; ///< up, to command
     double deceleration_mps2() const { return deceleration_mps2_; }
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(rate_mps_, deceleration_mps2_);
+    }
 
   private:
     double rate_mps_ = constant_velocity_mps;

@@ -18,6 +18,11 @@ class RateControl {
     /// Acceleration to command, in M, relative to free fall being taken off elsewhere.
     Vector3 command_M(const Vector3& v_MB_M, const Vector3& up_M, double wanted_descent_rate_mps, double dt_s);
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(integral_mps2_);
+    }
+
   private:
     double integral_mps2_ = 0.0;
 };

@@ -22,6 +22,11 @@ class TouchdownLogic {
     /// Conditions of this cycle; all hold: touchdown.
     Conditions on(double thrust_command_N, double mass_kg, double rover_kg);
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(settled_cycles_);
+    }
+
   private:
     std::uint32_t settled_cycles_ = 0;
 };

@@ -28,6 +28,11 @@ class Persistence {
   public:
     std::uint32_t on(bool holds) { return cycles_ = holds ? cycles_ + 1 : 0; }
 
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(cycles_);
+    }
+
   private:
     std::uint32_t cycles_ = 0;
 };

@@ -1,0 +1,99 @@
+#include "flight/cross_string/cross_string.hpp"
+
+namespace aeolis::flight {
+namespace {
+
+constexpr double answer_first_s = 2.0;  // ours: that ground hears of it before both computers start anew
+constexpr std::int64_t status_every_s = 5;  // ours: the backup's own telemetry takes a hundredth of the link
+
+void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
+    state.in_parts([&](const StatePart& part) { out.send(ModuleId::edl, part); });
+    out.send(ModuleId::units, UnitsSelected{state.header().units});
+    out.send(ModuleId::edl, Resume{reason});
+    out.send(ModuleId::command_dispatcher, Resume{reason});
+}
+
+}  // namespace
+
+void CrossString::on(const StatePart& part, Outbox& out) {
+    const auto state = assembly_.on(part);
+    if (load_role_ == Role::prime) {
+        if (!state) return;
+        out.bus().cross_string.append(state->octets());
+        if (state->header().revision == kept_revision_) return;
+        kept_revision_ = state->header().revision;
+        out.bus().restart_record.append(state->octets());
+        return;
+    }
+    heard_ = out.now();
+    if (!state || in_control_) return;
+    // Told as prime changes them, not at the take-over: its first command must find its unit.
+    const UnitSelection before = latest_.empty() ? UnitSelection{} : latest_.header().units;
+    latest_ = *state;
+    if (latest_.header().units != before) out.send(ModuleId::units, UnitsSelected{latest_.header().units});
+    if (latest_.header().touchdown && !off_) turn_off(out);
+}
+
+void CrossString::on(const StoredStatePart& stored, Outbox& out) {
+    if (load_role_ != Role::prime) return;
+    if (const auto state = assembly_.on(stored.part))
+        resume(*state, ResumeReason::restart, out);
+    else if (stored.part.index + 1U == stored.part.count)
+        out.event(evr::STATE_UNREADABLE{});
+}
+
+void CrossString::on(const EnableSecondChanceCommand& command, Outbox& out) {
+    if (load_role_ == Role::prime) return;
+    std::optional<CommandRefusal> refused;
+    if (off_ || in_control_) refused = CommandRefusal::wrong_phase;
+    if (!refused) {
+        enabled_ = command.enabled;
+        if (enabled_)
+            out.event(evr::SECOND_CHANCE_ENABLED{});
+        else
+            out.event(evr::SECOND_CHANCE_DISABLED{});
+    }
+    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
+}
+
+void CrossString::on(const SelectPrimeCommand& command, Outbox& out) {
+    if (load_role_ != Role::prime) return;
+    designated_b_ = command.string_b;
+    designate_at_ = out.now() + answer_first_s;
+}
+
+bool CrossString::may_take_over(Sclk now) const {
+    if (!enabled_ || off_ || in_control_ || latest_.empty() || !heard_) return false;
+    const StateHeader prime = latest_.header();
+    return now - *heard_ > prime_silent_s && prime.begun && !prime.pre_edl && !prime.touchdown;
+}
+
+void CrossString::on(const ClockTick& tick, Outbox& out) {
+    if (load_role_ == Role::prime) {
+        if (!designate_at_ || tick.now < *designate_at_) return;
+        designate_at_.reset();
+        out.bus().designate_b_prime = designated_b_;
+        return;
+    }
+    if (may_take_over(tick.now)) {
+        in_control_ = true;
+        resume(latest_, ResumeReason::take_over, out);
+    }
+    if (at_resolution(tick.now, 1) == tick.now && tick.now.ticks() / 64 % status_every_s == 0)
+        out.record(packet::SecondChanceStatus{.second_chance_enabled = enabled_,
+                                              .prime_heard = heard_ && tick.now - *heard_ <= prime_silent_s,
+                                              .second_chance_in_control = in_control(),
+                                              .second_chance_off = off_,
+                                              .state_revision = latest_.empty() ? 0 : latest_.header().revision});
+}
+
+void CrossString::on(const EdlFinished&, Outbox& out) {
+    if (load_role_ == Role::second_chance && !off_) turn_off(out);
+}
+
+void CrossString::turn_off(Outbox& out) {
+    off_ = true;
+    out.event(evr::SECOND_CHANCE_OFF{});
+}
+
+}  // namespace aeolis::flight

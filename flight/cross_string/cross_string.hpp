@@ -1,0 +1,52 @@
+#pragma once
+
+#include "flight/cross_string/state_frame.hpp"
+#include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
+
+namespace aeolis::flight {
+
+/// Ours: well beyond a cycle or two that an overrun costs, well within the second in which Second Chance must fly.
+inline constexpr double prime_silent_s = 0.25;
+
+/// The line between the two computers. On prime it tells; in Second Chance it listens, and decides to take over.
+///
+/// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
+///         EnableSecondChanceCommand, SelectPrimeCommand, EdlFinished
+/// Out     prime: the state on the line each cycle, and kept for a restart when it has changed; after a restart the kept
+///         state to edl, and Resume. Second Chance: the same when it takes over; the units that prime addresses, to units; SecondChanceStatus; CommandOutcome
+/// Rule    it takes over when ground has enabled it, prime's line has been silent for 0.25 s, and prime's last state
+///         says that EDL had begun, pre-EDL was over and touchdown was still to come. What comes on the line counts as
+///         life, readable or not: in doubt it does nothing. Touchdown turns it off for good. R1, R33, R34
+class CrossString {
+  public:
+    explicit CrossString(const Load& load) : load_role_(load.role) {}
+
+    void on(const StatePart& part, Outbox& out);
+    void on(const StoredStatePart& stored, Outbox& out);
+    void on(const EnableSecondChanceCommand& command, Outbox& out);
+    void on(const SelectPrimeCommand& command, Outbox& out);
+    void on(const ClockTick& tick, Outbox& out);
+    /// Second Chance has landed the vehicle: nothing is left to do.
+    void on(const EdlFinished& finished, Outbox& out);
+
+    /// Whether the bus may listen to this computer as Second Chance.
+    bool in_control() const { return in_control_ && !off_; }
+
+  private:
+    void turn_off(Outbox& out);
+    bool may_take_over(Sclk now) const;
+
+    Role load_role_;
+    StateAssembly assembly_;
+    StateFrame latest_;
+    std::optional<Sclk> heard_;
+    std::uint32_t kept_revision_ = 0;
+    std::optional<Sclk> designate_at_;
+    bool designated_b_ = false;
+    bool enabled_ = false;
+    bool in_control_ = false;
+    bool off_ = false;
+};
+
+}  // namespace aeolis::flight

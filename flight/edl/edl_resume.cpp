@@ -1,0 +1,81 @@
+#include "flight/edl/edl_main.hpp"
+#include "flight/edl/solution.hpp"
+
+#include <utility>
+
+// How EdlMain goes on from a state that it did not reach itself: its own of before a restart, or prime's. R32, R33
+namespace aeolis::flight {
+
+void EdlMain::tell_state(Sclk now, Outbox& out) {
+    if (load_.role != Role::prime || (!parameters_ && units_ == UnitSelection{})) return;
+    const StateHeader header{.time = now,
+                             .revision = revision_,
+                             .begun = timeline_.begun(),
+                             .pre_edl = pre_edl(now),
+                             .touchdown = configuration_.touchdown_declared,
+                             .units = units_};
+    StateFrame::of(header, *this).in_parts([&](const StatePart& part) { out.send(ModuleId::cross_string, part); });
+}
+
+void EdlMain::on(const UnitsSelected& selected, Outbox&) {
+    if (selected.units == units_) return;
+    units_ = selected.units;
+    ++revision_;
+}
+
+void EdlMain::on(const StatePart& part, Outbox&) {
+    if (const auto state = assembly_.on(part)) state_of_another_ = state;
+}
+
+void EdlMain::on(const Resume& resume, Outbox& out) {
+    const std::optional<StateFrame> state = std::exchange(state_of_another_, std::nullopt);
+    if (!state || timeline_.begun()) return out.event(evr::STATE_UNREADABLE{});
+    AEOLIS_CHECK(state->restore(*this));  // a whole frame of this build always fits
+    revision_ = state->header().revision + 1;
+    if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
+    if (resume.reason == ResumeReason::restart)
+        restart(out.now(), out);
+    else
+        take_over(state->header(), out.now(), out);
+}
+
+void EdlMain::restart(Sclk now, Outbox& out) {
+    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
+    if (timeline_.begun() && !pre_edl(now)) {
+        activity_ = Activity::stands_by;
+        return out.event(evr::PRIME_STANDS_BY{});
+    }
+    out.send(ModuleId::edl_comm, PhaseChanged{phase_});
+    if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // what was navigated then is old by now
+    if (!timeline_.begun()) return;
+    const TimepointId from = timeline_.current();
+    if (timeline_.backtrack(now))
+        out.event(evr::TIMELINE_BACKTRACKED{.timepoint = from.value, .backtrack = timeline_.current().value});
+}
+
+void EdlMain::take_over(const StateHeader& prime, Sclk now, Outbox& out) {
+    if (activity_ != Activity::tracks) return;
+    activity_ = Activity::flies;
+    timeline_.await_nothing();
+    for (; !recent_readings_.empty(); recent_readings_.pop()) {
+        const ImuReadings& readings = recent_readings_.front();
+        // The readings of this very cycle are in gnc_inputs_ and come with its turn.
+        if (readings.now > prime.time && readings.now < now) gnc_.catch_up(readings.samples.span(), readings.now);
+    }
+    out.event(evr::SECOND_CHANCE_TAKES_OVER{.silence_s = now - prime.time, .timepoint = timeline_.current().value});
+    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
+    out.send(ModuleId::edl_comm, PhaseChanged{phase_});
+    ++revision_;
+}
+
+void EdlMain::on(const SelectPrimeCommand& command, Outbox& out) {
+    std::optional<CommandRefusal> refused;
+    if (timeline_.begun())
+        refused = CommandRefusal::wrong_phase;
+    else
+        out.event(evr::PRIME_DESIGNATED{.string_number = static_cast<std::uint8_t>(command.string_b ? 1 : 0)});
+    out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
+    if (!refused) out.send(ModuleId::cross_string, command);
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "flight/computer.hpp"
+
+#include <array>
+
+namespace aeolis::simulation {
+
+/// The vehicle's two flight computers, the latch that designates prime, the line between them, the memory that keeps a
+/// state over a restart, and the bus, which listens to one of them.
+///
+/// In       what reaches the computer in command with a tick; both hear the clock, the IMU's own link and the receiver
+/// Out      the commands that the bus takes, and what either computer records and radiates
+/// Faults   when neither is in command nobody runs the buses; what devices then do is theirs (simulation/buses)
+/// Copying it is a fork, as of all the vehicle.
+class Computers {
+  public:
+    Computers(const flight::Load& load, Sclk start);
+
+    /// One cycle of both. `in` is completed with what only the computers give each other.
+    void step(flight::DeviceInputs& in);
+
+    /// The commands of this cycle that go out on the buses; none when neither computer is in command.
+    const flight::DeviceOutputs* commands() const { return commander_ == nobody ? nullptr : &out_[commander_]; }
+    /// What the computer at `place` (0: A, 1: B) put out in this cycle.
+    const flight::DeviceOutputs& outputs(std::size_t place) const { return out_[place]; }
+
+    /// A fault: the designated prime computer loses all it knows and starts anew.
+    void reset_prime(Sclk now) { computers_[prime()].reset(now); }
+
+    /// Cycles of the one that has run longest; of the rest the sum over both.
+    flight::Computer::Counters counters() const;
+
+  private:
+    static constexpr std::size_t nobody = 2;
+
+    std::size_t prime() const { return prime_is_b_ ? 1 : 0; }
+    void choose_commander();
+
+    std::array<flight::Computer, 2> computers_;
+    std::array<flight::DeviceOutputs, 2> out_;
+    flight::DeviceInputs beside_;  ///< of the computer that is not in command
+    std::size_t commander_ = 0;
+    flight::StateOctets restart_record_;
+    bool prime_is_b_ = false;
+};
+
+} // namespace aeolis::simulation
