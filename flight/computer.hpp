@@ -35,6 +35,9 @@ class Computer {
     /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
     void reset(Sclk now);
 
+    /// What it holds, for faults that are put in from outside (flight/computer_state.hpp).
+    ComputerState& state() { return *state_; }
+
     /// What the executive counted: for reports and tests.
     struct Counters {
         std::uint64_t cycles = 0;

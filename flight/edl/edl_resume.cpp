@@ -40,11 +40,12 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
 }
 
 void EdlMain::restart(Sclk now, Outbox& out) {
-    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
     if (timeline_.begun() && !pre_edl(now)) {
         activity_ = Activity::stands_by;
+        out.send(ModuleId::mfsk, StandBy{});
         return out.event(evr::PRIME_STANDS_BY{});
     }
+    out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});
     out.send(ModuleId::edl_comm, PhaseChanged{phase_});
     if (parameters_) gnc_.set_solution(solution_of(*parameters_), now);  // what was navigated then is old by now
     if (!timeline_.begun()) return;

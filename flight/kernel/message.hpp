@@ -195,6 +195,7 @@ struct ToneRequest {
 struct PhaseChanged {
     EdlPhase phase{};
 };
+struct StandBy {};      ///< from Edl of a prime that was restarted too late: the other computer flies and speaks
 struct EdlFinished {};  ///< from Edl: the last timepoint has fired
 struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
     std::uint8_t tone = 0;
@@ -208,7 +209,7 @@ using Message =
                  InhibitEdl, SetParametersCommand,
                  ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
                  EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,
-                 Record, ToneRequest, PhaseChanged, EdlFinished, ToneStatus>;
+                 Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Whether a message makes its module run. In the rate group that is the turn alone: other mail waits for it. R22

@@ -47,7 +47,15 @@ void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
     outstanding_.push_back(request);
 }
 
+void ToneSelector::on(const StandBy&, Outbox& out) {
+    silent_ = true;
+    outstanding_.clear();
+    sending_.reset();
+    out.bus().tone.reset();
+}
+
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
+    if (silent_) return;
     drop_expired(tick.now, out);
     if (sending_ && tick.now - sending_->started >= ParameterDefaults{}.tone_duration_s) {
         sending_.reset();

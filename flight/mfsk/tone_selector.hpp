@@ -11,7 +11,7 @@ namespace aeolis::flight {
 
 /// Chooses the tone that the X-band transmitter sends.
 ///
-/// In      ToneRequest, ClockTick (64 Hz)            Out   the transmitter's tone; ToneSelected; Explanation; ToneStatus
+/// In      ToneRequest, StandBy, ClockTick (64 Hz)           Out   the transmitter's tone; ToneSelected; Explanation; ToneStatus
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
 /// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
 ///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
@@ -24,6 +24,7 @@ class ToneSelector {
 
     void on(const ToneRequest& request, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
+    void on(const StandBy& stand_by, Outbox& out);
 
   private:
     struct Sending {
@@ -41,6 +42,7 @@ class ToneSelector {
     Role role_;
     FixedVector<ToneRequest, 64> outstanding_;
     std::optional<Sending> sending_;
+    bool silent_ = false;
 };
 
 }  // namespace aeolis::flight

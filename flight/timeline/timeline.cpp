@@ -117,7 +117,7 @@ MaybeTime Timeline::first_desired() const {
 bool Timeline::backtrack(Sclk now) {
     await_nothing();
     previous_fired_ = now;
-    if (finished() || !rows_[current_].backtrack) return false;
+    if (finished() || !rows_[current_].backtrack || *rows_[current_].backtrack == current()) return false;
     current_ = rows_[current_].backtrack->value;
     return true;
 }

@@ -27,7 +27,7 @@ UplinkReceived received(const std::vector<std::uint8_t>& octets) {
 }
 
 struct Fixture {
-    CommandDispatcher dispatcher;
+    CommandDispatcher dispatcher{Load{}};
     test::OutboxRecorder recorder{ModuleId::command_dispatcher};
     template <typename M>
     void handle(const M& message) {

@@ -9,7 +9,7 @@ using namespace aeolis::flight;
 namespace {
 
 struct Fixture {
-    EdlBg bg;
+    EdlBg bg{Load{}};
     test::OutboxRecorder recorder{ModuleId::edl_bg};
     template <typename M>
     void handle(const M& message, double at_s) {

@@ -9,7 +9,7 @@ using namespace aeolis::flight;
 namespace {
 
 struct Fixture {
-    Sync sync;
+    Sync sync{Load{}};
     test::OutboxRecorder recorder{ModuleId::sync};
 
     template <typename M>

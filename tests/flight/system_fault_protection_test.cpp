@@ -7,7 +7,7 @@ using namespace aeolis;
 using namespace aeolis::flight;
 
 TEST_CASE("each report of a fault asks EDL to hold, and the end of the fault to go on", "[faults][R24]") {
-    SystemFaultProtection protection;
+    SystemFaultProtection protection{Load{}};
     test::OutboxRecorder recorder{ModuleId::system_fault_protection};
     for (const bool present : {true, true, false}) {
         recorder.begin(ModuleId::system_fault_protection, Sclk{1000.0});

@@ -12,14 +12,14 @@ namespace {
 
 std::array<ToneSpec, 256> tones() {
     std::array<ToneSpec, 256> specs{};
-    for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}};
+    for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}, {}};
     specs[50].supersedes = ToneId{40};
     return specs;
 }
 
 struct Fixture {
     std::array<ToneSpec, 256> specs = tones();
-    ToneSelector selector{specs};
+    ToneSelector selector{Load{}, specs};
     test::OutboxRecorder recorder{ModuleId::mfsk};
 
     void request(std::uint8_t tone, double at_s) {
@@ -101,4 +101,28 @@ TEST_CASE("when full, the least important request gives way and it is reported",
     f.request(199, 0);
     f.request(5, 0);
     CHECK(f.recorder.events<evr::MFSK_REQUESTS_FULL>() == 1);
+}
+
+TEST_CASE("in Second Chance only tones of its own set go out, whoever asks for which", "[mfsk][R35]") {
+    Load load;
+    load.role = Role::second_chance;
+    ToneSelector selector{load};
+    test::OutboxRecorder recorder{ModuleId::mfsk};
+    const auto sent_after = [&](ToneId asked, double at_s) {
+        recorder.begin(ModuleId::mfsk, Sclk{at_s});
+        selector.on(ToneRequest{asked, Sclk{at_s}}, recorder.out);
+        selector.on(ClockTick{Sclk{at_s}}, recorder.out);
+        return recorder.bus->tone;
+    };
+    CHECK(sent_after(tone::touchdown, 100.0) == tone::sc_touchdown);
+    double at_s = 120.0;
+    for (const ToneSpec& spec : tone_specs) {
+        if (spec.set != 0 || spec.priority == 0) continue;
+        const auto sent = sent_after(ToneId{static_cast<std::uint8_t>(&spec - tone_specs.data())}, at_s);
+        REQUIRE(sent.has_value());
+        CHECK(tone_specs[sent->value].set == 1);
+        at_s += 200.0;
+    }
+    recorder.begin(ModuleId::mfsk, Sclk{at_s});
+    CHECK_FALSE(sent_after(tone::sc_touchdown, at_s).has_value());  // no prime tone means it: it is not asked for
 }

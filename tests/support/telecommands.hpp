@@ -33,6 +33,18 @@ inline std::vector<std::uint8_t> do_edl() {
     return packet;
 }
 
+inline std::vector<std::uint8_t> with_one_octet(Opcode opcode, std::uint8_t argument) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + 1);
+    packet[tc_arguments_offset_octets] = argument;
+    seal_tc_packet(packet, Apid{1}, 2, opcode);
+    return packet;
+}
+inline std::vector<std::uint8_t> enable_second_chance() {
+    return with_one_octet(flight::command::SECOND_CHANCE_ENABLE::opcode, 1);
+}
+inline std::vector<std::uint8_t> select_prime_b() {
+    return with_one_octet(flight::command::SELECT_PRIME::opcode, 1);
+}
 /// Units in the order of flight::Device, 0 for A and 1 for B.
 inline std::vector<std::uint8_t> select_units(std::span<const std::uint8_t> units) {
     std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SELECT_UNITS::argument_octets);

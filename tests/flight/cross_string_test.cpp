@@ -1,0 +1,160 @@
+#include "flight/cross_string/cross_string.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+struct Nothing {
+    std::uint8_t filler = 0;
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(filler);
+    }
+};
+
+StatePart state_at(double at_s, StateHeader header) {
+    header.time = Sclk{at_s};
+    Nothing nothing;
+    StatePart whole;
+    StateFrame::of(header, nothing).in_parts([&](const StatePart& part) { whole = part; });
+    return whole;
+}
+
+const StateHeader in_edl{.time = {}, .revision = 5, .begun = true, .pre_edl = false, .touchdown = false};
+
+struct Backup {
+    CrossString line{[] {
+        Load load;
+        load.string = String::b;
+        load.role = Role::second_chance;
+        return load;
+    }()};
+    test::OutboxRecorder recorder{ModuleId::cross_string};
+
+    template <typename M>
+    void handle(const M& message, double at_s) {
+        recorder.begin(ModuleId::cross_string, Sclk{at_s});
+        line.on(message, recorder.out);
+    }
+    void enable(double at_s) { handle(EnableSecondChanceCommand{{}, true}, at_s); }
+    /// Whether it has taken over by the end of the silence from `from_s` to `to_s`.
+    bool after_silence(double from_s, double to_s) {
+        for (double at_s = from_s; at_s <= to_s; at_s += 1.0 / 64) handle(ClockTick{Sclk{at_s}}, at_s);
+        return line.in_control();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("Second Chance takes over after a quarter of a second of silence, not a tick before", "[cross_string][R33]") {
+    Backup backup;
+    backup.enable(99.0);
+    backup.handle(state_at(100.0, in_edl), 100.0);
+    CHECK_FALSE(backup.after_silence(100.0, 100.25));
+    CHECK(backup.after_silence(100.25 + 1.0 / 64, 100.25 + 1.0 / 64));
+    CHECK(backup.recorder.sent<Resume>().size() == 2);  // to edl and to the command dispatcher
+    CHECK(backup.recorder.sent<StatePart>().size() == 1);
+}
+
+TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl or after touchdown it never takes over",
+          "[cross_string][R34]") {
+    SECTION("not enabled") {
+        Backup backup;
+        backup.handle(state_at(100.0, in_edl), 100.0);
+        CHECK_FALSE(backup.after_silence(100.0, 200.0));
+    }
+    SECTION("enabled, and disabled again") {
+        Backup backup;
+        backup.enable(90.0);
+        backup.handle(EnableSecondChanceCommand{{}, false}, 95.0);
+        backup.handle(state_at(100.0, in_edl), 100.0);
+        CHECK_FALSE(backup.after_silence(100.0, 200.0));
+    }
+    SECTION("never heard of prime") {
+        Backup backup;
+        backup.enable(90.0);
+        CHECK_FALSE(backup.after_silence(100.0, 200.0));
+    }
+    StateHeader state = in_edl;
+    SECTION("in pre-EDL") { state.pre_edl = true; }
+    SECTION("before do edl") { state.begun = false; }
+    SECTION("after touchdown") { state.touchdown = true; }
+    Backup backup;
+    if (state.pre_edl || !state.begun || state.touchdown) {
+        backup.enable(90.0);
+        backup.handle(state_at(100.0, state), 100.0);
+        CHECK_FALSE(backup.after_silence(100.0, 200.0));
+    }
+}
+
+TEST_CASE("what comes on the line is life, readable or not", "[cross_string][R34]") {
+    Backup backup;
+    backup.enable(90.0);
+    backup.handle(state_at(100.0, in_edl), 100.0);
+    for (int cycle = 1; cycle < 640; ++cycle) {
+        const double at_s = 100.0 + cycle / 64.0;
+        StatePart noise;
+        noise.index = 3;
+        backup.handle(noise, at_s);
+        backup.handle(ClockTick{Sclk{at_s}}, at_s);
+        REQUIRE_FALSE(backup.line.in_control());
+    }
+}
+
+TEST_CASE("touchdown turns Second Chance off for good", "[cross_string][R34]") {
+    Backup backup;
+    backup.enable(90.0);
+    StateHeader landed = in_edl;
+    landed.touchdown = true;
+    backup.handle(state_at(100.0, landed), 100.0);
+    CHECK(backup.recorder.events<evr::SECOND_CHANCE_OFF>() == 1);
+    backup.handle(state_at(101.0, in_edl), 101.0);
+    CHECK_FALSE(backup.after_silence(101.0, 110.0));
+    backup.enable(111.0);
+    REQUIRE(backup.recorder.sent<CommandOutcome>().size() == 1);
+    CHECK(backup.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::wrong_phase);
+
+    Backup that_flew;
+    that_flew.enable(90.0);
+    that_flew.handle(state_at(100.0, in_edl), 100.0);
+    REQUIRE(that_flew.after_silence(100.0, 101.0));
+    that_flew.handle(EdlFinished{}, 130.0);
+    CHECK_FALSE(that_flew.line.in_control());
+}
+
+TEST_CASE("prime puts its state on the line each time, and keeps it for a restart when it has changed",
+          "[cross_string][R32][R33]") {
+    CrossString line{Load{}};
+    test::OutboxRecorder recorder{ModuleId::cross_string};
+    const auto told = [&](std::uint32_t revision) {
+        StateHeader header = in_edl;
+        header.revision = revision;
+        recorder.bus->begin_cycle();
+        recorder.begin(ModuleId::cross_string, Sclk{100.0});
+        line.on(state_at(100.0, header), recorder.out);
+        return std::pair{!recorder.bus->cross_string.empty(), !recorder.bus->restart_record.empty()};
+    };
+    CHECK(told(5) == std::pair{true, true});
+    CHECK(told(5) == std::pair{true, false});
+    CHECK(told(6) == std::pair{true, true});
+}
+
+TEST_CASE("what was kept goes to edl after a restart, and what cannot be read is reported", "[cross_string][R32]") {
+    CrossString line{Load{}};
+    test::OutboxRecorder recorder{ModuleId::cross_string};
+    line.on(StoredStatePart{state_at(100.0, in_edl)}, recorder.out);
+    REQUIRE(recorder.sent<Resume>().size() == 2);
+    CHECK(recorder.sent<Resume>()[0].reason == ResumeReason::restart);
+    recorder.begin(ModuleId::cross_string, Sclk{101.0});
+    StatePart broken = state_at(100.0, in_edl);
+    broken.octets[5] ^= 1U;
+    line.on(StoredStatePart{broken}, recorder.out);
+    CHECK(recorder.sent<Resume>().empty());
+    CHECK(recorder.events<evr::STATE_UNREADABLE>() == 1);
+}

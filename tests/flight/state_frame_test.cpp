@@ -1,0 +1,143 @@
+#include "flight/cross_string/state_frame.hpp"
+
+#include "flight/gnc/vector.hpp"
+#include "tests/support/catch.hpp"
+
+#include <random>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+/// One of each kind of number that modules hold.
+struct Everything {
+    double number = 0.0;
+    bool flag = false;
+    std::optional<Sclk> time;
+    MaybeTime anchor;
+    std::optional<double> offset_s;
+    std::array<double, 3> row{};
+    gnc::Vector3 vector = gnc::Vector3::Zero();
+    gnc::Quaternion attitude = gnc::Quaternion::Identity();
+    std::array<bool, 5> fired{};
+    std::uint32_t count = 0;
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(number, flag, time, anchor, offset_s, row, vector, attitude, fired, count);
+    }
+};
+
+struct Smaller {
+    double number = 0.0;
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(number);
+    }
+};
+
+struct Long {
+    std::array<double, 100> numbers{};
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(numbers);
+    }
+};
+
+Everything something() {
+    Everything e;
+    e.number = -3.25;
+    e.flag = true;
+    e.time = Sclk{17.5};
+    e.anchor = Sclk{99.0};
+    e.row = {1, 2, 3};
+    e.vector = {4, 5, 6};
+    e.attitude = gnc::Quaternion{0.5, -0.5, 0.5, -0.5};
+    e.fired = {true, false, true, true, false};
+    e.count = 77;
+    return e;
+}
+
+const StateHeader header{.time = Sclk{123.0}, .revision = 9, .begun = true, .pre_edl = false, .touchdown = true};
+
+}  // namespace
+
+TEST_CASE("a state arrives at the other computer as it left, number for number", "[cross_string][R33]") {
+    Everything sent = something();
+    const StateFrame frame = StateFrame::of(header, sent);
+    const auto arrived = StateFrame::read(frame.octets());
+    REQUIRE(arrived);
+    CHECK(arrived->header().time == Sclk{123.0});
+    CHECK(arrived->header().revision == 9);
+    CHECK(arrived->header().begun);
+    CHECK_FALSE(arrived->header().pre_edl);
+    CHECK(arrived->header().touchdown);
+    Everything got;
+    got.offset_s = 5.0;  // must become undefined, as it was sent
+    REQUIRE(arrived->restore(got));
+    CHECK(got.number == sent.number);
+    CHECK(got.flag == sent.flag);
+    CHECK(got.time == sent.time);
+    CHECK(got.anchor.get() == sent.anchor.get());
+    CHECK_FALSE(got.offset_s.has_value());
+    CHECK(got.row == sent.row);
+    CHECK(got.vector == sent.vector);
+    CHECK(got.attitude.coeffs() == sent.attitude.coeffs());
+    CHECK(got.fired == sent.fired);
+    CHECK(got.count == sent.count);
+}
+
+TEST_CASE("one changed bit anywhere, or one octet more or less, and a state is no state", "[cross_string][R33]") {
+    Everything sent = something();
+    const StateFrame frame = StateFrame::of(header, sent);
+    std::vector<std::uint8_t> octets{frame.octets().begin(), frame.octets().end()};
+    for (std::size_t bit = 0; bit < octets.size() * 8; ++bit) {
+        octets[bit / 8] = static_cast<std::uint8_t>(octets[bit / 8] ^ (1U << (bit % 8)));
+        REQUIRE_FALSE(StateFrame::read(octets).has_value());
+        octets[bit / 8] = static_cast<std::uint8_t>(octets[bit / 8] ^ (1U << (bit % 8)));
+    }
+    CHECK(StateFrame::read(octets).has_value());
+    octets.push_back(0);
+    CHECK_FALSE(StateFrame::read(octets).has_value());
+    octets.resize(octets.size() - 2);
+    CHECK_FALSE(StateFrame::read(octets).has_value());
+    CHECK_FALSE(StateFrame::read({}).has_value());
+}
+
+TEST_CASE("a state of another shape is not restored", "[cross_string][R33]") {
+    Everything sent = something();
+    const StateFrame frame = StateFrame::of(header, sent);
+    Smaller smaller;
+    CHECK_FALSE(frame.restore(smaller));
+}
+
+TEST_CASE("pieces out of order, of two states or at random never make a state; in order they do", "[cross_string][R33]") {
+    Long state;
+    const StateFrame frame = StateFrame::of(header, state);
+    std::vector<StatePart> parts;
+    frame.in_parts([&](const StatePart& part) { parts.push_back(part); });
+    REQUIRE(parts.size() == 4);
+
+    StateAssembly in_order;
+    for (std::size_t i = 0; i < parts.size(); ++i) CHECK(in_order.on(parts[i]).has_value() == (i + 1 == parts.size()));
+    StateAssembly one_lost;
+    for (const std::size_t i : {0, 1, 3}) CHECK_FALSE(one_lost.on(parts[i]).has_value());
+    StateAssembly of_two_times;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        StatePart part = parts[i];
+        if (i == 2) part.time = part.time + 1.0 / 64;
+        CHECK_FALSE(of_two_times.on(part).has_value());
+    }
+    std::mt19937 random{1};
+    StateAssembly at_random;
+    for (int round = 0; round < 100000; ++round) {
+        StatePart part = parts[random() % parts.size()];
+        part.index = static_cast<std::uint8_t>(random() % 5);
+        part.count = static_cast<std::uint8_t>(random() % 5);
+        part.size = static_cast<std::uint8_t>(random());
+        part.octets[random() % part.octets.size()] = static_cast<std::uint8_t>(random());
+        REQUIRE_FALSE(at_random.on(part).has_value());
+    }
+}

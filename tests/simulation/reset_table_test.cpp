@@ -1,0 +1,162 @@
+#include "simulation/landing.hpp"
+
+#include "generated/dictionary_flight.hpp"
+#include "telemetry/packet_stream.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+// A reset of the prime computer at any moment: the outcome that the rule foretells, and the one that was flown. The
+// rules and the table are in docs/second_chance.md.
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+/// When the reset comes, in the words of the rules.
+struct Moment {
+    bool pre_edl = false;
+    bool touchdown = false;   ///< declared on board
+    bool bridle_cut = false;
+    double since_flyaway_s = -1.0;  ///< since fly-away started; below 0: not yet
+};
+
+constexpr double hold_s = 2.0;          // devices hold their last command for so long [facts-l]
+constexpr double thrown_far_s = 4.0;    // ours: with hold_s more the stage has burnt long enough to fall clear
+
+/// The rules, written before the runs.
+Outcome expected(const Moment& at) {
+    if (at.pre_edl) return Outcome::touchdown;     // 1 prime starts anew and goes on, hours before entry
+    if (!at.touchdown) return Outcome::touchdown;  // 2 Second Chance takes over
+    if (!at.bridle_cut) return Outcome::lost;      // 3 nobody may act any more: the stage comes down with the rover on it
+    if (at.since_flyaway_s < thrown_far_s) return Outcome::lost;  // 4 the stage falls where it stands
+    return Outcome::touchdown;                     // 5 it is away
+}
+
+struct Reset {
+    std::string name;
+    Moment at;
+    Outcome outcome = Outcome::running;
+    double touchdown_mps = 0.0;
+};
+
+/// A commanded landing that is forked at each moment asked for, so that what comes before is flown once.
+class Resets {
+  public:
+    explicit Resets(double start_before_entry_s) : trunk_(tests::gale_scenario(start_before_entry_s), 1) {
+        trunk_.uplink(test::set_parameters(trunk_.solution()));
+        for (int cycle = 0; cycle < 64; ++cycle) step();
+        trunk_.uplink(test::enable_second_chance());
+        trunk_.uplink(test::do_edl());
+        for (int cycle = 0; cycle < 64; ++cycle) step();
+    }
+    bool flying() const { return trunk_.outcome() == Outcome::running; }
+    const Landing& trunk() const { return trunk_; }
+
+    void step() {
+        const CycleReport& report = trunk_.step();
+        fired_.clear();
+        telemetry::PacketStream packets{report.recorded};
+        while (const auto packet = packets.next()) {
+            const auto header = read_tm_packet(*packet);
+            if (header->primary.apid != flight::packet::TimepointFired::apid) continue;
+            const TimepointId id{static_cast<std::uint16_t>(read_bits(*packet, tm_data_offset_octets * 8, 16))};
+            fired_.push_back(id);
+            if (id == flight::timepoint::touchdown) at_.touchdown = true;
+            if (id == flight::timepoint::bridle_cut) at_.bridle_cut = true;
+            if (id == flight::timepoint::flyaway) flyaway_ = trunk_.sclk();
+        }
+    }
+    /// Timepoints that fired in the last cycle.
+    const std::vector<TimepointId>& fired() const { return fired_; }
+
+    Reset reset_now(std::string name) const {
+        Landing fork{trunk_};
+        Reset reset{std::move(name), at_, Outcome::running, 0.0};
+        reset.at.pre_edl = fork.truth().e_s < -14400.0;
+        if (flyaway_) reset.at.since_flyaway_s = trunk_.sclk() - *flyaway_;
+        fork.reset_prime();
+        while (fork.outcome() == Outcome::running) fork.step();
+        reset.outcome = fork.outcome();
+        if (fork.touchdown()) reset.touchdown_mps = fork.touchdown()->vertical_mps;
+        return reset;
+    }
+
+  private:
+    Landing trunk_;
+    Moment at_;
+    std::optional<Sclk> flyaway_;
+    std::vector<TimepointId> fired_;
+};
+
+const char* name_of(Outcome outcome) {
+    switch (outcome) {
+    case Outcome::touchdown: return "touchdown";
+    case Outcome::impact: return "impact";
+    case Outcome::lost: return "lost";
+    case Outcome::not_commanded: return "not commanded";
+    case Outcome::timeout: return "timeout";
+    case Outcome::running: break;
+    }
+    return "running";
+}
+
+void check(const Reset& reset) {
+    INFO("reset " << reset.name << ": expected " << name_of(expected(reset.at)) << ", flown " << name_of(reset.outcome));
+    CHECK(reset.outcome == expected(reset.at));
+    if (reset.outcome == Outcome::touchdown) CHECK(reset.touchdown_mps < 1.0);
+}
+
+/// A line of the table, as docs/second_chance.md has it.
+void print(const Reset& reset, double e_s) {
+    std::printf("| %s | %.2f | %s | %s |\n", reset.name.c_str(), e_s, name_of(expected(reset.at)), name_of(reset.outcome));
+}
+
+}  // namespace
+
+TEST_CASE("a reset just after any of every fourth timepoint ends as the rule says", "[second_chance][R32][R33]") {
+    Resets resets{900.0};
+    int boundaries = 0;
+    while (resets.flying()) {
+        resets.step();
+        for (const TimepointId id : resets.fired())
+            if (id.value % 4 == 0 && ++boundaries <= 20) check(resets.reset_now("after timepoint " + std::to_string(id.value)));
+    }
+    CHECK(boundaries >= 15);
+}
+
+TEST_CASE("the table of resets: at every boundary of a timepoint and at 200 random cycles", "[.long][second_chance][R32][R33]") {
+    std::mt19937 random{2012};
+    std::vector<double> at_random(200);
+    for (double& e_s : at_random) e_s = -880.0 + 1320.0 * static_cast<double>(random()) / 4294967296.0;
+    std::sort(at_random.begin(), at_random.end());
+
+    for (const double start_before_entry_s : {17000.0, 900.0}) {
+        Resets resets{start_before_entry_s};
+        std::size_t next = 0;
+        while (resets.flying()) {
+            resets.step();
+            const double e_s = resets.trunk().truth().e_s;
+            for (const TimepointId id : resets.fired()) {
+                const Reset reset = resets.reset_now("after timepoint " + std::to_string(id.value));
+                print(reset, e_s);
+                check(reset);
+            }
+            if (start_before_entry_s > 900.0) {
+                if (e_s > -16900.0) break;  // what follows is the other run's
+                continue;
+            }
+            for (; next < at_random.size() && at_random[next] <= e_s; ++next) {
+                const Reset reset = resets.reset_now("at random");
+                print(reset, e_s);
+                check(reset);
+            }
+        }
+    }
+}

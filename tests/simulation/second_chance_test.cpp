@@ -1,0 +1,185 @@
+#include "simulation/landing.hpp"
+
+#include "generated/dictionary_flight.hpp"
+#include "telemetry/packet_stream.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <map>
+#include <memory>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+constexpr double light = 1.0;  // s between what a test asks for and what must have been answered
+
+/// What a recording says of restarts and of Second Chance.
+struct Recorded {
+    std::map<std::uint16_t, std::vector<Sclk>> events;
+    std::vector<std::pair<std::uint16_t, Sclk>> firings;
+    std::vector<Sclk> navigation;
+    std::vector<std::uint8_t> tones;
+
+    explicit Recorded(const Landing& landing) {
+        telemetry::PacketStream packets{landing.recording()};
+        while (const auto packet = packets.next()) {
+            const auto header = read_tm_packet(*packet);
+            if (!header) continue;
+            const Apid apid = header->primary.apid;
+            const auto field = [&](unsigned bits) { return read_bits(*packet, tm_data_offset_octets * 8, bits); };
+            if (apid == flight::evr::EDL_BEGUN::apid)
+                events[static_cast<std::uint16_t>(field(16))].push_back(header->time);
+            if (apid == flight::packet::TimepointFired::apid)
+                firings.emplace_back(static_cast<std::uint16_t>(field(16)), header->time);
+            if (apid == flight::packet::GncNavigation::apid) navigation.push_back(header->time);
+            if (apid == flight::packet::ToneSelected::apid) tones.push_back(static_cast<std::uint8_t>(field(8)));
+        }
+    }
+    template <typename Evr>
+    std::vector<Sclk> times() const {
+        const auto found = events.find(Evr::id.value);
+        return found == events.end() ? std::vector<Sclk>{} : found->second;
+    }
+};
+
+struct Commanded {
+    Landing landing;
+    explicit Commanded(double start_before_entry_s, bool second_chance = true)
+        : landing(tests::gale_scenario(start_before_entry_s), 1) {
+        landing.uplink(test::set_parameters(landing.solution()));
+        fly(light);
+        if (second_chance) landing.uplink(test::enable_second_chance());
+        landing.uplink(test::do_edl());
+        fly(light);
+    }
+    void fly(double for_s) {
+        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
+    }
+    void fly_to(double e_s) {
+        while (landing.truth().e_s < e_s) landing.step();
+    }
+    Outcome outcome() {
+        while (landing.outcome() == Outcome::running) landing.step();
+        return landing.outcome();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a reset in guided entry: Second Chance flies within a second, with its own tones, and lands",
+          "[second_chance][R1][R33][R35]") {
+    Commanded run{900.0};
+    run.fly_to(120.0);
+    const Sclk reset = run.landing.sclk();
+    run.landing.reset_prime();
+    REQUIRE(run.outcome() == Outcome::touchdown);
+    CHECK(run.landing.touchdown()->vertical_mps < 1.0);
+    const Recorded recorded{run.landing};
+    REQUIRE(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>()[0] - reset <= 1.0);
+    double longest_gap_s = 0.0;
+    for (std::size_t i = 1; i < recorded.navigation.size(); ++i)
+        if (recorded.navigation[i] > reset)
+            longest_gap_s = std::max(longest_gap_s, recorded.navigation[i] - recorded.navigation[i - 1]);
+    CHECK(longest_gap_s <= 1.0);
+    bool handed_over = false;
+    for (const std::uint8_t tone : recorded.tones) {
+        const bool of_second_chance = tone >= flight::tone::sc_computer_started.value;
+        CHECK(of_second_chance >= handed_over);  // never again one of prime's
+        handed_over |= of_second_chance;
+    }
+    CHECK(std::ranges::count(recorded.tones, flight::tone::sc_touchdown.value) == 1);
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_OFF>().size() == 1);
+    CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
+}
+
+TEST_CASE("after a take-over only essential timepoints act", "[second_chance][R33]") {
+    Commanded run{900.0};
+    run.fly_to(-700.0);  // before the antenna of entry is selected, which is not essential
+    run.landing.reset_prime();
+    while (run.landing.truth().e_s < -630.0) run.landing.step();
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
+    CHECK(recorded.times<flight::evr::ENTRY_ANTENNA_SELECTED>().empty());
+    const auto fired = [&](TimepointId id) {
+        return std::ranges::count(recorded.firings, id.value, &std::pair<std::uint16_t, Sclk>::first);
+    };
+    CHECK(fired(flight::timepoint::entry_antenna) == 1);  // passed over, and said so
+}
+
+TEST_CASE("a reset that ground did not provide for is not survived, and Second Chance stays still",
+          "[second_chance][R34]") {
+    Commanded run{900.0, false};
+    run.fly_to(120.0);
+    run.landing.reset_prime();
+    CHECK(run.outcome() != Outcome::touchdown);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
+}
+
+TEST_CASE("without a reset Second Chance watches, and turns itself off at touchdown", "[second_chance][R1][R34]") {
+    Commanded run{900.0};
+    REQUIRE(run.outcome() == Outcome::touchdown);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_ENABLED>().size() == 1);
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
+    REQUIRE(recorded.times<flight::evr::SECOND_CHANCE_OFF>().size() == 1);
+    REQUIRE(recorded.times<flight::evr::TOUCHDOWN>().size() == 1);
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_OFF>()[0] - recorded.times<flight::evr::TOUCHDOWN>()[0] < 0.1);
+}
+
+TEST_CASE("a reset in pre-EDL: prime starts anew, goes back over the named timepoints and repeats their actions",
+          "[second_chance][R32]") {
+    Commanded run{17000.0};
+    run.fly(20.0);  // the first three have fired
+    run.landing.reset_prime();
+    run.fly(60.0);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
+    CHECK(recorded.times<flight::evr::DESCENT_IMU_POWERED>().size() == 2);
+    CHECK(recorded.times<flight::evr::EDL_CONFIGURED>().size() == 2);
+    CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
+
+    Commanded in_between{17000.0};
+    in_between.fly(4.0);  // the first has fired, the second waits for its moment or its reply
+    in_between.landing.reset_prime();
+    in_between.fly(60.0);
+    const Recorded repeated{in_between.landing};
+    REQUIRE(repeated.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
+    CHECK(repeated.times<flight::evr::DESCENT_IMU_POWERED>().size() == 2);
+    CHECK(repeated.times<flight::evr::EDL_CONFIGURED>().size() == 1);
+    CHECK(repeated.times<flight::evr::PRIME_STANDS_BY>().empty());
+}
+
+TEST_CASE("ground designates the other computer prime: both start anew, and it is the one that lands",
+          "[second_chance][R1]") {
+    Landing landing{tests::gale_scenario(1200.0), 1};
+    landing.uplink(test::set_parameters(landing.solution()));
+    const auto fly = [&](double for_s) {
+        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
+    };
+    fly(light);
+    landing.uplink(test::select_prime_b());
+    fly(60.0);
+    CHECK(landing.counters().resets == 2);
+    landing.uplink(test::do_edl());  // parameters were kept over the restart
+    while (landing.outcome() == Outcome::running) landing.step();
+    CHECK(landing.outcome() == Outcome::touchdown);
+    const Recorded recorded{landing};
+    CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().size() == 1);
+    CHECK(recorded.times<flight::evr::EDL_BEGUN>().size() == 1);
+}
+
+TEST_CASE("prime cannot be designated once EDL has begun", "[second_chance][R1]") {
+    Commanded run{900.0};
+    run.landing.uplink(test::select_prime_b());
+    run.fly(5.0);
+    CHECK(run.landing.counters().resets == 0);
+    const Recorded recorded{run.landing};
+    CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().empty());
+    CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
+}
