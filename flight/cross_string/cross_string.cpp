@@ -15,14 +15,19 @@ void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
 
 }  // namespace
 
+void CrossString::put(StateOctets& line, const StateFrame& state) {
+    line.clear();  // of two states within a cycle the later one counts
+    line.append(state.octets());
+}
+
 void CrossString::on(const StatePart& part, Outbox& out) {
     const auto state = assembly_.on(part);
     if (load_role_ == Role::prime) {
         if (!state) return;
-        out.bus().cross_string.append(state->octets());
+        put(out.bus().cross_string, *state);
         if (state->header().revision == kept_revision_) return;
         kept_revision_ = state->header().revision;
-        out.bus().restart_record.append(state->octets());
+        put(out.bus().restart_record, *state);
         return;
     }
     heard_ = out.now();

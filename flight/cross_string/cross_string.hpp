@@ -34,6 +34,7 @@ class CrossString {
     bool in_control() const { return in_control_ && !off_; }
 
   private:
+    static void put(StateOctets& line, const StateFrame& state);
     void turn_off(Outbox& out);
     bool may_take_over(Sclk now) const;
 

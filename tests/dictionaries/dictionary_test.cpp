@@ -28,11 +28,11 @@ TEST_CASE("the shipped dictionary breaks no rule and is as large as a landing ne
     CHECK(d.channels.size() >= 60);
     CHECK(d.packets.size() - d.events.size() >= 12);
     CHECK(d.events.size() >= 50);
-    CHECK(d.commands.size() == 8);
+    CHECK(d.commands.size() >= 8);
     CHECK(d.timeline.size() >= 60);
     CHECK(d.tones.size() == 256);
-    CHECK(d.timeline.front().name == "coolant_vent");
-    CHECK(d.timeline.front().desired_offset_s == -826.0);
+    CHECK(d.timeline.front().name == "descent_imu_power");
+    CHECK_FALSE(d.timeline.front().anchor);  // counts from "do edl"
     const auto with_alarms = std::ranges::count_if(
         d.channels, [](const Channel& c) { return !c.type.alarms.ranges.empty() || !c.type.alarms.values.empty(); });
     CHECK(with_alarms >= 12);

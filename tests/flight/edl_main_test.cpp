@@ -108,22 +108,19 @@ TEST_CASE("without do edl the timeline fires nothing up to and past entry", "[ed
 TEST_CASE("in pre-EDL fault protection holds the timeline, and it goes on when released", "[edl][R24]") {
     Fixture f;
     const double pre_edl_s = entry_s - 15'000;
-    const double brought_forward_s = pre_edl_s - entry_s + 10.0;  // the first timepoint, into pre-EDL
     f.set_parameters(pre_edl_s);
     CHECK_FALSE(f.do_edl(pre_edl_s).has_value());
-    f.handle(SetTimepointOffsetCommand{{}, {.timepoint = 0, .desired_offset_s = brought_forward_s, .minimum_offset_s = 0.0}},
-             pre_edl_s);
     f.handle(InhibitEdl{true}, pre_edl_s + 1);
     CHECK(f.recorder.events<evr::FAULT_PROTECTION_INHIBITS_EDL>() == 1);
     for (double at_s = pre_edl_s + 1; at_s < pre_edl_s + 20; at_s += 1.0 / 64) {
         f.handle(Tick{Sclk{at_s}}, at_s);
         REQUIRE(f.edl.timeline().state() == TimepointState::pending);
-        REQUIRE(f.recorder.sent<FirePyro>().empty());
+        REQUIRE(f.recorder.sent<SetSwitch>().empty());
     }
     f.handle(InhibitEdl{false}, pre_edl_s + 20);
     CHECK(f.recorder.events<evr::FAULT_PROTECTION_RELEASES_EDL>() == 1);
     f.handle(Tick{Sclk{pre_edl_s + 20}}, pre_edl_s + 20);
-    CHECK(f.recorder.sent<FirePyro>().size() == 1);
+    CHECK(f.recorder.sent<SetSwitch>().size() == 1);  // the first timepoint, two seconds after "do edl"
 }
 
 TEST_CASE("do edl is refused while fault protection inhibits EDL", "[edl][R23][R24]") {
