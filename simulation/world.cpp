@@ -36,7 +36,7 @@ struct World::State {
     std::array<Radar, 2> radars;
     StarScanner star_scanner;
 
-    std::int64_t ticks = 0; ///< since the start
+    std::int64_t ticks = 0;                  ///< since the start
     flight::Unit imu_unit = flight::Unit::a; ///< whose link the computer listens to
     flight::DeviceInputs in;
     FixedVector<flight::ImuSample, 4> imu_samples;
@@ -57,9 +57,8 @@ struct World::State {
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
         : scenario(s), initial(initial_state(s, seed, case_number)),
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
-          buses(s, seed, case_number),
-          imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
-               Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
+          buses(s, seed, case_number), imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
+                                            Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
           radars{Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}},
                  Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar_b}}},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
@@ -290,7 +289,8 @@ flight::DeviceInputs& World::sense() {
                            s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
-            flight::RadarBeam reading = s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB());
+            flight::RadarBeam reading =
+                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB());
             if (blind) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }

@@ -46,7 +46,8 @@ class World {
 
     /// The vehicle takes the commands of this cycle and flies on to the next tick.
     void advance(const flight::DeviceOutputs& out);
-    /// Flies on to the next tick while no computer runs the buses: devices keep their last command for 2 s, then go safe.
+    /// Flies on to the next tick while no computer runs the buses: devices keep their last command for 2 s, then go
+    /// safe.
     void advance_uncommanded();
 
     /// A telecommand packet reaches the receiver with the next tick; false when it is too long for one.

@@ -74,9 +74,9 @@ const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, relay_start_after_touchdown_s),
 };
 const Bindings<Scenario> scenario_fields = {
-    AEOLIS_BIND(Scenario, start_before_entry_s),  AEOLIS_BIND(Scenario, end_after_touchdown_s),
-    AEOLIS_BIND(Scenario, timeout_after_entry_s), AEOLIS_BIND(Scenario, parachute_drag_area_m2),
-    AEOLIS_BIND(Scenario, steady_wind_east_mps),  AEOLIS_BIND(Scenario, steady_wind_north_mps),
+    AEOLIS_BIND(Scenario, start_before_entry_s),       AEOLIS_BIND(Scenario, end_after_touchdown_s),
+    AEOLIS_BIND(Scenario, timeout_after_entry_s),      AEOLIS_BIND(Scenario, parachute_drag_area_m2),
+    AEOLIS_BIND(Scenario, steady_wind_east_mps),       AEOLIS_BIND(Scenario, steady_wind_north_mps),
     AEOLIS_BIND(Scenario, bus_message_error_fraction),
 };
 const Bindings<Scenario> trigger_fields = {
@@ -190,7 +190,8 @@ Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault&
     if (!device) return device.error();
     const auto unit = named<flight::Unit>(row.unit(), v1::RedundantUnit_IsValid(row.unit()), name + ".unit");
     if (!unit) return unit.error();
-    const auto kind = named<simulation::DeviceFault::Kind>(row.kind(), v1::DeviceFaultKind_IsValid(row.kind()), name + ".kind");
+    const auto kind =
+        named<simulation::DeviceFault::Kind>(row.kind(), v1::DeviceFaultKind_IsValid(row.kind()), name + ".kind");
     if (!kind) return kind.error();
     simulation::DeviceFault fault;
     fault.device = *device;

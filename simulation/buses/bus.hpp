@@ -25,8 +25,8 @@ struct BusCommand {
 ///
 /// In       commands at any time; they wait for the next frame, in order
 /// Errors   each message is garbled with a seeded probability. The controller repeats a message once in its frame; a
-///          command that fails then, or that its terminal does not answer, is tried in three frames (ours) and given up.
-///          What is given up nobody learns but the one who waits for a reply
+///          command that fails then, or that its terminal does not answer, is tried in three frames (ours) and given
+///          up. What is given up nobody learns but the one who waits for a reply
 /// Memory   a queue of 32 commands; 24 messages a frame, what is over waits (ours: a 1553 bus carries about 20 messages
 ///          of 32 words in 1/64 s, and ours are a few words)
 /// Model    no words and no microseconds: a message that gets through does so with the tick on which its frame begins

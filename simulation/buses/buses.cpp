@@ -6,7 +6,7 @@ namespace {
 using flight::Device;
 using Kind = DeviceFault::Kind;
 
-constexpr std::int64_t hold_ticks = 128; // 2 s [facts] Second Chance
+constexpr std::int64_t hold_ticks = 128;         // 2 s [facts] Second Chance
 constexpr std::size_t replies_of_a_kind_max = 8; // of DeviceInputs
 
 constexpr bool on_64_hz(Device device) {
@@ -100,8 +100,8 @@ void Buses::run_cyclic(std::int64_t tick) {
     engines_were_read_ =
         bus_64_hz_.exchange() && faults_.answers(Device::descent_engines, addressed_[Device::descent_engines]);
     const flight::Unit radar = addressed_[Device::radar];
-    radar_was_read_ = devices_.on(flight::SwitchId::radar, radar) && bus_64_hz_.exchange() &&
-                      faults_.answers(Device::radar, radar);
+    radar_was_read_ =
+        devices_.on(flight::SwitchId::radar, radar) && bus_64_hz_.exchange() && faults_.answers(Device::radar, radar);
 }
 
 void Buses::fetch(Bus& bus, std::int64_t tick) {

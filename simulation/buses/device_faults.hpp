@@ -12,7 +12,8 @@ namespace aeolis::simulation {
 /// silent   its terminal answers nothing on the bus; what it was told before it keeps
 /// refuses  its terminal answers, and does not do what it is told
 /// late     its replies come a while later than they should
-/// dropout  what it carries fails: the radar measures nothing valid, the IMU loses one sample in two, UHF radiates nothing
+/// dropout  what it carries fails: the radar measures nothing valid, the IMU loses one sample in two, UHF radiates
+/// nothing
 class DeviceFaults {
   public:
     DeviceFaults(std::vector<DeviceFault> faults, Sclk entry) : faults_(std::move(faults)), entry_(entry) {}

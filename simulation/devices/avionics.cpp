@@ -4,7 +4,6 @@ namespace aeolis::simulation {
 namespace {
 
 using flight::SwitchId;
-using flight::Unit;
 
 constexpr std::int64_t jitter_ticks = 3; // 0 … 2
 constexpr std::int64_t pyro_ticks = 2;
@@ -44,7 +43,7 @@ std::int64_t work_ticks(const BusCommand& command) {
 bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
     bool first_firing = false;
     Reply reply = faults.has(DeviceFault::Kind::refuses, command.device, command.unit) ? refuse(command)
-                                                                                      : obey(command, first_firing);
+                                                                                       : obey(command, first_firing);
     reply.ready_tick = tick + work_ticks(command) + static_cast<std::int64_t>(random_.bits() % jitter_ticks) +
                        faults.late_ticks(command.device, command.unit);
     // A terminal that is flooded loses replies; flight's time-outs cover it.

@@ -5,12 +5,13 @@
 
 namespace aeolis::simulation {
 
-/// The boxes behind the remote terminals: what is on, what was fired, and the replies that they have ready a little later.
+/// The boxes behind the remote terminals: what is on, what was fired, and the replies that they have ready a little
+/// later.
 ///
 /// A command acts when it reaches its terminal; the reply is ready a fixed time later and up to 2 ticks of jitter. The
 /// times are ours: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s).
-/// At start (ours): thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected; radar and heaters off.
-/// An antenna that is switched on takes over from the other. Both units of a device drive the same hardware.
+/// At start (ours): thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected; radar and heaters
+/// off. An antenna that is switched on takes over from the other. Both units of a device drive the same hardware.
 class Avionics {
   public:
     explicit Avionics(Random random) : random_(random) {}
@@ -41,8 +42,9 @@ class Avionics {
     Reply obey(const BusCommand& command, bool& first_firing);
     Reply refuse(const BusCommand& command) const;
 
-    // In cruise telemetry flows: the mission's came over X-band then, here the UHF link stands in for it from the start,
-    // so that ground sees the answers to its commands. Both transmitters are on, the selected one gets the data. Ours.
+    // In cruise telemetry flows: the mission's came over X-band then, here the UHF link stands in for it from the
+    // start, so that ground sees the answers to its commands. Both transmitters are on, the selected one gets the data.
+    // Ours.
     std::array<std::array<bool, 2>, 6> on_{{{}, {true, true}, {true, true}, {true, true}, {}, {}}};
     std::array<bool, flight::pyro_count> fired_{};
     bool thrusters_enabled_ = true;

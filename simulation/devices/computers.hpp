@@ -39,7 +39,7 @@ class Computers {
 
     std::array<flight::Computer, 2> computers_;
     std::array<flight::DeviceOutputs, 2> out_;
-    flight::DeviceInputs beside_;  ///< of the computer that is not in command
+    flight::DeviceInputs beside_; ///< of the computer that is not in command
     std::size_t commander_ = 0;
     flight::StateOctets restart_record_;
     bool prime_is_b_ = false;

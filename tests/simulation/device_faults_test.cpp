@@ -100,9 +100,9 @@ TEST_CASE("a landing without faults has every reply in time, and no device modul
     const Landed landed = land({});
     CHECK(landed.outcome == Outcome::touchdown);
     CHECK(landed.timed_out().empty());
-    for (const EvrId id : {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id,
-                           flight::evr::PYRO_NOT_FIRED::id, flight::evr::IMU_SAMPLES_MISSING::id,
-                           flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
+    for (const EvrId id :
+         {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_NOT_FIRED::id,
+          flight::evr::IMU_SAMPLES_MISSING::id, flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
         CHECK(landed.count(id) == 0);
 }
 
