@@ -16,6 +16,7 @@ bool in_command(const ComputerState& state) {
 void command_nothing(DeviceOutputs& out) {
     out.pyros.clear();
     out.switches.clear();
+    out.telecom.clear();
     out.thrusters_enabled.reset();
     out.attitude = {};
     out.engines = {};
@@ -37,7 +38,7 @@ Computer::Computer(Computer&&) noexcept = default;
 Computer& Computer::operator=(Computer&&) noexcept = default;
 Computer::~Computer() = default;
 
-void Computer::step(const DeviceInputs& in, DeviceOutputs& out) {
+void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* runner) {
     const Role designated = in.prime_is_b == (state_->load.string == String::b) ? Role::prime : Role::second_chance;
     if (designated != state_->load.role) start_anew(in.now, designated);
     if (state_->runs_from && in.now < *state_->runs_from) {
@@ -49,7 +50,10 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out) {
     }
     state_->runs_from.reset();
     try {
-        Executive{*state_}.cycle(in, out);
+        if (runner != nullptr)
+            runner->cycle(*state_, in, out);
+        else
+            Executive{*state_}.cycle(in, out);
         out.in_command = in_command(*state_);
     } catch (const CheckFailed& bug) {
         // A bug on board stays on board: the computer starts anew, and says why in its first cycle.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "flight/kernel/cycle_runner.hpp"
 #include "flight/load.hpp"
 
 #include <memory>
@@ -29,8 +30,9 @@ class Computer {
     Computer& operator=(Computer&&) noexcept;
     ~Computer();
 
-    /// Runs one 64 Hz cycle. `out` holds the commands of the cycle before and is begun anew here.
-    void step(const DeviceInputs& in, DeviceOutputs& out);
+    /// Runs one 64 Hz cycle, by the deterministic executive unless a venue brings another. `out` holds the commands of the
+    /// cycle before and is begun anew here.
+    void step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* runner = nullptr);
 
     /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
     void reset(Sclk now);

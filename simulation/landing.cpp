@@ -251,6 +251,10 @@ void Landing::uplink(std::span<const std::uint8_t> packet) {
     s.uplinks.send(s.now_us() + s.light_time_us, {packet.begin(), packet.end()});
 }
 
+void Landing::run_prime_by(std::shared_ptr<flight::CycleRunner> runner) {
+    state_->computers.run_prime_by(std::move(runner));
+}
+
 void Landing::reset_prime() {
     if (state_->computer_on) state_->computers.reset_prime(state_->sclk());
 }

@@ -125,6 +125,9 @@ class Landing {
     /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> packet);
 
+    /// The prime computer's modules are run by a venue's executive from here on.
+    void run_prime_by(std::shared_ptr<flight::CycleRunner> runner);
+
     /// A fault: the prime computer starts anew with the next cycle.
     void reset_prime();
 

@@ -182,11 +182,14 @@ struct SwitchCommand {
     bool on = false;
 };
 
+using SwitchCommands = FixedVector<SwitchCommand, 8>;
+
 /// Everything that leaves the computer in one cycle.
 struct DeviceOutputs {
     UnitSelection units;                                       ///< to which the commands of this cycle are addressed
     FixedVector<PyroId, 8> pyros;                              ///< fire
-    FixedVector<SwitchCommand, 8> switches;
+    SwitchCommands switches;                                   ///< of power
+    SwitchCommands telecom;                                    ///< of the radio
     std::optional<bool> thrusters_enabled;
     AttitudeCommand attitude;
     EngineCommand engines;
@@ -204,6 +207,7 @@ struct DeviceOutputs {
     void begin_cycle() {
         pyros.clear();
         switches.clear();
+        telecom.clear();
         thrusters_enabled.reset();
         nvm.clear();
         uhf.clear();

@@ -4,7 +4,7 @@ namespace aeolis::flight {
 
 void PowerManager::on(const SetSwitch& command, Outbox& out) {
     out.bus().units[Device::power] = unit_;
-    replies_.command(command, out);
+    replies_.command(command, out.bus().switches, out);
 }
 
 void PowerManager::on(const SwitchReply& reply, Outbox& out) {

@@ -2,9 +2,9 @@
 
 namespace aeolis::flight {
 
-void SwitchReplies::command(const SetSwitch& command, Outbox& out) {
+void SwitchReplies::command(const SetSwitch& command, SwitchCommands& bus, Outbox& out) {
     const auto number = static_cast<std::size_t>(command.id);
-    if (number >= switch_count || !out.bus().switches.try_push_back({command.id, command.on}))
+    if (number >= switch_count || !bus.try_push_back({command.id, command.on}))
         return out.event(evr::SWITCH_QUEUE_FULL{.switch_number = static_cast<std::uint8_t>(command.id)});
     awaited_[number] = command.on;
 }

@@ -8,8 +8,8 @@ namespace aeolis::flight {
 /// either knows of time. Whether an answer comes too late is the timeline's question.
 class SwitchReplies {
   public:
-    /// Puts `command` on the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
-    void command(const SetSwitch& command, Outbox& out);
+    /// Puts `command` on its owner's part of the bus, or reports that there is no room (SWITCH_QUEUE_FULL).
+    void command(const SetSwitch& command, SwitchCommands& bus, Outbox& out);
     /// Turns a reply into an answer for the timeline, or into a report: refused, or not due, or from another unit.
     void reply(const SwitchReply& reply, Unit selected, Outbox& out);
 

@@ -4,7 +4,7 @@ namespace aeolis::flight {
 
 void TelecomManager::on(const SetSwitch& command, Outbox& out) {
     address(out);
-    replies_.command(command, out);
+    replies_.command(command, out.bus().telecom, out);
 }
 
 void TelecomManager::on(const SwitchReply& reply, Outbox& out) {

@@ -41,7 +41,12 @@ void Buses::take(const flight::DeviceOutputs& out) {
                           .unit = addressed_[Device::thrusters],
                           .kind = BusCommand::Kind::thrusters,
                           .on = *out.thrusters_enabled});
-    for (const flight::SwitchCommand& wanted : out.switches) {
+    take_switches(out.switches);
+    take_switches(out.telecom);
+}
+
+void Buses::take_switches(const flight::SwitchCommands& commands) {
+    for (const flight::SwitchCommand& wanted : commands) {
         using flight::SwitchId;
         if (static_cast<std::size_t>(wanted.id) >= flight::switch_count) continue;
         const Device device = flight::switched_by(wanted.id);

@@ -52,6 +52,7 @@ class Buses {
     const Bus::Counters& counters_8_hz() const { return bus_8_hz_.counters(); }
 
   private:
+    void take_switches(const flight::SwitchCommands& commands);
     void run(Bus& bus, std::int64_t tick);
     void run_cyclic(std::int64_t tick);
     void fetch(Bus& bus, std::int64_t tick);

@@ -38,8 +38,9 @@ void Computers::step(flight::DeviceInputs& in) {
     };
     complete(listening, in);
     complete(other, beside_);
-    computers_[listening].step(in, out_[listening]);
-    computers_[other].step(beside_, out_[other]);
+    const auto runner_of = [&](std::size_t place) { return place == prime() ? runner_.get() : nullptr; };
+    computers_[listening].step(in, out_[listening], runner_of(listening));
+    computers_[other].step(beside_, out_[other], runner_of(other));
 
     for (const flight::DeviceOutputs& out : out_)
         if (!out.restart_record.empty()) restart_record_ = out.restart_record;

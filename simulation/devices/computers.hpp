@@ -3,6 +3,8 @@
 #include "flight/computer.hpp"
 
 #include <array>
+#include <memory>
+#include <utility>
 
 namespace aeolis::simulation {
 
@@ -16,6 +18,10 @@ namespace aeolis::simulation {
 class Computers {
   public:
     Computers(const flight::Load& load, Sclk start);
+
+    /// A venue's own executive for the prime computer; copies of this share it, so that only one of them may be stepped
+    /// at a time. None: the deterministic one.
+    void run_prime_by(std::shared_ptr<flight::CycleRunner> runner) { runner_ = std::move(runner); }
 
     /// One cycle of both. `in` is completed with what only the computers give each other.
     void step(flight::DeviceInputs& in);
@@ -42,6 +48,7 @@ class Computers {
     flight::DeviceInputs beside_; ///< of the computer that is not in command
     std::size_t commander_ = 0;
     flight::StateOctets restart_record_;
+    std::shared_ptr<flight::CycleRunner> runner_;
     bool prime_is_b_ = false;
 };
 

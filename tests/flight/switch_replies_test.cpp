@@ -13,7 +13,7 @@ struct Fixture {
     test::OutboxRecorder recorder{ModuleId::power};
     void command(SwitchId id, bool on) {
         recorder.begin(ModuleId::power, Sclk{1.0});
-        replies.command({id, on}, recorder.out);
+        replies.command({id, on}, recorder.bus->switches, recorder.out);
     }
     std::size_t answers(const SwitchReply& reply) {
         recorder.begin(ModuleId::power, Sclk{1.0});

@@ -10,7 +10,7 @@ TEST_CASE("telecom settings go to the bus and their replies to Edl", "[devices][
     test::Spoken<TelecomManager> telecom{ModuleId::telecom};
     telecom.on(SetSwitch{SwitchId::uhf, true});
     telecom.on(SetSwitch{SwitchId::parachute_antenna, true});
-    REQUIRE(telecom.recorder.bus->switches.size() == 2);
+    REQUIRE(telecom.recorder.bus->telecom.size() == 2);
     CHECK(telecom.on(SwitchReply{SwitchId::uhf, true}).sent<ActionReply>().size() == 1);
     CHECK(telecom.on(SwitchReply{SwitchId::parachute_antenna, true}).sent<ActionReply>().size() == 1);
 }

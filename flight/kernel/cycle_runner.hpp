@@ -1,0 +1,19 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+
+namespace aeolis::flight {
+
+struct ComputerState;
+
+/// How one 64 Hz cycle of a computer's modules is run: the deterministic executive when there is none, else the one that
+/// a venue brings (server/venue). Whatever runs them, the modules do the same. R36
+///
+/// Faults  throws CheckFailed when a module's check failed; then nothing of the cycle may be left in its mailboxes
+class CycleRunner {
+  public:
+    virtual ~CycleRunner() = default;
+    virtual void cycle(ComputerState& state, const DeviceInputs& in, DeviceOutputs& out) = 0;
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,58 @@
+#pragma once
+
+#include "flight/kernel/message.hpp"
+
+#include <array>
+
+// Priorities follow deadlines: who must be done sooner runs first. R8
+namespace aeolis::flight {
+
+/// When a module must have handled what came with a tick, and how much processor time that may take.
+struct TaskLimits {
+    double deadline_s = 0.0;   ///< after the tick
+    double budget_us = 0.0;    ///< of processor time in one cycle
+};
+
+/// Ours. The rate group shares the cycle of 1/64 s, sync's order giving the deadlines within it; who only feeds it or
+/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower.
+constexpr TaskLimits limits_of(ModuleId id) {
+    constexpr double tick_s = seconds_per_tick;
+    switch (id) {
+    case ModuleId::sync: return {0.001, 100.0};
+    case ModuleId::radar: return {0.002, 200.0};
+    case ModuleId::imu: return {0.003, 200.0};
+    case ModuleId::edl: return {0.010, 5000.0};
+    case ModuleId::pyro: return {0.011, 200.0};
+    case ModuleId::descent_engines: return {0.012, 200.0};
+    case ModuleId::thrusters: return {0.013, 200.0};
+    case ModuleId::power: return {tick_s, 200.0};
+    case ModuleId::telecom: return {tick_s, 200.0};
+    case ModuleId::units: return {tick_s, 200.0};
+    case ModuleId::cruise_attitude: return {tick_s, 200.0};
+    case ModuleId::system_fault_protection: return {tick_s, 200.0};
+    case ModuleId::cross_string: return {tick_s, 500.0};
+    case ModuleId::command_dispatcher: return {tick_s, 500.0};
+    case ModuleId::edl_bg: return {1.0, 1000.0};
+    case ModuleId::mfsk: return {1.0, 500.0};
+    case ModuleId::edl_comm: return {1.0, 2000.0};
+    }
+    return {};
+}
+
+/// Modules are named in the order of their priority: no later one has a shorter deadline.
+constexpr bool deadline_monotonic() {
+    for (std::size_t id = 1; id < module_count; ++id)
+        if (limits_of(static_cast<ModuleId>(id)).deadline_s < limits_of(static_cast<ModuleId>(id - 1)).deadline_s)
+            return false;
+    return true;
+}
+static_assert(deadline_monotonic());
+
+constexpr double budgets_together_us() {
+    double sum_us = 0.0;
+    for (std::size_t id = 0; id < module_count; ++id) sum_us += limits_of(static_cast<ModuleId>(id)).budget_us;
+    return sum_us;
+}
+static_assert(budgets_together_us() <= seconds_per_tick * 1.0e6, "all tasks together fit a cycle");
+
+}  // namespace aeolis::flight

@@ -1,0 +1,78 @@
+#pragma once
+
+#include "flight/computer_state.hpp"
+#include "flight/kernel/cycle_runner.hpp"
+#include "server/venue/task_times.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// The threaded executive: each module a task with a thread of its own and one blocking wait, its mailbox; priorities by
+/// deadline (flight/kernel/deadlines.hpp), SCHED_FIFO where the system permits. R4, R8
+///
+/// In       one tick's inputs, by cycle()                 Out   the same bits as the deterministic executive gives
+/// Clock    virtual: cycle() returns when every task is idle, however long that took. Real: a cycle that is not done
+///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
+///          running, reports the overrun and skips that cycle; ticks_skipped() says how many, SCLK goes on
+/// Memory   made with it: a mailbox, an outbox and a painted stack of 256 KiB a task
+/// Faults   a task whose check fails: cycle() throws it once all tasks are idle, with every mailbox empty
+class ThreadedExecutive final : public flight::CycleRunner {
+  public:
+    enum class Clock { virtual_time, real_time };
+    struct Options {
+        Clock clock = Clock::virtual_time;
+        bool measure = false;  ///< processor time of every message; costs about a microsecond each
+        /// A fault put in by a test: called by the task's own thread before it takes its mail.
+        std::function<void(flight::ModuleId, Sclk)> before_mail;
+    };
+
+    ThreadedExecutive() : ThreadedExecutive(Options{}) {}
+    explicit ThreadedExecutive(Options options);
+    ~ThreadedExecutive() override;
+    ThreadedExecutive(const ThreadedExecutive&) = delete;
+    ThreadedExecutive& operator=(const ThreadedExecutive&) = delete;
+
+    void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
+
+    /// Ticks that passed during the last cycle beyond its own; nil on a virtual clock.
+    int ticks_skipped() const { return ticks_skipped_; }
+    /// Empty when tasks run at real-time priorities, else why not, for people.
+    const std::string& notice() const { return notice_; }
+    /// Of each task, in order of priority.
+    std::vector<TaskTimes> times() const;
+    static constexpr std::size_t stack_octets = 256 * 1024;
+
+  private:
+    class Task;
+
+    void post(const flight::Envelope& envelope);
+    void wait_until_idle();
+    void collect(flight::ComputerState& state);
+    void report_times(flight::ComputerState& state);
+    Task& task(flight::ModuleId id) { return *tasks_[static_cast<std::size_t>(id)]; }
+
+    Options options_;
+    std::string notice_;
+    std::vector<std::unique_ptr<Task>> tasks_;
+    flight::ComputerState* state_ = nullptr;  ///< of the cycle that runs
+    flight::DeviceOutputs* out_ = nullptr;
+    Sclk now_;
+    std::atomic<std::uint32_t> overflows_{0}, unexpected_{0};
+
+    std::mutex mutex_;
+    std::condition_variable idle_;
+    int running_ = 0;  ///< tasks that have something to run for; under mutex_
+    std::optional<CheckFailed> failed_;
+    int ticks_skipped_ = 0;
+    std::size_t next_reported_ = 0;
+};
+
+} // namespace aeolis::server

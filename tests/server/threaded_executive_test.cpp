@@ -1,0 +1,155 @@
+#include "server/venue/threaded_executive.hpp"
+
+#include "flight/computer.hpp"
+#include "simulation/entry_reference.hpp"
+#include "simulation/landing.hpp"
+#include "simulation/world.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+struct CommandedLanding {
+    simulation::Landing landing;
+    std::vector<std::uint8_t> tones;
+
+    explicit CommandedLanding(std::shared_ptr<flight::CycleRunner> runner, double start_before_entry_s = 900.0)
+        : landing(tests::gale_scenario(start_before_entry_s), 1) {
+        landing.run_prime_by(std::move(runner));
+        landing.uplink(test::set_parameters(landing.solution()));
+        fly(1.0);
+        landing.uplink(test::do_edl());
+    }
+    void step() {
+        const auto& report = landing.step();
+        for (const auto& tone : report.tones)
+            if (tone.sent) tones.push_back(tone.sent->value);
+    }
+    void fly(double for_s) {
+        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick)
+            step();
+    }
+};
+
+bool same_recording(const simulation::Landing& a, const simulation::Landing& b) {
+    return std::ranges::equal(a.recording(), b.recording());
+}
+
+/// A computer alone, at a pace of its own.
+struct Bench {
+    flight::Computer computer{flight::Load{}, Sclk{1000.0}};
+    std::unique_ptr<flight::DeviceOutputs> out = std::make_unique<flight::DeviceOutputs>();
+    flight::DeviceInputs in;
+    Sclk now{1000.0};
+
+    void cycle(flight::CycleRunner& runner, int ticks = 1) {
+        now = now + ticks * seconds_per_tick;
+        in.now = now;
+        in.nvm_capacity_octets = 1U << 30;
+        computer.step(in, *out, &runner);
+    }
+};
+
+} // namespace
+
+TEST_CASE("both executives fly one landing alike: recorded packets, firings, events and tones, bit for bit",
+          "[venue][threads][R8][R36]") {
+    CommandedLanding deterministic{nullptr};
+    CommandedLanding threaded{std::make_shared<ThreadedExecutive>()};
+    while (deterministic.landing.outcome() == simulation::Outcome::running) {
+        deterministic.step();
+        threaded.step();
+    }
+    CHECK(deterministic.landing.outcome() == simulation::Outcome::touchdown);
+    CHECK(threaded.landing.outcome() == simulation::Outcome::touchdown);
+    CHECK(same_recording(deterministic.landing, threaded.landing));
+    CHECK(deterministic.tones == threaded.tones);
+    CHECK(threaded.landing.counters().overruns == 0);
+    CHECK(threaded.landing.counters().mailbox_overflows == 0);
+}
+
+TEST_CASE("a task that takes too long: sync reports the overruns, those cycles are skipped, SCLK goes on",
+          "[venue][threads][R8][R22]") {
+    const Sclk slow_at{1000.0 + 20 * seconds_per_tick};
+    ThreadedExecutive::Options options;
+    options.clock = ThreadedExecutive::Clock::real_time;
+    options.before_mail = [&](flight::ModuleId module, Sclk now) {
+        if (module == flight::ModuleId::edl && now == slow_at) std::this_thread::sleep_for(std::chrono::milliseconds{55});
+    };
+    ThreadedExecutive executive{options};
+    Bench bench;
+    int skipped = 0;
+    for (int i = 0; i < 40; ++i) {
+        bench.cycle(executive, 1 + executive.ticks_skipped());
+        if (bench.now == slow_at) skipped = executive.ticks_skipped();
+    }
+    CHECK(skipped >= 3);
+    CHECK(bench.computer.counters().overruns >= 3);
+    // Each tick is a cycle that was run or one that was skipped: none is lost.
+    CHECK(bench.computer.counters().cycles + bench.computer.counters().overruns ==
+          static_cast<std::uint64_t>((bench.now - Sclk{1000.0}) * 64.0) + static_cast<std::uint64_t>(executive.ticks_skipped()));
+}
+
+TEST_CASE("a check that fails in a task's thread resets the computer and nothing else", "[venue][threads][R8]") {
+    const Sclk at{1000.0 + 10 * seconds_per_tick};
+    ThreadedExecutive::Options options;
+    options.before_mail = [&](flight::ModuleId module, Sclk now) {
+        if (module == flight::ModuleId::edl && now == at) throw CheckFailed{"planted", "a test", 1};
+    };
+    ThreadedExecutive executive{options};
+    Bench bench;
+    for (int i = 0; i < 9; ++i)
+        bench.cycle(executive);
+    CHECK(bench.out->in_command);
+    bench.cycle(executive);
+    CHECK_FALSE(bench.out->in_command);
+    CHECK(bench.computer.counters().resets == 1);
+    CHECK(bench.computer.counters().cycles == 0);
+    for (int i = 0; i < static_cast<int>(flight::restart_s * 64.0) + 10; ++i)
+        bench.cycle(executive);
+    CHECK(bench.computer.counters().resets == 1);
+    CHECK(bench.computer.counters().cycles >= 10);
+    CHECK(bench.out->in_command);
+}
+
+TEST_CASE("each task's processor time is measured by message, against its budget, and its stack against its bound",
+          "[venue][threads][R8][R37]") {
+    ThreadedExecutive::Options options;
+    options.measure = true;
+    const auto executive = std::make_shared<ThreadedExecutive>(options);
+    CommandedLanding run{executive, 700.0};
+    run.fly(30.0);
+    for (const TaskTimes& times : executive->times()) {
+        INFO("task " << static_cast<int>(times.module));
+        std::uint64_t handled = 0;
+        for (const Durations& of_type : times.by_message)
+            handled += of_type.count();
+        CHECK((handled > 0) == (times.cycle.count() > 0));
+        if (times.cycle.count() == 0) continue;
+        CHECK(times.cycle.least_us() <= times.cycle.mean_us());
+        CHECK(times.cycle.mean_us() <= times.cycle.worst_us());
+        CHECK(times.cycle.p999_us() <= times.cycle.worst_us());
+        CHECK(unevenness(times) >= 1.0);
+        CHECK(times.stack_used_octets > 0);
+    }
+}
+
+TEST_CASE("no task uses more than half of its stack over a whole landing", "[venue][threads][R37]") {
+    const auto executive = std::make_shared<ThreadedExecutive>();
+    CommandedLanding run{executive};
+    while (run.landing.outcome() == simulation::Outcome::running)
+        run.step();
+    REQUIRE(run.landing.outcome() == simulation::Outcome::touchdown);
+    for (const TaskTimes& times : executive->times()) {
+        INFO("task " << static_cast<int>(times.module) << " used " << times.stack_used_octets << " octets");
+        CHECK(times.stack_used_octets <= ThreadedExecutive::stack_octets / 2);
+    }
+}
