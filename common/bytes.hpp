@@ -29,6 +29,9 @@ class BitWriter {
     }
     constexpr void put_signed(std::int64_t value, unsigned bits) { put(static_cast<std::uint64_t>(value), bits); }
     constexpr void put_float(float value) { put(std::bit_cast<std::uint32_t>(value), 32); }
+    constexpr void put_octets(std::span<const std::uint8_t> octets) {
+        for (const std::uint8_t octet : octets) put(octet, 8);
+    }
     constexpr void put_double(double value) { put(std::bit_cast<std::uint64_t>(value), 64); }
 
     constexpr std::size_t position_bits() const { return position_; }

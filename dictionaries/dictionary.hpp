@@ -3,6 +3,7 @@
 #include "common/ids.hpp"
 #include "common/result.hpp"
 #include "common/time.hpp"
+#include "dictionaries/telemetry_plan.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -51,6 +52,7 @@ struct Type {
     ValueKind kind = ValueKind::integer;
     Encoding encoding = Encoding::unsigned_integer;
     unsigned bits = 0;
+    bool binary = false;  ///< no number but bits / 8 octets: never a field, only Packet::content
     std::string unit;  ///< "1" for a pure number
     Polynomial calibrator;
     std::vector<EnumValue> enumeration;
@@ -78,6 +80,13 @@ struct Field {
     std::optional<unsigned> validity_bit;        ///< position of the bit that says whether the value is defined
 };
 
+/// Octets in a packet that are no number: a part of a data product. They stand at a whole octet.
+struct Content {
+    std::string name;
+    unsigned offset_octets = 0;  ///< from the first octet of the packet
+    unsigned octets = 0;
+};
+
 /// One concrete container: what a packet with this APID (and, for events, this event id) holds.
 struct Packet {
     std::string name;  ///< "GncNavigation"
@@ -87,6 +96,7 @@ struct Packet {
     unsigned octets = 0;         ///< whole packet with headers and CRC
     std::vector<Field> fields;   ///< after the secondary header, in order
     std::optional<double> expected_rate_hz;
+    std::optional<Content> content;
 };
 
 enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
@@ -263,6 +273,7 @@ struct Dictionary {
     std::vector<ConstraintRow> constraints;
     std::vector<StateMachineTable> state_machines;
     std::vector<OwnerRow> owners;
+    std::vector<TelemetryPlanRow> telemetry_plan;
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -287,8 +298,8 @@ struct Loaded {
 };
 
 /// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv,
-/// state_machines.csv, owners.csv. All are on
-/// board, so `id` follows each; the last changes nothing that the timeline does, so `timeline_version` does not follow it.
+/// state_machines.csv, owners.csv, telemetry_plan.csv. All are on board, so `id` follows each; only the timeline's own two
+/// change what it does, so `timeline_version` follows those alone.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

@@ -6,6 +6,7 @@
 #include "dictionaries/spreadsheet/owners.hpp"
 #include "dictionaries/spreadsheet/state_machines.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
+#include "dictionaries/spreadsheet/telemetry_plan.hpp"
 #include "dictionaries/xtce/space_system.hpp"
 
 #include <algorithm>
@@ -100,6 +101,12 @@ Loaded load(const std::filesystem::path& directory) {
         return read_timeline(text, context, findings);
     });
 
+    const File plan_csv = read_file(directory / "telemetry_plan.csv", all);
+    const bool packets_sound = std::ranges::find(all, xml.name, &Finding::file) == all.end();
+    auto telemetry_plan = read(plan_csv, [&](std::string_view text, Findings& findings) {
+        return read_telemetry_plan(text, system && packets_sound ? &system->packets : nullptr, findings);
+    });
+
     const File constraints_csv = read_file(directory / "constraints.csv", all);
     // A name that its own sheet has wrong is one fault, not one more for each constraint that uses it.
     const auto is_sound = [&](const File& file) {
@@ -133,7 +140,7 @@ Loaded load(const std::filesystem::path& directory) {
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
     dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv, &state_machines_csv,
-                          &owners_csv});
+                          &owners_csv, &plan_csv});
     // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
@@ -147,6 +154,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.constraints = std::move(*constraints);
     dictionary.state_machines = std::move(*state_machines);
     dictionary.owners = std::move(*owners);
+    dictionary.telemetry_plan = std::move(*telemetry_plan);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

@@ -44,10 +44,40 @@ std::string subject_of(const dictionary::Dictionary& dictionary, const std::stri
     return channel != nullptr ? number_text(channel->type, number) : std::string{};
 }
 
-std::string sentence_of(const Condition& condition) {
+/// What holds instead, as a reader says it: of a condition "<= 405.0" that does not hold, "> 405.0".
+std::string opposite_of(const std::string& symbol) {
+    if (symbol == "<") return ">=";
+    if (symbol == "<=") return ">";
+    if (symbol == "==") return "!=";
+    if (symbol == ">=") return "<";
+    if (symbol == ">") return "<=";
+    return "not " + symbol;
+}
+
+/// A quantity that is a tone's number names that tone: "overtaking_tone 50 radar_lock".
+bool names_a_tone(const std::string& quantity) {
+    return quantity.ends_with("_tone");
+}
+
+std::string sentence_of(const dictionary::Dictionary& dictionary, const Condition& condition) {
+    if (names_a_tone(condition.quantity))
+        return condition.quantity + " " + reference_text(dictionary, "tone", condition.value);
     return std::string{without_unit(condition.quantity)} + " " + named_value_text(condition.quantity, condition.value) +
-           (condition.holds ? " " : ", not ") + condition.comparison + " " +
+           " " + (condition.holds ? condition.comparison : opposite_of(condition.comparison)) + " " +
            named_value_text(condition.quantity, condition.bound);
+}
+
+/// All in order; of a decision that is held first what is missing, then in brackets what is there.
+std::string sentences_of(const dictionary::Dictionary& dictionary, const Explanation& explanation) {
+    const bool held = explanation.verdict == "held";
+    std::string text;
+    std::string there;
+    for (const Condition& condition : explanation.conditions) {
+        std::string& into = held && condition.holds ? there : text;
+        into += (into.empty() ? "" : "; ") + sentence_of(dictionary, condition);
+    }
+    if (there.empty()) return text;
+    return text.empty() ? there : text + " (" + there + ")";
 }
 
 std::vector<Condition> conditions_of(const Reader& reader) {
@@ -78,8 +108,10 @@ std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, con
     explanation.text = explanation.decision;
     if (!explanation.subject.empty()) explanation.text += " " + explanation.subject;
     explanation.text += " " + explanation.verdict;
-    for (std::size_t i = 0; i < explanation.conditions.size(); ++i)
-        explanation.text += (i == 0 ? ": " : "; ") + sentence_of(explanation.conditions[i]);
+    if (!explanation.conditions.empty()) explanation.text += ": " + sentences_of(dictionary, explanation);
+    explanation.suppressed = static_cast<std::uint32_t>(std::max(reader.number("suppressed"), 0.0));
+    if (explanation.suppressed > 0)
+        explanation.text += "; held " + std::to_string(explanation.suppressed) + " more cycles since last told";
     return explanation;
 }
 

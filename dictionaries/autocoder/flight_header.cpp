@@ -44,7 +44,8 @@ class HeaderWriter {
              << ". Not to be edited: change the dictionary.\n"
                 "#pragma once\n\n"
                 "#include \"common/bytes.hpp\"\n#include \"common/ids.hpp\"\n\n"
-                "#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include <optional>\n#include <span>\n\n"
+                "#include <array>\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include "
+                "<optional>\n#include <span>\n\n"
                 "namespace aeolis::flight {\n\n"
                 "enum class EventLevel : std::uint8_t {\n"
                 "    fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic\n};\n\n"
@@ -94,6 +95,8 @@ class HeaderWriter {
             }
             all.push_back({field.position_bits, field.type.bits, put(field.type, value)});
         }
+        if (const auto& content = packet.content)
+            all.push_back({content->offset_octets * 8, content->octets * 8, "put_octets(" + content->name + ")"});
         std::ranges::sort(all, {}, &Write::position_bits);
         return all;
     }
@@ -116,6 +119,9 @@ class HeaderWriter {
             else
                 out_ << "    " << value_type(field.type) << " " << field.name << "{};\n";
         }
+        if (packet.content)
+            out_ << "    std::array<std::uint8_t, " << packet.content->octets << "> " << packet.content->name
+                 << "{};\n";
         out_ << "\n    void encode(BitWriter& out) const {\n";
         write_body(packet, event);
         out_ << "    }\n    bool operator==(const " << packet.name << "&) const = default;\n};\n\n";

@@ -1,6 +1,7 @@
 #include "dictionaries/autocoder/flight_header.hpp"
 #include "dictionaries/autocoder/owners_header.hpp"
 #include "dictionaries/autocoder/state_machines_header.hpp"
+#include "dictionaries/autocoder/telemetry_plan_source.hpp"
 #include "dictionaries/autocoder/timeline_source.hpp"
 
 #include <filesystem>
@@ -8,9 +9,9 @@
 #include <iostream>
 #include <iterator>
 
-// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, owners.hpp and timeline.cpp, or prints every finding and writes
-// nothing. A file that would not change is left alone, so that flight is not compiled anew when only the autocoder was.
-// Ends with 0 done, 1 findings or not writable, 2 bad use.
+// aeolis_autocoder MSL_DIR OUT_DIR: writes dictionary_flight.hpp, state_machines.hpp, owners.hpp, timeline.cpp and
+// telemetry_plan.cpp, or prints every finding and writes nothing. A file that would not change is left alone, so that
+// flight is not compiled anew when only the autocoder was. Ends with 0 done, 1 findings or not writable, 2 bad use.
 namespace {
 
 bool write(const std::filesystem::path& path, const std::string& text) {
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
         write(out / "dictionary_flight.hpp", dictionary::autocoder::flight_header(*loaded.dictionary)) &&
         write(out / "state_machines.hpp", dictionary::autocoder::state_machines_header(*loaded.dictionary)) &&
         write(out / "owners.hpp", dictionary::autocoder::owners_header(*loaded.dictionary)) &&
-        write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary));
+        write(out / "timeline.cpp", dictionary::autocoder::timeline_source(*loaded.dictionary)) &&
+        write(out / "telemetry_plan.cpp", dictionary::autocoder::telemetry_plan_source(*loaded.dictionary));
     return written ? 0 : 1;
 }

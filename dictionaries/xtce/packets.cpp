@@ -60,6 +60,7 @@ class PacketReader {
         packet.octets = (layout.end_bits + 7) / 8 + static_cast<unsigned>(packet_crc_octets);
         packet.expected_rate_hz = rate(element);
         packet.fields = fields(layout);
+        packet.content = content(layout);
         if (is_event) {
             if (!read_event(symbol, layout.conditions.at("event_id"), packet)) return;
         }
@@ -90,7 +91,8 @@ class PacketReader {
             flags.insert(placed.parameter->valid_by);
         for (const Placed& placed : layout.entries) {
             const Parameter& parameter = *placed.parameter;
-            if (placed.position_bits < header_bits || flags.contains(parameter.path)) continue;
+            if (placed.position_bits < header_bits || flags.contains(parameter.path) || parameter.type->binary)
+                continue;
             if (is_taken_in_packets(parameter.name))
                 report_.fault(placed.element, in_quotes(parameter.name) + " is a name of the encoder's own");
             Field field{parameter.name, *parameter.type, parameter.channel, placed.position_bits, std::nullopt};
@@ -98,6 +100,21 @@ class PacketReader {
             all.push_back(std::move(field));
         }
         return all;
+    }
+
+    std::optional<Content> content(const Layout& layout) {
+        std::optional<Content> found;
+        for (const Placed& placed : layout.entries) {
+            const Parameter& parameter = *placed.parameter;
+            if (!parameter.type->binary) continue;
+            if (found)
+                report_.fault(placed.element, in_quotes(parameter.name) + ": a packet has binary data once at most");
+            else if (placed.position_bits % 8 != 0 || !parameter.valid_by.empty())
+                report_.fault(placed.element, in_quotes(parameter.name) +
+                                                  ": binary data begin at a whole octet and are always defined");
+            found = Content{parameter.name, placed.position_bits / 8, parameter.type->bits / 8};
+        }
+        return found;
     }
 
     std::optional<unsigned> flag_position(const Layout& layout, const Placed& placed) {

@@ -91,7 +91,10 @@ Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter&
         parameter.type = types.of(Kind::parameter_type, symbol.scope, symbol.element, "parameterTypeRef", report);
         parameter.valid_by = validity_flag(symbols, symbol, report);
         const std::string alias = channel_alias(symbol.element, report);
-        if (!alias.empty()) channels.add(parameter, alias);
+        if (!alias.empty() && parameter.type && parameter.type->binary)
+            report.fault(symbol.element, "parameter " + in_quotes(parameter.name) + ": binary data are no channel");
+        else if (!alias.empty())
+            channels.add(parameter, alias);
         parameters.by_path.emplace(symbol.path, std::move(parameter));
     }
     return parameters;

@@ -1,5 +1,6 @@
 #include "dictionaries/xtce/types.hpp"
 
+#include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
 #include "dictionaries/xtce/alarms.hpp"
 
@@ -42,6 +43,7 @@ class TypeReader {
 
     /// The type as far as it can be read; what is wrong with it are findings.
     std::optional<Type> read() {
+        if (std::string_view{element_.name()} == "BinaryParameterType") return read_binary();
         const auto kind = kind_of(element_.name());
         if (!kind) {
             report_.fault(element_, std::string{element_.name()} + " is unknown or not supported");
@@ -64,6 +66,24 @@ class TypeReader {
   private:
     void fault(pugi::xml_node at, const std::string& message) {
         report_.fault(at, "type " + in_quotes(type_.name) + ": " + message);
+    }
+
+    std::optional<Type> read_binary() {
+        report_.expect(element_, {"LongDescription", "UnitSet", "BinaryDataEncoding"}, {"name", "shortDescription"});
+        type_.name = name_of(element_);
+        type_.binary = true;
+        const pugi::xml_node encoding = element_.child("BinaryDataEncoding");
+        report_.expect(encoding, {"SizeInBits"}, {});
+        report_.expect(encoding.child("SizeInBits"), {"FixedValue"}, {});
+        const std::string word = encoding.child("SizeInBits").child("FixedValue").text().as_string();
+        const auto bits = to_integer(word);
+        if (!bits || *bits < 8 || *bits > std::int64_t{packet_octets_max} * 8 || *bits % 8 != 0) {
+            fault(encoding ? encoding : element_,
+                  "binary data of " + in_quotes(word) + " bits: only a fixed number of whole octets is supported");
+            return std::nullopt;
+        }
+        type_.bits = static_cast<unsigned>(*bits);
+        return type_;
     }
 
     bool read_encoding() {

@@ -1,5 +1,7 @@
 #include "flight/edl/decisions.hpp"
 
+#include "flight/explanation/explanation.hpp"
+
 #include <cmath>
 
 namespace aeolis::flight {
@@ -25,12 +27,14 @@ void request_tone(Outbox& out, ToneId tone) {
     out.send(ModuleId::mfsk, ToneRequest{tone, out.now()});
 }
 
+}  // namespace
+
 Decision decision_of(gnc::Trigger trigger) {
     switch (trigger) {
     case gnc::Trigger::guidance_start: return Decision::guidance_start;
     case gnc::Trigger::heading_alignment: return Decision::heading_alignment;
     case gnc::Trigger::sufr_start: return Decision::sufr_start;
-    case gnc::Trigger::parachute: return Decision::parachute;
+    case gnc::Trigger::parachute: return Decision::parachute_deploy;
     case gnc::Trigger::heatshield: return Decision::heatshield;
     case gnc::Trigger::radar_lock: return Decision::radar_lock;
     case gnc::Trigger::engine_priming: return Decision::engine_priming;
@@ -44,32 +48,6 @@ Decision decision_of(gnc::Trigger trigger) {
     }
     return Decision::gnc_mode;
 }
-
-/// An Explanation packet has four places for conditions.
-packet::Explanation explanation(Decision decision, ExplanationVerdict verdict, std::uint16_t subject,
-                                std::span<const gnc::Condition> conditions) {
-    packet::Explanation e{.decision = decision,
-                          .verdict = verdict,
-                          .subject = subject,
-                          .condition_count = static_cast<std::uint8_t>(conditions.size())};
-    const auto put = [&](std::size_t i, bool& holds, Quantity& quantity, double& value, double& bound,
-                         Comparison& comparison) {
-        if (i >= conditions.size()) return;
-        const gnc::Condition& c = conditions[i];
-        holds = c.holds;
-        quantity = static_cast<Quantity>(c.quantity);
-        value = c.value;
-        bound = c.bound;
-        comparison = static_cast<Comparison>(c.comparison);
-    };
-    put(0, e.holds_1, e.condition_1, e.value_1, e.bound_1, e.comparison_1);
-    put(1, e.holds_2, e.condition_2, e.value_2, e.bound_2, e.comparison_2);
-    put(2, e.holds_3, e.condition_3, e.value_3, e.bound_3, e.comparison_3);
-    put(3, e.holds_4, e.condition_4, e.value_4, e.bound_4, e.comparison_4);
-    return e;
-}
-
-}  // namespace
 
 std::optional<AnchorId> anchor_of(gnc::Trigger trigger) {
     switch (trigger) {
@@ -142,8 +120,28 @@ void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
     request_tone(out, tone::bank_reversal);
 }
 
-void explain(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
-    out.record(explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span()));
+void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out) {
+    out.record(
+        explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span(), suppressed));
+}
+
+void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
+    for (const gnc::HeldTrigger& one : gnc.held) held.held(decision_of(one.trigger), 0, one.conditions.span(), out);
+}
+
+void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out) {
+    constexpr double worth_telling_after_s = 0.5;  // ours: most replies take a tenth of that
+    const Sclk now = out.now();
+    FixedVector<gnc::Condition, 2> conditions;
+    if (const auto waiting = timeline.waiting(); waiting && now - waiting->triggered >= worth_telling_after_s) {
+        conditions.push_back(at_least(Quantity::reply_wait_s, now - waiting->triggered, waiting->timeout_s));
+    } else if (!waiting && now >= timeline.next_desired() + MaybeOffset{worth_telling_after_s} &&
+               timeline.next_minimum().defined() && !(now >= timeline.next_minimum())) {
+        const double clock_s = now.seconds;
+        conditions.push_back(at_least(Quantity::clock_sclk, clock_s, timeline.next_minimum().get()->seconds));
+        conditions.push_back(at_most(Quantity::desired_sclk, timeline.next_desired().get()->seconds, clock_s));
+    }
+    if (!conditions.empty()) held.held(Decision::timepoint, timeline.current().value, conditions.span(), out);
 }
 
 void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {

@@ -1,12 +1,16 @@
 #pragma once
 
+#include "flight/explanation/held_explanations.hpp"
 #include "flight/gnc/edl_gnc.hpp"
 #include "flight/kernel/outbox.hpp"
+#include "flight/timeline/timeline.hpp"
 
 #include <optional>
 
 // What GNC starts, in the words of the timeline and of the ground: anchor, event, explanation. R17, R38
 namespace aeolis::flight {
+
+Decision decision_of(gnc::Trigger trigger);
 
 /// The anchor that becomes defined; none where nothing on the timeline waits for it.
 std::optional<AnchorId> anchor_of(gnc::Trigger trigger);
@@ -14,8 +18,14 @@ std::optional<AnchorId> anchor_of(gnc::Trigger trigger);
 void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out);
 
-/// The conditions that led to the decision, with their values and bounds.
-void explain(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out);
+/// The conditions that led to the decision, with their values and bounds; and how often it was held untold before.
+void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out);
+
+/// What GNC is near to deciding, and which condition is missing.
+void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out);
+
+/// What the timeline waits for when its time has come: its minimum offset, or a reply.
+void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out);
 
 /// Says when the largest sensed deceleration of the entry has passed.
 class PeakDeceleration {

@@ -31,6 +31,8 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     run_gnc(tick.now, out);
     take_triggers(tick.now, out);
     run_timeline(tick.now, out);
+    explain_held(output_, held_, out);
+    if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
     update_phase(tick.now, out);
     record_channels(tick.now, out);
     constraint_monitor_.report(out);
@@ -100,7 +102,7 @@ void EdlMain::take_triggers(Sclk now, Outbox& out) {
     for (const gnc::Trigger trigger : output_.triggers) {
         if (const auto started = anchor_of(trigger)) timeline_.set_anchor_now(*started, now);
         announce(trigger, output_, out);
-        explain(trigger, output_, out);
+        explain(trigger, output_, held_.take_suppressed(decision_of(trigger)), out);
     }
     if (output_.bank_reversal != 0) announce_bank_reversal(output_, out);
     peak_deceleration_.watch(output_, out);
@@ -212,6 +214,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         constraint_monitor_.note(Moment::of_do_edl(), out.now());
         ++revision_;
         out.event(evr::EDL_BEGUN{});
+        out.send(ModuleId::units, EdlBegun{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
     answer(out, command.tag, refused);

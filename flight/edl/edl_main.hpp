@@ -37,6 +37,7 @@ class EdlMain {
     void on(const gnc::RadarSolution& solution, Outbox& out);
     void on(const ActionReply& reply, Outbox& out);
     void on(const InhibitEdl& wish, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
 
     void on(const ParametersUpdate& update, Outbox& out);
     void on(const DoEdlCommand& command, Outbox& out);
@@ -93,8 +94,10 @@ class EdlMain {
     double bridle_m_ = 0.0;
     std::optional<command::EDL_SET_PARAMETERS> parameters_;
     PeakDeceleration peak_deceleration_;
+    HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     Phase phase_;
+    UnitSelection units_;  // for who takes over; they are no business of EDL's otherwise
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
     bool refused_to_hold_ = false;  // told once a fault, not once a report

@@ -14,68 +14,74 @@ EdlComm::EdlComm(const Load& load)
 }
 
 void EdlComm::on(const Record& record, Outbox& out) {
-    Packet packet;
+    if (record.size > record_octets_max) {
+        const auto type = static_cast<std::uint8_t>(Message{record}.index());
+        return out.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(ModuleId::edl_comm),
+                                                 .message_type = type});
+    }
+    TelemetryPacket packet;
     packet.size = static_cast<std::uint16_t>(record.size + tm_overhead_octets);
     std::copy_n(record.data.begin(), record.size, packet.octets.begin() + tm_data_offset_octets);
     auto& stream = streams_[record.apid.value % streams_.size()];
     seal_tm_packet(std::span{packet.octets}.first(packet.size), record.apid, stream.count, record.time, dictionary_id);
     stream.count = (stream.count + 1) & 0x3FFF;
+    const TelemetryPlanRow& plan = planned(plan_, record.apid);
     // Only what is recorded may be sent: real time stays a subset of the recording.
-    if (append_to_recording(record.apid, packet, out)) offer_to_link(record.apid, stream, packet);
+    if (append_to_recording(plan.priority, packet, out)) offer_to_link(plan, stream, packet, out);
+    products_.on(record);
 }
 
-bool EdlComm::append_to_recording(Apid apid, const Packet& packet, Outbox& out) {
+bool EdlComm::append_to_recording(TelemetryPriority priority, const TelemetryPacket& packet, Outbox& out) {
     auto& nvm = out.bus().nvm;
-    const std::uint32_t kept_free_octets = goes_first(apid) ? 0 : nvm_reserve_octets;
+    const std::uint64_t kept_free_octets = priority == TelemetryPriority::first ? 0 : nvm_reserve_octets;
     if (nvm_.used_octets + nvm.size() + packet.size + kept_free_octets > nvm_.capacity_octets ||
         nvm.size() + packet.size > nvm.capacity()) {
         ++unrecorded_packets_;
-        if (!nvm_full_reported_) out.event(evr::NVM_FULL{.used_octets = nvm_.used_octets});
-        nvm_full_reported_ = true;
+        if (!nvm_full_reported_) {
+            nvm_full_reported_ = true;
+            out.event(evr::NVM_FULL{.used_octets = nvm_.used_octets});
+            out.send(ModuleId::mfsk, ToneRequest{tone::recording_fault, out.now()});
+        }
         return false;
     }
-    nvm.append(std::span{packet.octets}.first(packet.size));
+    nvm.append(packet.span());
     ++records_;
     return true;
 }
 
-void EdlComm::offer_to_link(Apid apid, Stream& stream, const Packet& packet) {
-    bool queued = true;
-    if (goes_first(apid)) {
-        queued = urgent_.try_push(packet);
-    } else {
-        const std::uint32_t every = realtime_every(plan_, phase_, apid);
-        if (every == 0 || ++stream.since_sent < every) return;
-        stream.since_sent = 0;
-        queued = ordinary_.try_push(packet);
-    }
-    if (queued)
-        queued_octets_ += packet.size;
-    else
-        ++dropped_packets_;
+void EdlComm::offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const TelemetryPacket& packet, Outbox& out) {
+    const std::uint32_t every = every_in(plan.every, phase_);
+    if (every == 0 || ++stream.since_sent < every) return;
+    stream.since_sent = 0;
+    if (queue_.offer(packet, plan.priority) || queue_full_reported_) return;
+    queue_full_reported_ = true;
+    out.event(evr::UHF_QUEUE_FULL{.lost = queue_.dropped()});
 }
 
 void EdlComm::radiate(Outbox& out) {
     auto& uhf = out.bus().uhf;
     // A link that was idle does not save up more than one largest packet.
-    credit_octets_ = std::min(credit_octets_ + octets_per_cycle_, static_cast<double>(packet_max) + octets_per_cycle_);
-    const auto send_from = [&](auto& queue) {
-        while (!queue.empty()) {
-            const Packet& packet = queue.front();
-            if (packet.size > credit_octets_ || uhf.size() + packet.size > uhf.capacity()) return;
-            uhf.append(std::span{packet.octets}.first(packet.size));
-            credit_octets_ -= packet.size;
-            queued_octets_ -= packet.size;
-            sent_octets_ += packet.size;
-            queue.pop();
-        }
-    };
-    send_from(urgent_);
-    if (urgent_.empty()) send_from(ordinary_);
+    credit_octets_ = std::min(credit_octets_ + octets_per_cycle_,
+                              static_cast<double>(telemetry_packet_octets_max) + octets_per_cycle_);
+    while (!queue_.empty()) {
+        const TelemetryPacket& packet = queue_.front();
+        if (packet.size > credit_octets_ || uhf.size() + packet.size > uhf.capacity()) break;
+        uhf.append(packet.span());
+        credit_octets_ -= packet.size;
+        sent_octets_ += packet.size;
+        queue_.pop();
+    }
+    // The episode is over when half of the room is free again; ours, so that it is not said at every packet.
+    if (queue_.waiting() <= RealtimeQueue::packets_max / 2) queue_full_reported_ = false;
+}
+
+void EdlComm::on(const ImuReadings& readings, Outbox&) {
+    products_.on(readings);
 }
 
 void EdlComm::on(const PhaseChanged& change, Outbox&) {
     phase_ = change.phase;
+    products_.on(change);
 }
 
 void EdlComm::on(const NvmStatus& status, Outbox&) {
@@ -87,15 +93,28 @@ void EdlComm::on(const ToneStatus& status, Outbox&) {
 }
 
 void EdlComm::on(const ClockTick& tick, Outbox& out) {
-    if (at_resolution(tick.now, 1) == tick.now)
-        out.record(packet::CommStatus{.nvm_used_octets = nvm_.used_octets,
-                                      .nvm_records = records_,
-                                      .uhf_sent_octets = sent_octets_,
-                                      .uhf_queue_octets = queued_octets_,
-                                      .uhf_dropped_packets = dropped_packets_,
-                                      .tone_current = tone_.tone,
-                                      .tone_requests = tone_.outstanding});
+    if (at_resolution(tick.now, 1) == tick.now) out.record(status());
+    products_.cycle(out);
     radiate(out);
+}
+
+packet::CommStatus EdlComm::status() const {
+    const std::uint32_t low_octets = queue_.waiting_octets(TelemetryPriority::low);
+    return {.nvm_used_octets = nvm_.used_octets,
+            .nvm_records = records_,
+            .uhf_sent_octets = sent_octets_,
+            .uhf_queue_octets = queue_.waiting_octets() - low_octets,
+            .uhf_dropped_packets = queue_.dropped(),
+            .tone_current = tone_.tone,
+            .tone_requests = tone_.outstanding,
+            .uhf_dropped_first_packets = queue_.dropped(TelemetryPriority::first),
+            .uhf_dropped_high_packets = queue_.dropped(TelemetryPriority::high),
+            .uhf_dropped_normal_packets = queue_.dropped(TelemetryPriority::normal),
+            .uhf_dropped_low_packets = queue_.dropped(TelemetryPriority::low),
+            .uhf_waiting_packets = static_cast<std::uint8_t>(queue_.waiting()),
+            .uhf_low_queue_octets = low_octets,
+            .nvm_unrecorded_packets = unrecorded_packets_,
+            .products_made = products_.made()};
 }
 
 }  // namespace aeolis::flight

@@ -95,11 +95,20 @@ bool EdlGnc::take(GncModeEvent event, Sclk now) {
 
 bool EdlGnc::fire(Trigger trigger, const Conditions& conditions, Output& out) {
     bool& done = fired_[static_cast<std::size_t>(trigger)];
-    if (done || out.triggers.full() || !all_hold(conditions)) return false;
+    if (done || out.triggers.full()) return false;
+    if (!all_hold(conditions)) {
+        hold(trigger, conditions, out);
+        return false;
+    }
     done = true;
     out.triggers.push_back(trigger);
     out.conditions = conditions;
     return true;
+}
+
+void EdlGnc::hold(Trigger trigger, const Conditions& conditions, Output& out) const {
+    if (fired(trigger) || !triggers::near(conditions)) return;
+    static_cast<void>(out.held.try_push_back({trigger, triggers::worth_telling(conditions)}));
 }
 
 void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, Output& out) {
@@ -174,9 +183,13 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     if (!configuration.heatshield_gone) return;
     // Inertial altitude alone may be kilometres off by now; it has to do only when the radar has had its time in vain.
     const double since_heatshield_s = configuration.heatshield_time ? now - *configuration.heatshield_time : 0.0;
-    if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s)
-        fire(Trigger::engine_priming,
-             triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m), out);
+    auto priming = triggers::engine_priming(m.altitude_m, m.descent_rate_mps, solution_.backshell_altitude_m);
+    if (radar_filter_.locked() || since_heatshield_s >= triggers::radar_patience_s) {
+        fire(Trigger::engine_priming, priming, out);
+    } else {
+        priming.push_back(at_least(Quantity::radar_locked, 0.0, 1.0));
+        hold(Trigger::engine_priming, priming, out);
+    }
     const triggers::BackshellBounds backshell{solution_.backshell_altitude_m, solution_.backshell_descent_rate_mps};
     const double needed_m = triggers::backshell_altitude_needed_m(backshell, m.descent_rate_mps);
     const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);

@@ -106,11 +106,18 @@ inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::t
 
 using Mode = GncMode; ///< in the order in which they come
 
+/// A trigger that is near, and what it still waits for. R38
+struct HeldTrigger {
+    Trigger trigger{};
+    Conditions conditions;
+};
+
 /// Everything that GNC tells the rest in one cycle.
 struct Output {
     Mode mode = Mode::off;
     FixedVector<Trigger, 4> triggers; ///< fired in this cycle
     Conditions conditions;            ///< of the last trigger in `triggers`
+    FixedVector<HeldTrigger, 4> held; ///< near, and not fired in this cycle
     std::uint8_t bank_reversal = 0;   ///< number of the reversal that began in this cycle, 0: none
     AttitudeCommand attitude;
     EngineCommand engines;
@@ -194,6 +201,7 @@ class EdlGnc {
     void measure(Sclk now);
     bool take(GncModeEvent event, Sclk now);
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
+    void hold(Trigger trigger, const Conditions& conditions, Output& out) const;
     bool fired(Trigger trigger) const { return fired_[static_cast<std::size_t>(trigger)]; }
     void follow_configuration(const Configuration& configuration, Sclk now);
     void decide_in_air(const Configuration& configuration, Sclk now, Output& out);

@@ -1,23 +1,14 @@
 #include "flight/mfsk/tone_selector.hpp"
 
+#include "flight/explanation/explanation.hpp"
+
+#include <initializer_list>
+
 namespace aeolis::flight {
 namespace {
 
-void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, double priority, double age_s, double age_limit_s) {
-    out.record(packet::Explanation{.decision = Decision::tone,
-                                   .verdict = verdict,
-                                   .subject = tone.value,
-                                   .condition_count = 2,
-                                   .condition_1 = Quantity::tone_priority,
-                                   .value_1 = priority,
-                                   .bound_1 = priority,
-                                   .comparison_1 = Comparison::ge,
-                                   .holds_1 = true,
-                                   .condition_2 = Quantity::request_age_s,
-                                   .value_2 = age_s,
-                                   .bound_2 = age_limit_s,
-                                   .comparison_2 = Comparison::le,
-                                   .holds_2 = age_s <= age_limit_s});
+void explain(Outbox& out, ToneId tone, ExplanationVerdict verdict, std::initializer_list<gnc::Condition> conditions) {
+    out.record(explanation(Decision::tone, verdict, tone.value, {conditions.begin(), conditions.size()}));
 }
 
 }  // namespace
@@ -30,21 +21,43 @@ void ToneSelector::on(const ToneRequest& asked, Outbox& out) {
         request.tone = *counterpart;
     }
     const auto& spec = tones_[request.tone.value];
-    if (spec.supersedes)
-        for (std::size_t i = outstanding_.size(); i-- > 0;)
-            if (outstanding_[i].tone == *spec.supersedes) drop(i, out);
+    if (spec.supersedes) drop_overtaken(*spec.supersedes, request.tone, out);
     for (auto& same : outstanding_)
         if (same.tone == request.tone) {
             same.requested = request.requested;
             return;
         }
-    if (outstanding_.full()) {
-        out.event(evr::MFSK_REQUESTS_FULL{.tone = request.tone.value});
-        const std::size_t least = least_important();
-        if (priority(outstanding_[least].tone) >= spec.priority) return;
-        drop(least, out);
+    if (outstanding_.full()) refuse_or_make_room(request, out);
+    if (!outstanding_.full()) outstanding_.push_back(request);
+}
+
+void ToneSelector::drop_overtaken(ToneId overtaken, ToneId by, Outbox& out) {
+    for (std::size_t i = outstanding_.size(); i-- > 0;) {
+        const ToneRequest request = outstanding_[i];
+        if (request.tone != overtaken) continue;
+        outstanding_.erase_at(i);
+        explain(out, request.tone, ExplanationVerdict::dropped,
+                {is_tone(Quantity::overtaking_tone, by),
+                 at_most(Quantity::request_age_s, out.now() - request.requested, expires_s(request.tone))});
     }
-    outstanding_.push_back(request);
+}
+
+// The less important of the two goes: the newcomer, or the least important of those that wait.
+void ToneSelector::refuse_or_make_room(const ToneRequest& request, Outbox& out) {
+    out.event(evr::MFSK_REQUESTS_FULL{.tone = request.tone.value});
+    const auto no_room = below(Quantity::tone_requests, static_cast<double>(outstanding_.size()),
+                               static_cast<double>(outstanding_.capacity()));
+    const std::size_t least = least_important();
+    const ToneId other = outstanding_[least].tone;
+    if (priority(other) >= priority(request.tone)) {
+        explain(out, request.tone, ExplanationVerdict::dropped,
+                {no_room, above(Quantity::tone_priority, priority(request.tone), priority(other))});
+        return;
+    }
+    outstanding_.erase_at(least);
+    explain(out, other, ExplanationVerdict::dropped,
+            {no_room, at_least(Quantity::tone_priority, priority(other), priority(request.tone)),
+             is_tone(Quantity::overtaking_tone, request.tone)});
 }
 
 void ToneSelector::on(const StandBy&, Outbox& out) {
@@ -72,10 +85,7 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
                                         .requested_sclk = request.requested.seconds,
                                         .priority = static_cast<std::uint8_t>(priority(request.tone)),
                                         .outstanding = static_cast<std::uint8_t>(outstanding_.size())});
-        // A choice between several is worth an explanation; a lone request explains itself.
-        if (!outstanding_.empty())
-            explain(out, request.tone, ExplanationVerdict::chosen, priority(request.tone), tick.now - request.requested,
-                    tones_[request.tone.value].expires_s);
+        explain_choice(request, out);
     }
     if (at_resolution(tick.now, 1) == tick.now)
         out.send(ModuleId::edl_comm, ToneStatus{sending_ ? sending_->tone.value : std::uint8_t{0},
@@ -83,15 +93,27 @@ void ToneSelector::on(const ClockTick& tick, Outbox& out) {
 }
 
 void ToneSelector::drop_expired(Sclk now, Outbox& out) {
-    for (std::size_t i = outstanding_.size(); i-- > 0;)
-        if (now - outstanding_[i].requested > tones_[outstanding_[i].tone.value].expires_s) drop(i, out);
+    for (std::size_t i = outstanding_.size(); i-- > 0;) {
+        const ToneRequest request = outstanding_[i];
+        const auto age = at_most(Quantity::request_age_s, now - request.requested, expires_s(request.tone));
+        if (age.holds) continue;
+        outstanding_.erase_at(i);
+        explain(out, request.tone, ExplanationVerdict::dropped, {age});
+    }
 }
 
-void ToneSelector::drop(std::size_t index, Outbox& out) {
-    const ToneRequest request = outstanding_[index];
-    outstanding_.erase_at(index);
-    explain(out, request.tone, ExplanationVerdict::dropped, priority(request.tone), out.now() - request.requested,
-            tones_[request.tone.value].expires_s);
+// A choice between several is worth an explanation; a lone request explains itself.
+void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const {
+    if (outstanding_.empty()) return;
+    const ToneRequest& next = outstanding_[most_important()];
+    const double age_s = out.now() - chosen.requested;
+    explain(out, chosen.tone, ExplanationVerdict::chosen,
+            {is_tone(Quantity::next_tone, next.tone),
+             at_least(Quantity::tone_priority, priority(chosen.tone), priority(next.tone)),
+             at_most(Quantity::request_age_s, age_s,
+                     // Of equals the newest goes first: then that is what decided.
+                     priority(chosen.tone) == priority(next.tone) ? out.now() - next.requested
+                                                                  : expires_s(chosen.tone))});
 }
 
 std::size_t ToneSelector::most_important() const {

@@ -15,6 +15,8 @@ namespace aeolis::flight {
 /// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
 /// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
 ///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
+/// Each drop and each choice between several is explained by the values that led to it: age and limit, the tone that
+/// overtook it, or its priority against the other's when there is no more room. R38
 /// In Second Chance each request is for the tone of its own set that means the same. R35
 /// With no request outstanding the carrier goes out without a tone.
 class ToneSelector {
@@ -33,10 +35,13 @@ class ToneSelector {
     };
 
     void drop_expired(Sclk now, Outbox& out);
-    void drop(std::size_t index, Outbox& out);
+    void drop_overtaken(ToneId overtaken, ToneId by, Outbox& out);
+    void refuse_or_make_room(const ToneRequest& request, Outbox& out);
+    void explain_choice(const ToneRequest& chosen, Outbox& out) const;
     std::size_t most_important() const;
     std::size_t least_important() const;
     std::int16_t priority(ToneId tone) const { return tones_[tone.value].priority; }
+    double expires_s(ToneId tone) const { return tones_[tone.value].expires_s; }
 
     std::span<const ToneSpec> tones_;
     Role role_;

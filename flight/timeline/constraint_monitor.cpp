@@ -48,8 +48,8 @@ void ConstraintMonitor::watch(const Timeline& timeline, std::span<const Firing> 
         note(Moment::of_triggered(firing.timepoint), firing.triggered);
         note(Moment::of_fired(firing.timepoint), firing.fired);
     }
-    if (const MaybeTime triggered = timeline.waiting_since(); triggered.defined())
-        note(Moment::of_triggered(timeline.current()), triggered);
+    if (const auto waiting = timeline.waiting())
+        note(Moment::of_triggered(timeline.current()), waiting->triggered);
 }
 
 void ConstraintMonitor::note(const Moment& moment, MaybeTime time) {

@@ -97,6 +97,11 @@ MaybeTime Timeline::desired_base(std::size_t row) const {
     return rows_[row].anchor ? anchor_times_[rows_[row].anchor->value] : previous_fired_;
 }
 
+std::optional<Timeline::Waiting> Timeline::waiting() const {
+    if (!waiting_) return std::nullopt;
+    return Waiting{triggered_, *rows_[current_].reply_timeout_s};
+}
+
 MaybeTime Timeline::next_desired() const {
     return finished() ? MaybeTime{} : desired_base(current_) + desired_offset_s_[current_];
 }

@@ -65,8 +65,12 @@ class Timeline {
     MaybeTime anchor_time(AnchorId id) const { return anchor_times_[id.value]; }
     TimepointId current() const { return {static_cast<std::uint16_t>(current_)}; }
     TimepointState state() const;
-    /// When the current timepoint was triggered; undefined unless its reply is awaited.
-    MaybeTime waiting_since() const { return waiting_ ? MaybeTime{triggered_} : MaybeTime{}; }
+    /// The current timepoint's action was triggered, and its reply is due.
+    struct Waiting {
+        Sclk triggered;
+        double timeout_s = 0.0;
+    };
+    std::optional<Waiting> waiting() const;
     /// Times from which the current timepoint may fire; undefined when it is not known yet.
     MaybeTime next_desired() const;
     MaybeTime next_minimum() const;

@@ -97,6 +97,8 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
                         rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);
     text += telemetry::text_of(rehearsal.proof()) + '\n';
+    for (const auto& [identity, product] : rehearsal.products().products())
+        text += "product " + telemetry::text_of(identity, product) + '\n';
     for (const auto& refusal : rehearsal.script_refusals())
         text += "scripted command refused: " + refusal + '\n';
     text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",

@@ -13,6 +13,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr const char* firing_packet_name = "TimepointFired";
+constexpr const char* product_packet_name = "DataProduct";
 
 const char* name_of(simulation::Outcome outcome) {
     using simulation::Outcome;
@@ -53,7 +54,8 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
       landing_(scenario, seed, case_number, event_reports(dictionary)),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
-      script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)), decommutator_(dictionary) {}
+      script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)),
+      product_packet_(dictionary.packet(product_packet_name)), decommutator_(dictionary) {}
 
 const simulation::CycleReport& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
@@ -105,6 +107,7 @@ void Rehearsal::take(const simulation::CycleReport& report) {
         const bool realtime = packet.link == simulation::LinkId::uhf_live;
         units_.add(packet.octets, realtime ? telemetry::Path::realtime : telemetry::Path::recorded);
         gateway_.receive(packet.octets, realtime, packet.ert, stages_);
+        note_product(packet.octets);
     }
     // Once a second is enough for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
@@ -134,6 +137,14 @@ void Rehearsal::note_firings(std::span<const std::uint8_t> recorded) {
              *decoded_.value[*fired],
              telemetry::number_text(firing_packet_->fields[*verdict].type, decoded_.value[*verdict])});
     }
+}
+
+void Rehearsal::note_product(std::span<const std::uint8_t> packet) {
+    const auto header = read_primary_header(packet);
+    if (!header || product_packet_ == nullptr || header->apid != product_packet_->apid) return;
+    if (decommutator_.decode(packet, decoded_)) return;
+    if (const auto part = telemetry::part_of(dictionary_, decoded_, packet))
+        static_cast<void>(products_.add(*part)); // real time and recording bring most parts twice
 }
 
 std::vector<archive::StageRecord> Rehearsal::take_stages() {

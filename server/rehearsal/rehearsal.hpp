@@ -6,6 +6,7 @@
 #include "server/gateway/command_gateway.hpp"
 #include "server/rehearsal/digest.hpp"
 #include "simulation/landing.hpp"
+#include "telemetry/product_assembler.hpp"
 #include "telemetry/proof.hpp"
 
 #include <cstdint>
@@ -66,11 +67,14 @@ class Rehearsal {
     const ToneScore& tones() const { return tones_; }
     /// Real time against the recording: as it came down; when none comes (no touchdown), as it lies in NVM.
     telemetry::Proof proof() const;
+    /// Data products as ground put them together from what came, real time or recording.
+    const telemetry::ProductAssembler& products() const { return products_; }
 
   private:
     void send_script();
     void take(const simulation::CycleReport& report);
     void note_firings(std::span<const std::uint8_t> recorded);
+    void note_product(std::span<const std::uint8_t> packet);
 
     simulation::Scenario scenario_;
     const dictionary::Dictionary& dictionary_;
@@ -85,12 +89,14 @@ class Rehearsal {
     std::string broken_; ///< the condition that failed in the simulation
 
     const dictionary::Packet* firing_packet_ = nullptr;
+    const dictionary::Packet* product_packet_ = nullptr;
     telemetry::Decommutator decommutator_;
     telemetry::Decoded decoded_;
     std::vector<simulation::TruthEvent> events_;
     std::vector<RecordedFiring> firings_;
     ToneScore tones_;
     telemetry::UnitRegister units_;
+    telemetry::ProductAssembler products_;
     simulation::CycleReport nothing_;
 };
 

@@ -36,6 +36,15 @@ TEST_CASE("any sequence of fields reads back as it was written", "[common]") {
     }
 }
 
+TEST_CASE("octets are written where the fields before them end, on an octet or not", "[common]") {
+    std::array<std::uint8_t, 4> octets{};
+    BitWriter out{octets};
+    out.put(0xA, 4);
+    out.put_octets(std::array<std::uint8_t, 2>{0x12, 0x34});
+    CHECK(octets == std::array<std::uint8_t, 4>{0xA1, 0x23, 0x40, 0});
+    CHECK(out.position_bits() == 20);
+}
+
 TEST_CASE("negative numbers keep their sign in any width", "[common]") {
     std::array<std::uint8_t, 8> octets{};
     BitWriter writer{octets};

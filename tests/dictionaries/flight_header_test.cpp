@@ -124,6 +124,22 @@ TEST_CASE("an encoded packet holds each field where the ground looks for it", "[
     CHECK(explained.raw("holds_3") == 0);
 }
 
+TEST_CASE("binary data of a packet are octets in their place, and no field", "[dictionary][autocoder][R30][R48]") {
+    packet::DataProduct product;
+    product.product_crc = 0xBEEF;
+    product.content.front() = 0x12;
+    product.content.back() = 0x34;
+    const Encoded encoded{product, "DataProduct"};
+    const dictionary::Packet& layout = *msl().packet("DataProduct");
+    REQUIRE(layout.content);
+    CHECK(layout.content->name == "content");
+    CHECK(layout.content->octets == product.content.size());
+    CHECK(encoded.raw("product_crc") == 0xBEEF);
+    CHECK(encoded.octets()[layout.content->offset_octets] == 0x12);
+    CHECK(encoded.octets()[layout.content->offset_octets + layout.content->octets - 1] == 0x34);
+    for (const auto& one : layout.fields) CHECK(one.name != "content");
+}
+
 TEST_CASE("an undefined value is a validity bit, never a number", "[dictionary][autocoder][R13]") {
     packet::TimelineStatus status;
     status.next_minimum_sclk = 1.0;

@@ -44,12 +44,24 @@ TEST_CASE("each broken rule of types gives one line, and nothing is loaded", "[d
          "'header_u1' is there twice"},
         {"not supported", msl, "<StaticAlarmRanges>", "<ChangeAlarmRanges/><StaticAlarmRanges>",
          "element 'ChangeAlarmRanges' in DefaultAlarm is unknown or not supported"},
+        {"binary not in octets", msl, "<FixedValue>1840</FixedValue>", "<FixedValue>1841</FixedValue>",
+         "only a fixed number of whole octets is supported"},
+        {"binary a channel", msl, "parameterTypeRef=\"product_content\" shortDescription=\"this part; what is beyond "
+                                  "product_octets is zero\"/>",
+         "parameterTypeRef=\"product_content\"><AliasSet><Alias nameSpace=\"channel\" alias=\"X-1\"/></AliasSet>"
+         "</Parameter>",
+         "parameter 'content': binary data are no channel"},
         {"misspelt attribute", msl, "minViolations=\"8\"", "minviolations=\"8\"", "attribute 'minviolations'"},
     });
 }
 
 TEST_CASE("each broken rule of packets and events gives one line, and nothing is loaded", "[dictionary][xtce][R40]") {
     check_all({
+        {"binary off the octets", msl, "<ParameterRefEntry parameterRef=\"content\"/>",
+         "<ParameterRefEntry parameterRef=\"content\"><LocationInContainerInBits "
+         "referenceLocation=\"previousEntry\"><FixedValue>3</FixedValue></LocationInContainerInBits>"
+         "</ParameterRefEntry>",
+         "binary data begin at a whole octet"},
         {"dangling type", msl, "parameterTypeRef=\"EdlPhase\"", "parameterTypeRef=\"EdlFace\"",
          "there is no type 'EdlFace'"},
         {"dangling parameter", msl, "<ParameterRefEntry parameterRef=\"edl_cycle_count\"/>",

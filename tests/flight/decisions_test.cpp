@@ -1,7 +1,11 @@
 #include "flight/edl/decisions.hpp"
 
+#include "flight/timeline/actions.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
+
+#include <array>
+#include <bit>
 
 using namespace aeolis;
 using namespace aeolis::flight;
@@ -19,9 +23,77 @@ TEST_CASE("each decision of GNC is an event and an explanation with its conditio
         output.conditions.push_back({1, 404.6, 405.0, gnc::Condition::Comparison::le, true});
         announce(static_cast<gnc::Trigger>(i), output, recorder.out);
         CHECK(recorder.packets<evr::PARACHUTE_DEPLOY>() == 1);
-        explain(static_cast<gnc::Trigger>(i), output, recorder.out);
+        explain(static_cast<gnc::Trigger>(i), output, 0, recorder.out);
         CHECK(recorder.packets<packet::Explanation>() == 1);
     }
+}
+
+TEST_CASE("what GNC holds though it is near is told with its conditions", "[edl][R38]") {
+    test::OutboxRecorder recorder;
+    HeldExplanations held;
+    gnc::Output output;
+    explain_held(output, held, recorder.out);
+    CHECK(recorder.packets<packet::Explanation>() == 0);
+    gnc::Conditions conditions;
+    conditions.push_back(gnc::at_most(gnc::Quantity::speed_mps, 407.1, 405.0));
+    output.held.push_back({gnc::Trigger::parachute, conditions});
+    explain_held(output, held, recorder.out);
+    const auto records = recorder.sent<Record>();
+    REQUIRE(records.size() == 1);
+    BitReader in{records[0].data};
+    CHECK(static_cast<Decision>(in.get(16)) == Decision::parachute_deploy);
+    CHECK(static_cast<ExplanationVerdict>(in.get(8)) == ExplanationVerdict::held);
+    CHECK(in.get(16) == 0);
+    CHECK(in.get(8) == 1);
+    CHECK(static_cast<Quantity>(in.get(16)) == Quantity::speed_mps);
+    CHECK(in.get_double() == 407.1);
+}
+
+namespace {
+
+void waits_for_a_reply(ActionContext& context) {
+    context.await({ReplyKind::pyro, 3});
+}
+
+/// Row 0 fires at 1000 and waits 4 s for its reply; row 1 is due at once and has a minimum of 8 s.
+const std::array<AnchorSpec, 2> held_anchors{{{"root", {}, {}}, {"start", AnchorId{0}, MaybeOffset{1000.0}}}};
+const std::array<TimepointSpec, 2> held_rows{
+    {{"asks", AnchorId{1}, MaybeOffset{0.0}, MaybeOffset{0.0}, &waits_for_a_reply, 4.0, {}, true, {}, nullptr},
+     {"minimum", AnchorId{1}, MaybeOffset{0.0}, MaybeOffset{8.0}, nullptr, {}, {}, true, {}, nullptr}}};
+
+}  // namespace
+
+TEST_CASE("a timepoint that waits for a reply, or for its minimum, is told after half a second", "[edl][R38]") {
+    Timeline timeline{held_rows, held_anchors};
+    HeldExplanations held;
+    test::OutboxRecorder recorder;
+    gnc::Configuration configuration;
+    timeline.begin(Sclk{990.0});
+    // Quantity and value of the first condition that is told in that cycle.
+    const auto told_at = [&](double sclk) -> std::optional<std::pair<Quantity, double>> {
+        recorder.begin(ModuleId::edl, Sclk{sclk});
+        timeline.begin_cycle();
+        Firings firings;
+        ActionContext context{recorder.out, configuration};
+        timeline.pass(Sclk{sclk}, context, firings);
+        explain_held(timeline, held, recorder.out);
+        for (const auto& record : recorder.sent<Record>())
+            if (record.apid == packet::Explanation::apid)
+                return std::pair{static_cast<Quantity>(read_bits(record.data, 48, 16)),
+                                 std::bit_cast<double>(read_bits(record.data, 64, 64))};
+        return std::nullopt;
+    };
+    CHECK_FALSE(told_at(999.0));
+    CHECK_FALSE(told_at(1000.0));
+    CHECK_FALSE(told_at(1000.484375));
+    CHECK(told_at(1000.5) == std::pair{Quantity::reply_wait_s, 0.5});
+    CHECK_FALSE(told_at(1001.0));
+    timeline.reply({ReplyKind::pyro, 3});
+    CHECK(told_at(1001.5) == std::pair{Quantity::clock_sclk, 1001.5});
+    CHECK_FALSE(told_at(1002.0));
+    CHECK(told_at(1005.5) == std::pair{Quantity::clock_sclk, 1005.5});
+    CHECK_FALSE(told_at(1009.5)); // the minimum has come: it fires
+    CHECK(timeline.finished());
 }
 
 TEST_CASE("the peak of deceleration is told once, after it has passed, with the state at the peak", "[edl]") {

@@ -1,10 +1,13 @@
 #include "flight/edl_comm/edl_comm.hpp"
 
 #include "common/space_packet.hpp"
+#include "telemetry/packet_stream.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
 #include <algorithm>
+#include <map>
+#include <random>
 #include <vector>
 
 using namespace aeolis;
@@ -106,22 +109,180 @@ TEST_CASE("real time lost for want of room is never lost from the recording", "[
     CHECK(recorded == 400 * (30 + tm_overhead_octets));
 }
 
-TEST_CASE("when the recording is nearly full channels stop and events go on", "[edl_comm][R29]") {
+TEST_CASE("when the recording is nearly full channels stop and events go on, and a tone says so", "[edl_comm][R29][R31]") {
     Fixture f;
     f.handle(NvmStatus{940'000, 1'000'000});
     f.recorder.bus->begin_cycle();
     f.handle(record(packet::GncImu::apid));
     CHECK(f.recorder.bus->nvm.empty());
     CHECK(f.recorder.events<evr::NVM_FULL>() == 1);
+    const auto tones = f.recorder.sent<ToneRequest>();
+    REQUIRE(tones.size() == 1);
+    CHECK(tones.front().tone == tone::recording_fault);
     f.handle(record(packet::GncImu::apid));
+    CHECK(f.recorder.sent<ToneRequest>().empty());
     CHECK(f.recorder.events<evr::NVM_FULL>() == 0);
     f.handle(record(evr::NVM_FULL::apid));
     CHECK_FALSE(f.recorder.bus->nvm.empty());
     CHECK(f.comm.unrecorded_packets() == 2);
 }
 
-TEST_CASE("which packets go to ground follows the phase", "[edl_comm][telemetry_plan][R30]") {
-    CHECK(realtime_every(Plan::mission, EdlPhase::late_cruise, packet::GncDescent::apid) == 0);
-    CHECK(realtime_every(Plan::mission, EdlPhase::powered_descent, packet::GncDescent::apid) > 0);
-    CHECK(realtime_every(Plan::mission, EdlPhase::powered_descent, packet::GncEntry::apid) == 0);
+TEST_CASE("which packets go to ground, and how many, follows the state of the vehicle", "[edl_comm][R30]") {
+    const auto sent_in = [](EdlPhase phase, Apid apid) {
+        Fixture f;
+        f.handle(PhaseChanged{phase});
+        std::size_t sent = 0;
+        for (int i = 0; i < 64; ++i) {
+            f.handle(record(apid));
+            f.tick();
+            sent += f.recorder.bus->uhf.size() / (20 + tm_overhead_octets);
+        }
+        return sent;
+    };
+    CHECK(sent_in(EdlPhase::late_cruise, packet::GncDescent::apid) == 0);
+    CHECK(sent_in(EdlPhase::powered_descent, packet::GncDescent::apid) == 16);
+    CHECK(sent_in(EdlPhase::landed, packet::GncDescent::apid) == 0);
+    CHECK(sent_in(EdlPhase::range_control, packet::GncNavigation::apid) == 2);
+    CHECK(sent_in(EdlPhase::powered_descent, packet::GncEntry::apid) == 0);
+}
+
+TEST_CASE("that the queue for the link is full is said once an episode", "[edl_comm][R30]") {
+    Fixture f{800.0};
+    int said = 0;
+    const auto fill = [&] {
+        for (std::size_t i = 0; i < RealtimeQueue::packets_max + 20; ++i) {
+            f.handle(record(packet::TimepointFired::apid));
+            said += f.recorder.events<evr::UHF_QUEUE_FULL>();
+            f.recorder.bus->begin_cycle();
+        }
+    };
+    fill();
+    CHECK(said == 1);
+    fill();
+    CHECK(said == 1);
+    while (f.comm.queue().waiting() > RealtimeQueue::packets_max / 2) f.tick();
+    fill();
+    CHECK(said == 2);
+}
+
+TEST_CASE("under any load and rate what is radiated keeps the rate, was recorded, and the counts add up",
+          "[edl_comm][R29][R30]") {
+    struct Kind {
+        Apid apid;
+        std::uint16_t size;
+    };
+    constexpr std::array kinds{Kind{packet::TimepointFired::apid, 19}, Kind{packet::Explanation::apid, 90},
+                               Kind{packet::EdlStatus::apid, 20},      Kind{packet::GncImu::apid, 28},
+                               Kind{packet::GncRadar::apid, 25},       Kind{packet::DataProduct::apid, 245}};
+    for (unsigned seed = 1; seed <= 24; ++seed) {
+        std::mt19937 random{seed};
+        const double rate_bps = std::array{500.0, 2000.0, 8000.0, 64000.0}[seed % 4];
+        INFO("seed " << seed << ", " << rate_bps << " bit/s");
+        Fixture f{rate_bps};
+        f.handle(PhaseChanged{EdlPhase::sky_crane});
+        std::vector<std::vector<std::uint8_t>> recorded;
+        std::map<Apid, std::size_t> last_of; // index in the recording of the last radiated of each stream
+        std::size_t chosen = 0;
+        std::size_t sent = 0;
+        double radiated_octets = 0.0;
+        std::array<std::uint32_t, 128> since{};
+        for (int cycle = 1; cycle <= 1500; ++cycle) {
+            f.recorder.bus->begin_cycle();
+            for (unsigned n = random() % (1 + seed); n > 0; --n) {
+                const Kind& kind = kinds[random() % kinds.size()];
+                f.handle(record(kind.apid, kind.size));
+                const std::uint32_t every = every_in(planned(Plan::mission, kind.apid).every, EdlPhase::sky_crane);
+                if (++since[kind.apid.value % 128] == every) {
+                    since[kind.apid.value % 128] = 0;
+                    ++chosen;
+                }
+            }
+            telemetry::PacketStream appended{f.recorder.bus->nvm.span()};
+            while (const auto packet = appended.next()) recorded.emplace_back(packet->begin(), packet->end());
+            f.tick();
+            radiated_octets += static_cast<double>(f.recorder.bus->uhf.size());
+            // Never more than the rate, but for the packet that an idle link may have saved up for.
+            REQUIRE(radiated_octets <= cycle * rate_bps / 512.0 + telemetry_packet_octets_max + rate_bps / 512.0);
+            telemetry::PacketStream radiated{f.recorder.bus->uhf.span()};
+            while (const auto packet = radiated.next()) {
+                ++sent;
+                const Apid apid = read_primary_header(*packet)->apid;
+                const auto from = recorded.begin() + static_cast<std::ptrdiff_t>(
+                                                         last_of.contains(apid) ? last_of[apid] + 1 : 0);
+                const auto found = std::find_if(from, recorded.end(), [&](const auto& one) {
+                    return std::ranges::equal(one, *packet);
+                });
+                REQUIRE(found != recorded.end()); // recorded, bit for bit, and in the stream's order
+                last_of[apid] = static_cast<std::size_t>(found - recorded.begin());
+            }
+            REQUIRE(radiated.unreadable_octets() == 0);
+            const RealtimeQueue& queue = f.comm.queue();
+            REQUIRE(chosen == sent + queue.waiting() + queue.dropped());
+        }
+        if (rate_bps <= 2000.0 && seed > 8) {
+            // Far too much for the link: what is least important suffers, the rest does not.
+            CHECK(f.comm.queue().dropped(TelemetryPriority::low) > 0);
+        }
+    }
+}
+
+TEST_CASE("the cycle never waits for the link: a record costs one packet of the queue and no more", "[edl_comm][R30]") {
+    Fixture f{0.0};
+    for (int i = 0; i < 5000; ++i) {
+        f.recorder.bus->begin_cycle();
+        f.handle(record(packet::TimepointFired::apid));
+        CHECK(f.recorder.bus->nvm.size() == 20 + tm_overhead_octets);
+        f.tick();
+        REQUIRE(f.recorder.bus->uhf.empty());
+    }
+    CHECK(f.comm.queue().waiting() == RealtimeQueue::packets_max);
+    CHECK(f.comm.queue().dropped(TelemetryPriority::first) >= 5000 - RealtimeQueue::packets_max);
+}
+
+TEST_CASE("each record has a CRC: any flipped bit is found when the recording is read back", "[edl_comm][R29]") {
+    Fixture f;
+    for (int i = 0; i < 6; ++i) f.handle(record(packet::GncImu::apid, static_cast<std::uint16_t>(20 + i)));
+    const auto& nvm = f.recorder.bus->nvm;
+    std::vector<std::uint8_t> recording(nvm.begin(), nvm.end());
+    const auto sound_packets = [&] {
+        telemetry::PacketStream stream{recording};
+        std::size_t sound = 0;
+        while (const auto packet = stream.next()) sound += read_tm_packet(*packet).has_value();
+        return sound;
+    };
+    REQUIRE(sound_packets() == 6);
+    for (std::size_t bit = 0; bit < recording.size() * 8; ++bit) {
+        const auto mask = static_cast<std::uint8_t>(1U << (bit % 8));
+        recording[bit / 8] ^= mask;
+        CHECK(sound_packets() < 6);
+        recording[bit / 8] ^= mask;
+    }
+}
+
+TEST_CASE("the recording outlives a reset of the computer: what comes after stands behind what was there",
+          "[edl_comm][R29]") {
+    Fixture before;
+    before.handle(record(packet::GncImu::apid));
+    std::vector<std::uint8_t> recording(before.recorder.bus->nvm.begin(), before.recorder.bus->nvm.end());
+    Fixture after; // made anew, as a reset does; NVM tells it how far it is used
+    after.handle(NvmStatus{static_cast<std::uint32_t>(recording.size()), 100'000'000});
+    after.handle(record(packet::GncImu::apid));
+    recording.insert(recording.end(), after.recorder.bus->nvm.begin(), after.recorder.bus->nvm.end());
+    telemetry::PacketStream stream{recording};
+    std::size_t sound = 0;
+    while (const auto packet = stream.next()) sound += read_tm_packet(*packet).has_value();
+    CHECK(sound == 2);
+    CHECK(stream.unreadable_octets() == 0);
+    // And it knows at once when the room it finds is nearly gone.
+    after.handle(NvmStatus{999'000, 1'000'000});
+    after.handle(record(packet::GncImu::apid));
+    CHECK(after.recorder.events<evr::NVM_FULL>() == 1);
+}
+
+TEST_CASE("a record that no packet can hold is refused and reported", "[edl_comm][R4]") {
+    Fixture f;
+    Record impossible{packet::GncImu::apid, Sclk{7.5}, record_octets_max + 1, {}};
+    f.handle(impossible);
+    CHECK(f.recorder.bus->nvm.empty());
+    CHECK(f.recorder.events<evr::UNEXPECTED_MESSAGE>() == 1);
 }

@@ -47,6 +47,23 @@ TEST_CASE("the descent rate that ground expects at the backshell moves the altit
     CHECK(backshell_altitude_needed_m({1660.0, 80.1}, 80.1) == Approx(1660.0));
 }
 
+TEST_CASE("a decision is near when its subject holds or is within a twentieth of its bound", "[gnc][R38]") {
+    CHECK(near(parachute(407.1, 405.0, 0)));
+    CHECK(near(parachute(425.0, 405.0, 0)));
+    CHECK_FALSE(near(parachute(426.0, 405.0, 0)));
+    CHECK(near(heatshield(120.0, 142.0, 12.0)));
+    CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0))); // the speed is its subject, not the time
+    CHECK_FALSE(near({}));
+    Conditions timer;
+    timer.push_back(at_least(Quantity::time_in_mode_s, 3.15, 3.2));
+    CHECK_FALSE(near(timer));
+}
+
+TEST_CASE("a count of cycles that has not begun is not worth telling", "[gnc][R38]") {
+    CHECK(worth_telling(parachute(407.1, 405.0, 0)).size() == 1);
+    CHECK(worth_telling(parachute(404.9, 405.0, 1)).size() == 2);
+}
+
 TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {
     Persistence persistence;
     CHECK(persistence.on(true) == 1);

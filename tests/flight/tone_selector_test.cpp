@@ -4,6 +4,7 @@
 #include "tests/support/outbox.hpp"
 
 #include <array>
+#include <vector>
 
 using namespace aeolis;
 using namespace aeolis::flight;
@@ -15,6 +16,43 @@ std::array<ToneSpec, 256> tones() {
     for (std::size_t i = 0; i < specs.size(); ++i) specs[i] = {0, static_cast<std::int16_t>(i), 30.0, {}, {}};
     specs[50].supersedes = ToneId{40};
     return specs;
+}
+
+/// An Explanation as it was recorded.
+struct Told {
+    ExplanationVerdict verdict{};
+    std::uint16_t tone = 0;
+    struct Condition {
+        Quantity quantity{};
+        double value = 0.0, bound = 0.0;
+        bool holds = false;
+    };
+    std::vector<Condition> conditions;
+
+    const Condition& of(Quantity quantity) const {
+        for (const Condition& condition : conditions)
+            if (condition.quantity == quantity) return condition;
+        FAIL("no such condition");
+        return conditions.front();
+    }
+};
+
+std::vector<Told> told_in(const test::OutboxRecorder& recorder) {
+    std::vector<Told> all;
+    for (const auto& record : recorder.sent<Record>()) {
+        if (record.apid != packet::Explanation::apid) continue;
+        BitReader in{record.data};
+        REQUIRE(static_cast<Decision>(in.get(16)) == Decision::tone);
+        Told told{static_cast<ExplanationVerdict>(in.get(8)), static_cast<std::uint16_t>(in.get(16)), {}};
+        for (auto count = in.get(8); count > 0; --count) {
+            Told::Condition condition{static_cast<Quantity>(in.get(16)), in.get_double(), in.get_double(), false};
+            in.get(8);
+            condition.holds = in.get(8) != 0; // the flag and seven spare bits
+            told.conditions.push_back(condition);
+        }
+        all.push_back(told);
+    }
+    return all;
 }
 
 struct Fixture {
@@ -54,8 +92,13 @@ TEST_CASE("the most important outstanding request is sent first, and the choice 
     f.request(90, 0);
     f.request(20, 0);
     CHECK(f.tick(0) == ToneId{90});
-    CHECK(f.recorder.packets<packet::Explanation>() == 1);
     CHECK(f.recorder.packets<packet::ToneSelected>() == 1);
+    const auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].verdict == ExplanationVerdict::chosen);
+    CHECK(told[0].of(Quantity::next_tone).value == 20);
+    CHECK(told[0].of(Quantity::tone_priority).value == 90);
+    CHECK(told[0].of(Quantity::tone_priority).bound == 20);
     CHECK(f.tick(10) == ToneId{20});
     CHECK(f.tick(20) == ToneId{10});
 }
@@ -79,28 +122,64 @@ TEST_CASE("a request that has become too old is dropped, and says so", "[mfsk][R
     f.request(202, 19);
     CHECK(f.tick(20) == ToneId{202});
     CHECK_FALSE(f.tick(30.015625).has_value());
-    CHECK(f.recorder.packets<packet::Explanation>() == 1);
+    const auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].verdict == ExplanationVerdict::dropped);
+    CHECK(told[0].tone == 3);
+    CHECK(told[0].of(Quantity::request_age_s).value == 30.015625);
+    CHECK(told[0].of(Quantity::request_age_s).bound == 30.0);
+    CHECK_FALSE(told[0].of(Quantity::request_age_s).holds);
 }
 
-TEST_CASE("a request that a newer event has overtaken is dropped", "[mfsk][R31]") {
+TEST_CASE("of two requests that are as important the newest goes first, and that is what it explains",
+          "[mfsk][R31][R38]") {
+    Fixture f;
+    f.specs[21].priority = 20;
+    f.request(20, 0);
+    f.request(21, 3);
+    CHECK(f.tick(4) == ToneId{21});
+    const auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].of(Quantity::request_age_s).value == 1.0);
+    CHECK(told[0].of(Quantity::request_age_s).bound == 4.0);
+}
+
+TEST_CASE("a request that a newer event has overtaken is dropped, and says by which", "[mfsk][R31][R38]") {
     Fixture f;
     f.request(200, 0);
     CHECK(f.tick(0) == ToneId{200});
     f.request(40, 1);
     f.request(50, 2);
+    const auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].verdict == ExplanationVerdict::dropped);
+    CHECK(told[0].tone == 40);
+    CHECK(told[0].of(Quantity::overtaking_tone).value == 50);
+    CHECK(told[0].of(Quantity::request_age_s).value == 1.0);
     CHECK(f.tick(10) == ToneId{50});
     CHECK_FALSE(f.tick(20).has_value());
 }
 
-TEST_CASE("when full, the least important request gives way and it is reported", "[mfsk][R31]") {
+TEST_CASE("when full, the less important of two requests goes, and says against which", "[mfsk][R31][R38]") {
     Fixture f;
     for (std::uint8_t tone = 100; tone < 164; ++tone) f.request(tone, 0);
     f.request(200, 0);
     CHECK(f.recorder.events<evr::MFSK_REQUESTS_FULL>() == 1);
-    CHECK(f.tick(0) == ToneId{200});
-    f.request(199, 0);
+    auto told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].tone == 100);
+    CHECK(told[0].of(Quantity::overtaking_tone).value == 200);
+    CHECK(told[0].of(Quantity::tone_requests).value == 64);
+    CHECK_FALSE(told[0].of(Quantity::tone_priority).holds);
+
     f.request(5, 0);
     CHECK(f.recorder.events<evr::MFSK_REQUESTS_FULL>() == 1);
+    told = told_in(f.recorder);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].tone == 5);
+    CHECK(told[0].of(Quantity::tone_priority).value == 5);
+    CHECK(told[0].of(Quantity::tone_priority).bound == 101);
+    CHECK(f.tick(0) == ToneId{200});
 }
 
 TEST_CASE("in Second Chance only tones of its own set go out, whoever asks for which", "[mfsk][R35]") {

@@ -5,6 +5,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+#include <array>
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -46,7 +48,7 @@ TEST_CASE("a decision reads with each condition, its value and its bound", "[exp
     packet.raw("condition_2", 2).real("value_2", 3).real("bound_2", 4).raw("comparison_2", 4);
     const auto explanation = ground.explained(packet);
     REQUIRE(explanation);
-    CHECK(explanation->text == "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s; tone_priority 3, not > 4");
+    CHECK(explanation->text == "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s; tone_priority 3 <= 4");
     CHECK(explanation->decision == "parachute_deploy");
     CHECK(explanation->verdict == "fired");
     REQUIRE(explanation->conditions.size() == 2);
@@ -54,6 +56,52 @@ TEST_CASE("a decision reads with each condition, its value and its bound", "[exp
     CHECK(explanation->conditions[0].comparison == "<=");
     CHECK(explanation->conditions[0].holds);
     CHECK_FALSE(explanation->conditions[1].holds);
+}
+
+TEST_CASE("a decision that is held reads by what is missing, then by what is there", "[explanation][R38]") {
+    const Ground ground;
+    auto packet = ground.packet(0, 1, 0, 1);
+    packet.raw("condition_1", 1).real("value_1", 407.1).real("bound_1", 405.0).raw("comparison_1", 1);
+    CHECK(ground.explained(packet)->text == "parachute_deploy held: speed 407.1 m/s > 405.0 m/s");
+    auto both = ground.packet(0, 1, 0, 2);
+    both.raw("condition_1", 2).real("value_1", 5).real("bound_1", 4).raw("comparison_1", 3).raw("holds_1", 1);
+    both.raw("condition_2", 1).real("value_2", 407.1).real("bound_2", 405.0).raw("comparison_2", 0);
+    CHECK(ground.explained(both)->text == "parachute_deploy held: speed 407.1 m/s >= 405.0 m/s (tone_priority 5 >= 4)");
+}
+
+TEST_CASE("what does not hold is told by what holds instead", "[explanation][R38]") {
+    const Ground ground;
+    const std::array opposites{">=", ">", "!=", "<", "<="}; // of lt, le, eq, ge, gt
+    for (unsigned comparison = 0; comparison < opposites.size(); ++comparison) {
+        auto packet = ground.packet(0, 3, 0, 1);
+        packet.raw("condition_1", 2).real("value_1", 1).real("bound_1", 2).raw("comparison_1", comparison);
+        CHECK(ground.explained(packet)->text ==
+              std::string{"parachute_deploy refused: tone_priority 1 "} + opposites[comparison] + " 2");
+    }
+}
+
+TEST_CASE("how often flight held its tongue is said, and a tone in a condition has its name",
+          "[explanation][R31][R38]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    const Decommutator decommutator{dictionary};
+    Decoded decoded;
+    auto packet = PacketFiller{dictionary, "Explanation"};
+    packet.raw("decision", number_of(dictionary, "decision", "tone"))
+        .raw("verdict", number_of(dictionary, "verdict", "dropped"))
+        .raw("subject", 46)
+        .raw("condition_count", 1)
+        .raw("condition_1", number_of(dictionary, "condition_1", "overtaking_tone"))
+        .real("value_1", 47)
+        .real("bound_1", 47)
+        .raw("comparison_1", number_of(dictionary, "comparison_1", "eq"))
+        .raw("holds_1", 1)
+        .raw("suppressed", 316);
+    REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
+    const auto explanation = explain(dictionary, decoded);
+    REQUIRE(explanation);
+    CHECK(explanation->suppressed == 316);
+    CHECK(explanation->text == "tone 46 " + dictionary.tones[46].name + " dropped: overtaking_tone 47 " +
+                                   dictionary.tones[47].name + "; held 316 more cycles since last told");
 }
 
 TEST_CASE("the subject is told by name", "[explanation][R38]") {

@@ -4,6 +4,7 @@
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace aeolis::flight::gnc::triggers {
 
@@ -25,7 +26,24 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
+constexpr double near_fraction = 0.05; // of the bound
+
 } // namespace
+
+bool near(const Conditions& conditions) {
+    if (conditions.empty()) return false;
+    const Condition& first = conditions[0];
+    if (first.quantity == static_cast<std::uint16_t>(Quantity::time_in_mode_s)) return false; // a timer decides nothing
+    return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
+}
+
+Conditions worth_telling(const Conditions& conditions) {
+    Conditions told;
+    for (const Condition& condition : conditions)
+        if (condition.quantity != static_cast<std::uint16_t>(Quantity::cycles_held) || condition.value > 0.0)
+            told.push_back(condition);
+    return told;
+}
 
 Conditions guidance_start(double filtered_drag_mps2) {
     return list(at_least(Quantity::drag_mps2, filtered_drag_mps2, guidance_start_drag_mps2));

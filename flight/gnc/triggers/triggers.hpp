@@ -36,6 +36,13 @@ class Persistence {
     std::uint32_t cycles_ = 0;
 };
 
+/// Whether a decision that does not fire is near enough to tell ground what holds it: its first condition, which is its
+/// subject, holds or is within a twentieth of its bound. A mere timer never is. Ours.
+bool near(const Conditions& conditions);
+
+/// Without a count of cycles that has not begun: it says no more than the condition that it counts.
+Conditions worth_telling(const Conditions& conditions);
+
 Conditions guidance_start(double filtered_drag_mps2);
 Conditions heading_alignment(double speed_mps);
 

@@ -1,0 +1,117 @@
+#include "flight/edl_comm/data_products.hpp"
+
+#include "common/crc.hpp"
+
+#include <algorithm>
+
+namespace aeolis::flight {
+namespace {
+
+constexpr std::size_t part_octets = std::tuple_size_v<decltype(packet::DataProduct::content)>;
+
+float f(double value) {
+    return static_cast<float>(value);
+}
+
+Apid row_apid(ProductKind kind) {
+    return kind == ProductKind::as_flown ? packet::TimepointFired::apid : packet::ImuIncrements::apid;
+}
+
+}  // namespace
+
+void AsFlown::on(const Record& firing) {
+    if (firing.size != row_octets || content_.size() + row_octets > content_.capacity()) return;
+    content_.append(std::span{firing.data}.first(row_octets));
+}
+
+void ImuBurst::on(const ImuReadings& readings) {
+    for (const ImuSample& sample : readings.samples) {
+        if (complete()) return;
+        std::size_t row = rows_;
+        if (!begun_ && rows_ == rows_before) {
+            row = oldest_;
+            oldest_ = (oldest_ + 1) % rows_before;
+        } else {
+            ++rows_;
+        }
+        const auto octets = std::span{octets_}.subspan(row * row_octets, row_octets);
+        std::ranges::fill(octets, std::uint8_t{0});
+        BitWriter writer{octets};
+        packet::ImuIncrements{.imu_count = sample.count,
+                              .delta_v_x_mps = f(sample.delta_v_mps[0]),
+                              .delta_v_y_mps = f(sample.delta_v_mps[1]),
+                              .delta_v_z_mps = f(sample.delta_v_mps[2]),
+                              .delta_angle_x_rad = f(sample.delta_angle_rad[0]),
+                              .delta_angle_y_rad = f(sample.delta_angle_rad[1]),
+                              .delta_angle_z_rad = f(sample.delta_angle_rad[2])}
+            .encode(writer);
+    }
+}
+
+void ImuBurst::begin() {
+    if (begun_) return;
+    const auto ring = std::span{octets_}.first(rows_ * row_octets);
+    std::ranges::rotate(ring, ring.begin() + static_cast<std::ptrdiff_t>(oldest_ * row_octets));
+    kept_ = rows_;
+    begun_ = true;
+}
+
+void DataProducts::on(const Record& record) {
+    if (record.apid != packet::TimepointFired::apid) return;
+    as_flown_.on(record);
+    // The last firing of all: now the product is whole. It comes down with the recording.
+    if (read_bits(record.data, 0, 16) + 1 == timepoint_count) static_cast<void>(due_.try_push(ProductKind::as_flown));
+}
+
+void DataProducts::on(const ImuReadings& readings) {
+    imu_burst_.on(readings);
+}
+
+void DataProducts::on(const PhaseChanged& change) {
+    // Only who flew the entry saw the mortar: a computer that takes over under the parachute did not.
+    const bool in_entry = phase_ >= EdlPhase::range_control && phase_ < EdlPhase::parachute_descent;
+    if (in_entry && change.phase == EdlPhase::parachute_descent) imu_burst_.begin();
+    phase_ = change.phase;
+    // While UHF still has some seconds: what was flown up to touchdown.
+    if (change.phase == EdlPhase::landed) static_cast<void>(due_.try_push(ProductKind::as_flown));
+}
+
+std::span<const std::uint8_t> DataProducts::content(ProductKind kind) const {
+    return kind == ProductKind::as_flown ? as_flown_.content() : imu_burst_.content();
+}
+
+void DataProducts::begin_next() {
+    if (imu_burst_.complete() && !imu_burst_due_) imu_burst_due_ = due_.try_push(ProductKind::imu_burst);
+    while (!sending_ && !due_.empty()) {
+        const ProductKind kind = due_.front();
+        due_.pop();
+        const auto octets = content(kind);
+        if (octets.empty()) continue;
+        const std::size_t parts = (octets.size() + part_octets - 1) / part_octets;
+        sending_ = Sending{{.product_kind = kind,
+                            .product_id = ++made_,
+                            .row_apid = row_apid(kind).value,
+                            .part = 0,
+                            .parts = static_cast<std::uint16_t>(parts),
+                            .product_octets = static_cast<std::uint32_t>(octets.size()),
+                            .product_crc = crc16(octets),
+                            .content = {}},
+                           octets.size()};
+    }
+}
+
+void DataProducts::cycle(Outbox& out) {
+    if (!sending_) begin_next();
+    if (!sending_) return;
+    auto& part = sending_->part;
+    const std::size_t begin = part.part * part_octets;
+    const std::size_t size = std::min(part_octets, sending_->octets - begin);
+    part.content.fill(0);
+    // Rows are only ever added: what was there when the product was begun is there still.
+    std::ranges::copy(content(part.product_kind).subspan(begin, size), part.content.begin());
+    ++part.part;
+    out.record(part);
+    if (part.part == part.parts) sending_.reset();
+}
+
+}  // namespace aeolis::flight

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "dictionaries/dictionary.hpp"
+#include "telemetry/decommutator.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+/// What names a data product within its run. A computer numbers its products from 1; one that was reset numbers anew,
+/// so the size and the CRC belong to the name.
+struct ProductIdentity {
+    std::uint16_t id = 0;
+    std::uint16_t crc = 0;
+    std::uint32_t octets = 0;
+    constexpr auto operator<=>(const ProductIdentity&) const = default;
+};
+
+/// One part, as a packet of the container "DataProduct" says it.
+struct ProductPart {
+    ProductIdentity product;
+    std::string kind; ///< label: "as_flown"
+    Apid row_apid;    ///< the packet whose data field each row is
+    std::uint16_t part = 0, parts = 0;
+    std::vector<std::uint8_t> content; ///< without what fills up the last part
+};
+
+/// None when the packet is no part of a product, or when its numbers disagree with one another. `packet`: the octets
+/// that `decoded` was made of.
+std::optional<ProductPart> part_of(const dictionary::Dictionary& dictionary, const Decoded& decoded,
+                                   std::span<const std::uint8_t> packet);
+
+/// A product of which at least one part has come.
+struct Product {
+    std::string kind;
+    Apid row_apid;
+    std::uint16_t parts = 0;
+    std::vector<std::optional<std::vector<std::uint8_t>>> received; ///< by part, from 0
+
+    /// The whole content; none while parts are missing, or when its CRC is wrong.
+    std::optional<std::vector<std::uint8_t>> content(const ProductIdentity& identity) const;
+
+    /// Which parts are missing: "3-5, 9"; empty: none.
+    std::string gaps() const;
+};
+
+enum class PartStanding : std::uint8_t {
+    taken,
+    again,   ///< the same octets were there already
+    differs, ///< other octets, kind or number of parts than those that were there: not taken
+    refused, ///< memory is full
+};
+
+/// Puts data products together from parts in any order, real time and recording mixed. R30
+///
+/// In       parts of one run                 Out   products, whole or with their gaps named
+/// Memory   the octets of the products, at most `octets_max` together; a part beyond that is refused
+class ProductAssembler {
+  public:
+    static constexpr std::size_t octets_max_default = std::size_t{16} << 20; ///< ours: hundreds of a landing's products
+
+    explicit ProductAssembler(std::size_t octets_max = octets_max_default) : octets_max_(octets_max) {}
+
+    PartStanding add(const ProductPart& part);
+    const std::map<ProductIdentity, Product>& products() const { return products_; }
+
+  private:
+    std::size_t octets_max_;
+    std::size_t octets_ = 0;
+    std::map<ProductIdentity, Product> products_;
+};
+
+/// "as_flown 1, 1292 octets: whole" or "imu_burst 2, 22400 octets: parts 3-5, 9 of 98 are missing".
+std::string text_of(const ProductIdentity& identity, const Product& product);
+
+/// The rows of a whole product's content as whole packets of their container, so that the decommutator reads them as it
+/// reads all telemetry. None when the dictionary lacks the container, or the content is not a number of whole rows.
+std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::Dictionary& dictionary, Apid row_apid,
+                                                              std::span<const std::uint8_t> content);
+
+} // namespace aeolis::telemetry

@@ -1,0 +1,219 @@
+// What a whole landing records and radiates, read back by the ground's own functions.
+#include "flight/computer.hpp"
+#include "generated/dictionary_flight.hpp"
+#include "simulation/entry_reference.hpp"
+#include "simulation/world.hpp"
+#include "telemetry/explanation.hpp"
+#include "telemetry/packet_stream.hpp"
+#include "telemetry/product_assembler.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <set>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+struct Flown {
+    std::vector<Octets> recorded;
+    std::vector<Octets> radiated;
+    std::vector<ImuSample> imu;
+    bool landed = false;
+    Computer::Counters counters;
+};
+
+void take(std::span<const std::uint8_t> octets, std::vector<Octets>& into) {
+    telemetry::PacketStream stream{octets};
+    while (const auto packet = stream.next()) into.emplace_back(packet->begin(), packet->end());
+    REQUIRE(stream.unreadable_octets() == 0);
+}
+
+/// One landing for all tests of this file, and half a minute after it.
+const Flown& flown() {
+    static const Flown once = [] {
+        Flown flown;
+        const auto scenario = tests::gale_scenario(900.0);
+        simulation::World world{scenario, 1};
+        Load load;
+        load.entry_reference = simulation::make_entry_reference(scenario);
+        Computer computer{load, world.sclk()};
+        const auto out = std::make_unique<DeviceOutputs>();
+        world.set_nvm(0, 1U << 30);
+        world.receive(test::set_parameters(world.solution()));
+        int after = 0;
+        for (int cycle = 0; after < 64 * 30 && cycle < 64 * 1500; ++cycle) {
+            if (cycle == 64) world.receive(test::do_edl());
+            const DeviceInputs& in = world.sense();
+            flown.imu.insert(flown.imu.end(), in.imu.begin(), in.imu.end());
+            computer.step(in, *out);
+            take(out->nvm.span(), flown.recorded);
+            take(out->uhf.span(), flown.radiated);
+            world.advance(*out);
+            after += world.outcome() != simulation::Outcome::running;
+        }
+        flown.landed = world.outcome() == simulation::Outcome::touchdown;
+        flown.counters = computer.counters();
+        return flown;
+    }();
+    REQUIRE(once.landed);
+    return once;
+}
+
+struct Ground {
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    telemetry::Decommutator decommutator{dictionary};
+    telemetry::Decoded decoded;
+
+    const std::string& name(const Octets& packet) {
+        REQUIRE_FALSE(decommutator.decode(packet, decoded));
+        return dictionary.packets[decoded.packet].name;
+    }
+    double value(const char* field) const {
+        const auto index = telemetry::field_index(dictionary.packets[decoded.packet], field);
+        REQUIRE(index);
+        return decoded.value[*index].value_or(-1.0);
+    }
+    telemetry::ProductAssembler products(const std::vector<Octets>& packets) {
+        telemetry::ProductAssembler assembler;
+        for (const Octets& packet : packets)
+            if (name(packet) == "DataProduct") {
+                const auto part = telemetry::part_of(dictionary, decoded, packet);
+                REQUIRE(part);
+                CHECK(assembler.add(*part) == telemetry::PartStanding::taken);
+            }
+        return assembler;
+    }
+};
+
+float f(double value) {
+    return static_cast<float>(value);
+}
+
+}  // namespace
+
+TEST_CASE("all that a landing radiates is in its recording, bit for bit, and nothing waited in vain",
+          "[edl_comm][R29][R30]") {
+    const std::set<Octets> recorded(flown().recorded.begin(), flown().recorded.end());
+    CHECK(recorded.size() == flown().recorded.size());
+    for (const Octets& packet : flown().radiated) REQUIRE(recorded.contains(packet));
+    Ground ground;
+    double dropped = -1.0;
+    for (const Octets& packet : flown().recorded)
+        if (ground.name(packet) == "CommStatus") dropped = ground.value("uhf_dropped_packets");
+    CHECK(dropped == 0.0); // the plan of the mission is within 8 kb/s
+    CHECK(flown().counters.mailbox_overflows == 0);
+    CHECK(flown().counters.unexpected_messages == 0);
+}
+
+TEST_CASE("UHF carries channels, events and products, chosen by the state of the vehicle", "[edl_comm][R30]") {
+    Ground ground;
+    std::map<EdlPhase, std::map<std::string, int>> live; // by the phase in which it was recorded
+    std::map<double, EdlPhase> phases{{0.0, EdlPhase::pre_edl}};
+    for (const Octets& packet : flown().recorded)
+        if (ground.name(packet) == "EDL_PHASE_CHANGED")
+            phases[ground.decoded.header.time.seconds] = static_cast<EdlPhase>(ground.value("phase"));
+    int events = 0;
+    for (const Octets& packet : flown().radiated) {
+        const std::string& name = ground.name(packet);
+        const auto phase = std::prev(phases.upper_bound(ground.decoded.header.time.seconds))->second;
+        ++live[phase][name];
+        events += ground.dictionary.packets[ground.decoded.packet].event.has_value();
+    }
+    CHECK(events > 40);
+    CHECK(live[EdlPhase::range_control]["GncEntry"] > 50);
+    CHECK(live[EdlPhase::range_control]["GncDescent"] == 0);
+    CHECK(live[EdlPhase::powered_descent]["GncDescent"] > 50);
+    CHECK(live[EdlPhase::powered_descent]["GncEntry"] == 0);
+    CHECK(live[EdlPhase::parachute_descent]["DataProduct"] > 90);
+    CHECK(live[EdlPhase::range_control]["DataProduct"] == 0);
+    CHECK(live[EdlPhase::landed]["GncNavigation"] == 0);
+    CHECK(live[EdlPhase::landed]["EdlStatus"] > 0);
+}
+
+TEST_CASE("the products of a landing are what flight put in: every firing, and the IMU around the mortar",
+          "[products][R30]") {
+    Ground ground;
+    std::vector<Octets> firings;
+    double mortar_s = 0.0;
+    for (const Octets& packet : flown().recorded) {
+        const std::string& name = ground.name(packet);
+        if (name == "TimepointFired")
+            firings.emplace_back(packet.begin() + tm_data_offset_octets, packet.end() - packet_crc_octets);
+        if (name == "PARACHUTE_DEPLOY") mortar_s = ground.decoded.header.time.seconds;
+    }
+    const auto recorded = ground.products(flown().recorded);
+    REQUIRE(recorded.products().size() == 3);
+    std::size_t as_flown_rows = 0;
+    bool imu_seen = false;
+    for (const auto& [identity, product] : recorded.products()) {
+        INFO(telemetry::text_of(identity, product));
+        const auto content = product.content(identity);
+        REQUIRE(content);
+        const auto rows = telemetry::rows_of(ground.dictionary, product.row_apid, *content);
+        REQUIRE(rows);
+        if (product.kind == "as_flown") {
+            as_flown_rows = rows->size();
+            Octets flat;
+            for (std::size_t i = 0; i < rows->size(); ++i) flat.insert(flat.end(), firings[i].begin(), firings[i].end());
+            CHECK(*content == flat);
+            continue;
+        }
+        imu_seen = true;
+        REQUIRE(product.kind == "imu_burst");
+        REQUIRE(rows->size() == 800);
+        CHECK(ground.name(rows->front()) == "ImuIncrements");
+        const auto first = static_cast<std::uint32_t>(ground.value("imu_count"));
+        const auto sensed = std::ranges::find(flown().imu, first, &ImuSample::count);
+        REQUIRE(flown().imu.end() - sensed > 800);
+        for (std::size_t i = 0; i < rows->size(); ++i) {
+            static_cast<void>(ground.name((*rows)[i]));
+            const ImuSample& sample = sensed[static_cast<std::ptrdiff_t>(i)];
+            REQUIRE(ground.value("imu_count") == sample.count);
+            REQUIRE(f(ground.value("delta_v_z_mps")) == f(sample.delta_v_mps[2]));
+            REQUIRE(f(ground.value("delta_angle_x_rad")) == f(sample.delta_angle_rad[0]));
+        }
+    }
+    CHECK(imu_seen);
+    CHECK(as_flown_rows == timepoint_count); // products come in the order of their numbers: the last is whole
+    CHECK(mortar_s > 0.0);
+
+    // Live, on a link without loss, the burst is whole before touchdown, and what was flown up to touchdown after it.
+    const auto live = ground.products(flown().radiated);
+    REQUIRE(live.products().size() >= 2);
+    for (const auto& [identity, product] : live.products())
+        if (identity.id <= 2) CHECK(product.content(identity));
+}
+
+TEST_CASE("a landing tells what holds its decisions, live and without flooding the link", "[explanation][R38]") {
+    Ground ground;
+    std::map<std::string, int> held;
+    std::map<double, int> in_second;
+    std::string parachute;
+    for (const Octets& packet : flown().radiated) {
+        if (ground.name(packet) != "Explanation") continue;
+        const auto explanation = telemetry::explain(ground.dictionary, ground.decoded);
+        REQUIRE(explanation);
+        if (explanation->verdict != "held") continue;
+        ++held[explanation->decision];
+        CHECK(++in_second[std::floor(ground.decoded.header.time.seconds)] <= 2);
+        if (explanation->decision == "parachute_deploy") parachute = explanation->text;
+    }
+    INFO(parachute);
+    CHECK(held["parachute_deploy"] >= 1);
+    CHECK_THAT(parachute, Catch::StartsWith("parachute_deploy held: speed 4"));
+    CHECK_THAT(parachute, Catch::Contains(" m/s > 405.0 m/s"));
+    CHECK(held["heatshield"] >= 1);
+    int all = 0;
+    for (const auto& [decision, count] : held) all += count;
+    CHECK(all < 60); // of a whole landing: they are for what is near, not a log
+}
