@@ -6,13 +6,17 @@ namespace aeolis::flight {
 namespace {
 
 bool in_command(const ComputerState& state) {
-    return state.load.role == Role::prime ? !state.edl.stands_by() : state.cross_string.in_control();
+    // Second Chance is obeyed from the cycle in which its EDL flies: before that its managers hold no commands yet, and an
+    // engine that is told nothing for a cycle goes out.
+    if (state.edl.stands_by()) return false;
+    return state.load.role == Role::prime || state.cross_string.in_control();
 }
 
 /// Everything that a device could take for a command. What is recorded and told to ground stays.
 void command_nothing(DeviceOutputs& out) {
     out.pyros.clear();
     out.switches.clear();
+    out.telecom.clear();
     out.thrusters_enabled.reset();
     out.attitude = {};
     out.engines = {};

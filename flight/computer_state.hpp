@@ -3,7 +3,15 @@
 #include "common/fixed_queue.hpp"
 #include "flight/commands/command_dispatcher.hpp"
 #include "flight/cross_string/cross_string.hpp"
-#include "flight/devices/device_managers.hpp"
+#include "flight/devices/cruise_attitude.hpp"
+#include "flight/devices/descent_engines.hpp"
+#include "flight/devices/imu.hpp"
+#include "flight/devices/power.hpp"
+#include "flight/devices/pyro.hpp"
+#include "flight/devices/radar.hpp"
+#include "flight/devices/telecom.hpp"
+#include "flight/devices/thrusters.hpp"
+#include "flight/devices/unit_selector.hpp"
 #include "flight/edl/edl_main.hpp"
 #include "flight/edl_bg/edl_bg.hpp"
 #include "flight/edl_comm/edl_comm.hpp"
@@ -24,7 +32,8 @@ inline constexpr std::size_t mailbox_messages_max = 64;  ///< ours: an IMU, rada
 struct ComputerState {
     ComputerState(const Load& its_load, Sclk start)
         : load(its_load), now(start), sync(load), radar(load), imu(load), edl(load), pyro(load), descent_engines(load),
-          thrusters(load), power(load), system_fault_protection(load), cross_string(load), command_dispatcher(load),
+          thrusters(load), power(load), telecom(load), units(load), cruise_attitude(load),
+          system_fault_protection(load), cross_string(load), command_dispatcher(load),
           edl_bg(load), mfsk(load), edl_comm(load) {}
 
     Load load;
@@ -38,6 +47,9 @@ struct ComputerState {
     DescentEngines descent_engines;
     Thrusters thrusters;
     PowerManager power;
+    TelecomManager telecom;
+    UnitSelector units;
+    CruiseAttitudeControl cruise_attitude;
     SystemFaultProtection system_fault_protection;
     CrossString cross_string;
     CommandDispatcher command_dispatcher;

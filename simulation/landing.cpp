@@ -135,7 +135,10 @@ void Landing::State::fly() {
     report.radiated = radiated.span();
     radiate(cycle_start_us);
     receive_tone(cycle_start_us);
-    world.advance(computers.obeyed());
+    if (const flight::DeviceOutputs* commands = computers.commands())
+        world.advance(*commands);
+    else
+        world.advance_uncommanded();
     report.events.assign(world.events().begin(), world.events().end());
     read_event_reports();
 
@@ -160,7 +163,8 @@ void Landing::State::receive_tone(std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    if (auto tone = x_band.cycle(computers.obeyed().tone, {truth.sclk, truth.e_s, doppler_hz})) {
+    if (auto tone = x_band.cycle(computers.commands() != nullptr ? computers.commands()->tone : std::nullopt,
+                                 {truth.sclk, truth.e_s, doppler_hz})) {
         tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         tones.send(tone->end.microseconds, *tone);

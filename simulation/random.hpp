@@ -21,6 +21,11 @@ enum class Stream : std::uint64_t {
     uhf,
     x_band,
     swing,
+    imu_b,
+    radar_b,
+    bus_64_hz,
+    bus_8_hz,
+    imu_link,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

@@ -69,6 +69,7 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"radio.earth_set_after_entry_s", s.radio.earth_set_after_entry_s, -86400.0, 86400.0},
         {"radio.relay_rate_bps", s.radio.relay_rate_bps, 1000.0, 1.0e8},
         {"radio.relay_start_after_touchdown_s", s.radio.relay_start_after_touchdown_s, 0.0, 86400.0},
+        {"bus_message_error_fraction", s.bus_message_error_fraction, 0.0, 0.5},
         {"triggers.parachute_speed_mps", s.parachute_speed_mps, 100.0, 1000.0},
         {"triggers.heatshield_speed_mps", s.heatshield_speed_mps, 20.0, 500.0},
         {"triggers.backshell_altitude_m", s.backshell_altitude_m, 100.0, 10000.0},
@@ -108,6 +109,41 @@ void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
               command.send_before_entry_s >= -scenario.timeout_after_entry_s))
             found.push_back(name + ".send_before_entry_s: " + number(command.send_before_entry_s) +
                             " is not within the run");
+    }
+}
+
+/// What can happen to a device: only who is commanded can refuse or be late, only who carries data can lose them.
+bool is_possible(flight::Device device, DeviceFault::Kind kind) {
+    using flight::Device;
+    const bool sensor = device == Device::radar || device == Device::imu;
+    switch (kind) {
+    case DeviceFault::Kind::silent:
+        return true;
+    case DeviceFault::Kind::refuses:
+        return !sensor;
+    case DeviceFault::Kind::late:
+        return !sensor && device != Device::descent_engines;
+    case DeviceFault::Kind::dropout:
+        return sensor || device == Device::uhf;
+    }
+    return false;
+}
+
+void check_device_faults(const Scenario& scenario, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < scenario.device_faults.size(); ++i) {
+        const DeviceFault& fault = scenario.device_faults[i];
+        const std::string name = "device_faults[" + std::to_string(i) + "]";
+        if (!is_possible(fault.device, fault.kind))
+            found.push_back(name + ".kind: is not possible for this device (sensors: silent, dropout; uhf: all; "
+                                   "descent_engines: silent, refuses; others: silent, refuses, late)");
+        if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
+              fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
+            found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +
+                            " is not within the run");
+        if (!(fault.duration_s > 0.0))
+            found.push_back(name + ".duration_s: " + number(fault.duration_s) + " is not above 0");
+        if (!(fault.late_s >= 0.0 && fault.late_s <= 3600.0))
+            found.push_back(name + ".late_s: " + number(fault.late_s) + " is outside 0 … 3600");
     }
 }
 
@@ -158,6 +194,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_density_scale(scenario.density_scale, found);
     check_commands(scenario, found);
     check_system_faults(scenario, found);
+    check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
     return found;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/time.hpp"
+#include "flight/devices/device_messages.hpp"
 #include "flight/load.hpp"
 
 #include <array>
@@ -90,6 +91,17 @@ struct SystemFault {
     double duration_s = 0.0;
 };
 
+/// One unit of a device misbehaves for a while; simulation/buses/device_faults.hpp says how. R2
+struct DeviceFault {
+    enum class Kind : std::uint8_t { silent, refuses, late, dropout };
+    flight::Device device{};
+    flight::Unit unit{};
+    Kind kind{};
+    double begin_before_entry_s = 0.0;
+    double duration_s = 0.0;
+    double late_s = 5.0; ///< ours: longer than every reply time-out of the timeline
+};
+
 /// The prime computer fails and starts anew. R32, R33
 struct ComputerReset {
     double before_entry_s = 0.0; ///< a multiple of 1/64 s; negative after entry
@@ -118,7 +130,9 @@ struct Scenario {
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
     std::vector<SystemFault> system_faults;
+    std::vector<DeviceFault> device_faults;
     std::vector<ComputerReset> computer_resets;
+    double bus_message_error_fraction = 1.0e-4; ///< of the messages on the buses, each time they are sent. Ours
 };
 
 /// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.

@@ -1,6 +1,6 @@
 #include "simulation/world.hpp"
 
-#include "simulation/devices/avionics.hpp"
+#include "simulation/buses/buses.hpp"
 #include "simulation/initial_state.hpp"
 #include "simulation/moments.hpp"
 #include "simulation/sensors/imu.hpp"
@@ -31,12 +31,13 @@ struct World::State {
     Scenario scenario;
     InitialState initial;
     Vehicle vehicle;
-    Avionics avionics;
-    Imu imu;
-    Radar radar;
+    Buses buses;
+    std::array<Imu, 2> imus; ///< units A and B
+    std::array<Radar, 2> radars;
     StarScanner star_scanner;
 
-    std::int64_t ticks = 0; ///< since the start
+    std::int64_t ticks = 0;                  ///< since the start
+    flight::Unit imu_unit = flight::Unit::a; ///< whose link the computer listens to
     flight::DeviceInputs in;
     FixedVector<flight::ImuSample, 4> imu_samples;
     FixedVector<flight::UplinkPacket, 8> received;
@@ -56,9 +57,10 @@ struct World::State {
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
         : scenario(s), initial(initial_state(s, seed, case_number)),
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
-          avionics(Random{seed, case_number, Stream::devices}),
-          imu(s.dispersions, Random{seed, case_number, Stream::imu}),
-          radar(s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}),
+          buses(s, seed, case_number), imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
+                                            Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
+          radars{Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}},
+                 Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar_b}}},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
         events.reserve(8);
     }
@@ -99,8 +101,16 @@ struct World::State {
         reason = std::move(why);
     }
 
-    void take_commands(const flight::DeviceOutputs& out);
+    void obey();
+    void listen_to_imu(flight::Unit unit);
     void take_pyro(flight::PyroId pyro);
+    void fly_on() {
+        events.clear();
+        fly_one_tick();
+        buses.frame(sclk());
+        obey();
+        watch();
+    }
     void fly_one_tick();
     void touch_ground(std::int64_t grid);
     void watch();
@@ -108,7 +118,6 @@ struct World::State {
 
 void World::State::take_pyro(flight::PyroId pyro) {
     using flight::PyroId;
-    if (!avionics.fire(pyro, ticks)) return;
     switch (pyro) {
     case PyroId::cruise_stage_separation:
         tell("cruise_stage_separation");
@@ -142,30 +151,37 @@ void World::State::take_pyro(flight::PyroId pyro) {
     vehicle.fire(pyro, now_s());
 }
 
-void World::State::take_commands(const flight::DeviceOutputs& out) {
-    for (const flight::PyroId pyro : out.pyros)
+// What reached the devices with the frames of this tick.
+void World::State::obey() {
+    for (const flight::PyroId pyro : buses.fired())
         take_pyro(pyro);
-    for (const flight::SwitchReply& wanted : out.switches)
-        avionics.set(wanted, ticks);
-    if (out.thrusters_enabled) avionics.enable_thrusters(*out.thrusters_enabled, ticks);
-    vehicle.command(out, avionics.thrusters_enabled(), now_s());
+    const flight::EngineCommand& engines = buses.engines();
+    vehicle.command(buses.attitude(), buses.devices().thrusters_enabled(), engines, buses.pay_out_bridle(), now_s());
 
-    const auto& throttle = out.engines.throttle;
+    const auto& throttle = engines.throttle;
     const auto idle = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t < 0.05; });
     const auto pushing = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t > 0.1; });
-    if (out.engines.ignited && !sky_crane_started && idle == 4 && pushing == 4) {
+    if (engines.ignited && !sky_crane_started && idle == 4 && pushing == 4) {
         sky_crane_started = true;
         tell("sky_crane_start");
     }
-    if (engines_commanded && !out.engines.ignited && bridle_cut && !flown_away) {
+    if (engines_commanded && !engines.ignited && bridle_cut && !flown_away) {
         flown_away = true;
         tell("flyaway_end");
     }
-    engines_commanded = out.engines.ignited;
+    engines_commanded = engines.ignited;
+}
+
+// Only the unit that is listened to is integrated: the other costs time and tells nobody.
+void World::State::listen_to_imu(flight::Unit unit) {
+    if (unit == imu_unit) return;
+    imu_unit = unit;
+    imus[static_cast<std::size_t>(unit)].begin_reading();
 }
 
 void World::State::fly_one_tick() {
     imu_samples.clear();
+    Imu& imu = imus[static_cast<std::size_t>(imu_unit)];
     const std::int64_t end_grid = grid() + grid_per_tick;
     for (std::int64_t at = grid(); at < end_grid;) {
         const std::int64_t next = std::min(end_grid, (at / grid_per_reading + 1) * grid_per_reading);
@@ -179,8 +195,8 @@ void World::State::fly_one_tick() {
         }
         imu.integrate(felt, before, vehicle.q_MB(), step_s);
         if (next % grid_per_reading == 0) {
-            const flight::ImuSample sample = imu.read();
-            if (avionics.on(flight::SwitchId::descent_imu)) imu_samples.push_back(sample);
+            const flight::ImuSample sample = imu.read(static_cast<std::uint32_t>(next / grid_per_reading));
+            if (buses.imu_sample_arrives()) imu_samples.push_back(sample);
         }
         at = next;
     }
@@ -220,7 +236,7 @@ void World::State::watch() {
         tell("entry_interface");
     }
     if (auto event = peak.observe(now)) events.push_back(*event);
-    if (vehicle.configuration().backshell && now.e_s > 0.0 && !avionics.fired(flight::PyroId::parachute_mortar))
+    if (vehicle.configuration().backshell && now.e_s > 0.0 && !buses.devices().fired(flight::PyroId::parachute_mortar))
         if (auto event = reversals.observe(now, vehicle.flow().bank_rad)) events.push_back(*event);
 
     if (outcome != Outcome::running) return;
@@ -267,18 +283,23 @@ flight::DeviceInputs& World::sense() {
     in.uplink.clear();
     if (s.vehicle.configuration().cruise_stage && in.now.ticks() % 64 == 0)
         in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB());
-    if (s.avionics.on(flight::SwitchId::radar)) {
+    if (s.buses.radar_was_read()) {
+        const flight::Unit unit = s.buses.unit(flight::Device::radar);
+        const bool blind = s.vehicle.configuration().heatshield ||
+                           s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
-            flight::RadarBeam reading = s.radar.measure(beam, s.vehicle.at(), s.vehicle.q_MB());
-            if (s.vehicle.configuration().heatshield) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
+            flight::RadarBeam reading =
+                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB());
+            if (blind) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }
     }
-    s.avionics.reply(s.ticks, in);
+    s.buses.reply(in);
     const Engines& engines = s.vehicle.engines();
-    if (engines.valves_open()) in.engines = flight::EngineReply{engines.running(), engines.thrust_N()};
-    if (!s.vehicle.configuration().rover_on_stage)
+    const bool read = s.buses.engines_were_read();
+    if (read && engines.valves_open()) in.engines = flight::EngineReply{engines.running(), engines.thrust_N()};
+    if (read && !s.vehicle.configuration().rover_on_stage)
         in.bridle = flight::BridleReply{s.vehicle.bridle().payed_out_m(s.now_s())};
     in.system_fault = s.system_fault_report();
     while (!s.received.empty() && !in.uplink.full()) {
@@ -291,11 +312,14 @@ flight::DeviceInputs& World::sense() {
 }
 
 void World::advance(const flight::DeviceOutputs& out) {
-    State& s = *state_;
-    s.events.clear();
-    s.take_commands(out);
-    s.fly_one_tick();
-    s.watch();
+    state_->buses.take(out);
+    state_->listen_to_imu(out.units[flight::Device::imu]);
+    state_->fly_on();
+}
+
+void World::advance_uncommanded() {
+    state_->buses.leave_alone();
+    state_->fly_on();
 }
 
 bool World::receive(std::span<const std::uint8_t> telecommand) {
@@ -340,10 +364,13 @@ const NavigationSolution& World::solution() const {
 }
 
 bool World::uhf_on() const {
-    using flight::SwitchId;
-    const Avionics& avionics = state_->avionics;
-    return avionics.on(SwitchId::uhf) &&
-           (avionics.on(SwitchId::entry_antenna) || avionics.on(SwitchId::parachute_antenna));
+    return state_->buses.uhf_radiates();
+}
+const Bus::Counters& World::bus_64_hz() const {
+    return state_->buses.counters_64_hz();
+}
+const Bus::Counters& World::bus_8_hz() const {
+    return state_->buses.counters_8_hz();
 }
 
 World::Inspection World::inspect() const {

@@ -2,6 +2,7 @@
 
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
+#include "simulation/buses/bus.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/scenario.hpp"
 
@@ -45,6 +46,9 @@ class World {
 
     /// The vehicle takes the commands of this cycle and flies on to the next tick.
     void advance(const flight::DeviceOutputs& out);
+    /// Flies on to the next tick while no computer runs the buses: devices keep their last command for 2 s, then go
+    /// safe.
+    void advance_uncommanded();
 
     /// A telecommand packet reaches the receiver with the next tick; false when it is too long for one.
     bool receive(std::span<const std::uint8_t> telecommand);
@@ -61,7 +65,9 @@ class World {
     std::optional<Sclk> contact() const;                     ///< when that was
     double peak_deceleration_mps2() const;
     const NavigationSolution& solution() const;
-    bool uhf_on() const; ///< transmitter on and an antenna selected
+    bool uhf_on() const; ///< the selected transmitter radiates through an antenna
+    const Bus::Counters& bus_64_hz() const;
+    const Bus::Counters& bus_8_hz() const;
 
     /// What a test or a report may want to see of the truth, and flight never does.
     struct Inspection {

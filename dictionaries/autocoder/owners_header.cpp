@@ -30,12 +30,12 @@ std::string owners_header(const Dictionary& dictionary) {
     out << "// Made by the autocoder from the dictionary of " << dictionary.mission
         << ". Not to be edited: change owners.csv.\n"
            "#pragma once\n\n#include \"flight/kernel/message.hpp\"\n\n#include <cstddef>\n#include <cstdint>\n\n"
-           "namespace aeolis::flight {\n\nenum class Device : std::uint8_t {\n";
+           "namespace aeolis::flight {\n\nenum class DeviceLine : std::uint8_t {\n";
     each_row(dictionary, Kind::device, [&](const OwnerRow& row) { out << "    " << row.name << ",\n"; });
-    out << "};\ninline constexpr std::size_t device_count = "
+    out << "};\ninline constexpr std::size_t device_line_count = "
         << std::ranges::count(dictionary.owners, Kind::device, &OwnerRow::kind) << ";\n\n";
     write_owner_of(dictionary, Kind::decision, "Decision", out);
-    write_owner_of(dictionary, Kind::device, "Device", out);
+    write_owner_of(dictionary, Kind::device, "DeviceLine", out);
     out << "namespace action_owner {\n";
     each_row(dictionary, Kind::action, [&](const OwnerRow& row) {
         out << "#line " << row.line << " \"owners.csv\"\ninline constexpr ModuleId " << row.name << " = ModuleId::"

@@ -72,6 +72,10 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
         return route<command::SELECT_PRIME>(out, tag, packet->arguments, [&](const auto& command) {
             out.send(ModuleId::edl, SelectPrimeCommand{tag, command.computer == ComputerString::b});
         });
+    case command::EDL_SELECT_UNITS::opcode.value:
+        return route<command::EDL_SELECT_UNITS>(out, tag, packet->arguments, [&](const auto& command) {
+            out.send(ModuleId::units, SelectUnitsCommand{tag, command});
+        });
     default: return refuse(out, tag, CommandRefusal::unknown_opcode);
     }
 }

@@ -8,6 +8,7 @@ constexpr std::int64_t status_every_s = 5;  // ours: the backup's own telemetry 
 
 void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
     state.in_parts([&](const StatePart& part) { out.send(ModuleId::edl, part); });
+    out.send(ModuleId::units, UnitsSelected{state.header().units});
     out.send(ModuleId::edl, Resume{reason});
     out.send(ModuleId::command_dispatcher, Resume{reason});
 }
@@ -31,7 +32,10 @@ void CrossString::on(const StatePart& part, Outbox& out) {
     }
     heard_ = out.now();
     if (!state || in_control_) return;
+    // Told as prime changes them, not at the take-over: its first command must find its unit.
+    const UnitSelection before = latest_.empty() ? UnitSelection{} : latest_.header().units;
     latest_ = *state;
+    if (latest_.header().units != before) out.send(ModuleId::units, UnitsSelected{latest_.header().units});
     if (latest_.header().touchdown && !off_) turn_off(out);
 }
 

@@ -2,6 +2,7 @@
 
 #include "common/fixed_vector.hpp"
 #include "flight/cross_string/state_exchange.hpp"
+#include "flight/devices/device_messages.hpp"
 #include "flight/kernel/state_parts.hpp"
 
 // A computer's EDL state as it crosses to the other computer, and as it is kept over a restart.
@@ -16,10 +17,11 @@ struct StateHeader {
     bool begun = false;          ///< "do edl" was accepted
     bool pre_edl = true;
     bool touchdown = false;
+    UnitSelection units{};       ///< that are addressed
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(time, revision, begun, pre_edl, touchdown);
+        exchange(time, revision, begun, pre_edl, touchdown, units);
     }
 };
 

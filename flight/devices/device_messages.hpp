@@ -18,6 +18,31 @@
 // powered descent. A quaternion q_MB is {w, x, y, z}, unit, and turns components in B into components in M.
 namespace aeolis::flight {
 
+// ---- redundant units -------------------------------------------------------------------------------------------
+
+/// One of the two units of a redundant device. Which one is used is commanded before EDL and stays. R2
+enum class Unit : std::uint8_t { a, b };
+/// The devices that are there twice: a list of ours. Both units of one do the same to the vehicle: they are
+/// cross-coupled to the same pyros, thrusters, engines and antennas; a sensor has errors of its own.
+enum class Device : std::uint8_t { radar, imu, pyro, descent_engines, thrusters, power, uhf, x_band };
+inline constexpr std::size_t device_count = 8;
+
+/// The unit of each device that is addressed.
+class UnitSelection {
+  public:
+    Unit operator[](Device device) const { return units_[static_cast<std::size_t>(device)]; }
+    Unit& operator[](Device device) { return units_[static_cast<std::size_t>(device)]; }
+    bool operator==(const UnitSelection&) const = default;
+
+    template <typename Exchange>
+    void carry(Exchange& exchange) {
+        exchange(units_);
+    }
+
+  private:
+    std::array<Unit, device_count> units_{};
+};
+
 // ---- to the computer -------------------------------------------------------------------------------------------
 
 /// One reading of the IMU, 200 Hz: what it integrated since the reading before, in B.
@@ -48,22 +73,38 @@ enum class PyroId : std::uint8_t {
 };
 inline constexpr std::size_t pyro_count = 14;
 
-/// A device says that what was asked of it is done.
+/// A device says that what was asked of it is done, or that it will not do it. A device that does not answer says
+/// nothing: the bus then brings nothing, and only a time-out tells.
 struct PyroReply {
     PyroId pyro{};
     bool fired = false;
+    Unit unit = Unit::a;              ///< that answered
 };
 enum class SwitchId : std::uint8_t { radar, uhf, descent_imu, entry_antenna, parachute_antenna, thruster_heaters };
+inline constexpr std::size_t switch_count = 6;
+/// Those that the telecom units hold; the power unit holds the others.
+constexpr bool is_telecom(SwitchId id) {
+    return id == SwitchId::uhf || id == SwitchId::entry_antenna || id == SwitchId::parachute_antenna;
+}
+/// The device whose unit is told to switch `id`.
+constexpr Device switched_by(SwitchId id) {
+    if (!is_telecom(id)) return Device::power;
+    return id == SwitchId::uhf ? Device::uhf : Device::x_band;
+}
 struct SwitchReply {
     SwitchId id{};
-    bool on = false;
+    bool on = false;                  ///< as it is now
+    Unit unit = Unit::a;
+    bool refused = false;
 };
 struct EngineReply {
     bool running = false;
     double thrust_N = 0.0;            ///< sum of the engines, as their pressure sensors tell
 };
 struct ThrusterReply {
-    bool enabled = false;
+    bool enabled = false;             ///< as it is now
+    Unit unit = Unit::a;
+    bool refused = false;
 };
 struct BridleReply {
     double payed_out_m = 0.0;         ///< 0 … 7.5
@@ -136,10 +177,19 @@ struct PacketOut {
 template <std::size_t N>
 using OctetBuffer = FixedVector<std::uint8_t, N>;
 
+struct SwitchCommand {
+    SwitchId id{};
+    bool on = false;
+};
+
+using SwitchCommands = FixedVector<SwitchCommand, 8>;
+
 /// Everything that leaves the computer in one cycle.
 struct DeviceOutputs {
-    FixedVector<PyroId, 8> pyros;                              ///< fire now
-    FixedVector<SwitchReply, 8> switches;                      ///< switch `id` to `on`
+    UnitSelection units;                                       ///< to which the commands of this cycle are addressed
+    FixedVector<PyroId, 8> pyros;                              ///< fire
+    SwitchCommands switches;                                   ///< of power
+    SwitchCommands telecom;                                    ///< of the radio
     std::optional<bool> thrusters_enabled;
     AttitudeCommand attitude;
     EngineCommand engines;
@@ -153,10 +203,11 @@ struct DeviceOutputs {
     bool in_command = false;                                   ///< the bus listens to this computer
     bool wants_restart_record = false;                         ///< starting: with the next tick, please
 
-    /// Back to nothing commanded, for the next cycle; attitude and engines keep their last command.
+    /// Back to nothing commanded, for the next cycle; units, attitude and engines keep their last command.
     void begin_cycle() {
         pyros.clear();
         switches.clear();
+        telecom.clear();
         thrusters_enabled.reset();
         nvm.clear();
         uhf.clear();

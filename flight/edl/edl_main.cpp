@@ -214,6 +214,7 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         constraint_monitor_.note(Moment::of_do_edl(), out.now());
         ++revision_;
         out.event(evr::EDL_BEGUN{});
+        out.send(ModuleId::units, EdlBegun{});
         out.send(ModuleId::mfsk, ToneRequest{tone::edl_enabled, out.now()});
     }
     answer(out, command.tag, refused);

@@ -37,6 +37,7 @@ class EdlMain {
     void on(const gnc::RadarSolution& solution, Outbox& out);
     void on(const ActionReply& reply, Outbox& out);
     void on(const InhibitEdl& wish, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
 
     void on(const ParametersUpdate& update, Outbox& out);
     void on(const DoEdlCommand& command, Outbox& out);
@@ -96,6 +97,7 @@ class EdlMain {
     HeldExplanations held_;
     gnc::Mode mode_ = gnc::Mode::off;
     Phase phase_;
+    UnitSelection units_;  // for who takes over; they are no business of EDL's otherwise
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
     bool refused_to_hold_ = false;  // told once a fault, not once a report

@@ -7,13 +7,20 @@
 namespace aeolis::flight {
 
 void EdlMain::tell_state(Sclk now, Outbox& out) {
-    if (load_.role != Role::prime || !parameters_) return;
+    if (load_.role != Role::prime || (!parameters_ && units_ == UnitSelection{})) return;
     const StateHeader header{.time = now,
                              .revision = revision_,
                              .begun = timeline_.begun(),
                              .pre_edl = pre_edl(now),
-                             .touchdown = configuration_.touchdown_declared};
+                             .touchdown = configuration_.touchdown_declared,
+                             .units = units_};
     StateFrame::of(header, *this).in_parts([&](const StatePart& part) { out.send(ModuleId::cross_string, part); });
+}
+
+void EdlMain::on(const UnitsSelected& selected, Outbox&) {
+    if (selected.units == units_) return;
+    units_ = selected.units;
+    ++revision_;
 }
 
 void EdlMain::on(const StatePart& part, Outbox&) {
@@ -25,6 +32,7 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
     if (!state || timeline_.begun()) return out.event(evr::STATE_UNREADABLE{});
     AEOLIS_CHECK(state->restore(*this));  // a whole frame of this build always fits
     revision_ = state->header().revision + 1;
+    if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
     if (resume.reason == ResumeReason::restart)
         restart(out.now(), out);
     else

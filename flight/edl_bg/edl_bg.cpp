@@ -7,6 +7,8 @@ namespace {
 
 constexpr ParameterDefaults parameters{};
 
+constexpr double radar_gap_max_s = 5.0;  // five solutions; the first takes 3.5 s from when Edl wants them
+
 double norm(double x, double y, double z) {
     return std::sqrt(x * x + y * y + z * z);
 }
@@ -27,8 +29,10 @@ void EdlBg::on(const RadarReturns& returns, Outbox&) {
 
 // Sent after GNC's cycle, so it is the attitude at the tick of the returns: one cycle of lag would be metres of altitude
 // while the vehicle turns in the powered approach.
-void EdlBg::on(const NavigatedAttitude& attitude, Outbox&) {
+void EdlBg::on(const NavigatedAttitude& attitude, Outbox& out) {
+    if (!navigated_) solved_at_ = out.now();
     navigated_ = true;
+    attitude_at_ = out.now();
     radar_locked_ = attitude.radar_locked;
     batch_.on(latest_.now, latest_.beams.span(),
               gnc::Quaternion{attitude.q_MB[0], attitude.q_MB[1], attitude.q_MB[2], attitude.q_MB[3]},
@@ -46,7 +50,9 @@ void EdlBg::on(const SetParametersCommand& command, Outbox& out) {
 void EdlBg::on(const ClockTick& tick, Outbox& out) {
     if (at_resolution(tick.now, 1) != tick.now || !navigated_) return;
     const auto solution = batch_.solve(tick.now);
-    if (!solution) return;
+    if (!solution) return watch_radar(tick.now, out);
+    solved_at_ = tick.now;
+    radar_lost_ = false;
     ++solutions_;
     out.send(ModuleId::edl, *solution);
     out.record(packet::GncRadar{.radar_altitude_m = static_cast<float>(solution->altitude_m),
@@ -56,6 +62,14 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
                                 .radar_solutions = solutions_,
                                 .radar_beams = solution->beams,
                                 .radar_locked = radar_locked_});
+}
+
+void EdlBg::watch_radar(Sclk now, Outbox& out) {
+    const bool wanted = now - attitude_at_ < 1.0;
+    const double gap_s = now - solved_at_;
+    if (!wanted || radar_lost_ || gap_s < radar_gap_max_s) return;
+    radar_lost_ = true;
+    out.event(evr::RADAR_LOST{.gap_s = gap_s});
 }
 
 }  // namespace aeolis::flight

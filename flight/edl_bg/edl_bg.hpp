@@ -13,6 +13,8 @@ namespace aeolis::flight {
 ///
 /// In      RadarReturns (64 Hz while the radar is on), NavigatedAttitude, SetParametersCommand, ClockTick
 /// Out     RadarSolution to Edl at 1 Hz, GncRadar; ParametersUpdate to Edl, or the outcome "refused"
+/// Faults  five solutions in a row that do not come, while Edl wants them, are reported once (RADAR_LOST): the averages
+///         outlive the last beam by 5 s, and navigation goes on without
 class EdlBg {
   public:
     explicit EdlBg(const Load&) {}
@@ -23,10 +25,15 @@ class EdlBg {
     void on(const ClockTick& tick, Outbox& out);
 
   private:
+    void watch_radar(Sclk now, Outbox& out);
+
     gnc::RadarBatch batch_;
     RadarReturns latest_;  ///< of this cycle; the attitude that belongs to them comes after them
     bool navigated_ = false;
     bool radar_locked_ = false;
+    bool radar_lost_ = false;
+    Sclk attitude_at_;  ///< Edl sends the attitude as long as it wants the radar
+    Sclk solved_at_;    ///< the last solution; before the first one, when Edl began to want it
     std::uint16_t solutions_ = 0;
 };
 

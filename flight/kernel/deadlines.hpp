@@ -26,6 +26,12 @@ constexpr TaskLimits limits_of(ModuleId id) {
     case ModuleId::descent_engines: return {0.012, 200.0};
     case ModuleId::thrusters: return {0.013, 200.0};
     case ModuleId::power: return {tick_s, 200.0};
+    case ModuleId::telecom: return {tick_s, 200.0};
+    case ModuleId::units: return {tick_s, 200.0};
+    case ModuleId::cruise_attitude: return {tick_s, 200.0};
+    case ModuleId::telecom: return {tick_s, 200.0};
+    case ModuleId::units: return {tick_s, 200.0};
+    case ModuleId::cruise_attitude: return {tick_s, 200.0};
     case ModuleId::system_fault_protection: return {tick_s, 200.0};
     case ModuleId::cross_string: return {tick_s, 500.0};
     case ModuleId::command_dispatcher: return {tick_s, 500.0};

@@ -31,6 +31,9 @@ decltype(auto) with_module(State& state, ModuleId id, Visit&& visit) {
     case ModuleId::descent_engines: return checked(state.descent_engines);
     case ModuleId::thrusters: return checked(state.thrusters);
     case ModuleId::power: return checked(state.power);
+    case ModuleId::telecom: return checked(state.telecom);
+    case ModuleId::units: return checked(state.units);
+    case ModuleId::cruise_attitude: return checked(state.cruise_attitude);
     case ModuleId::system_fault_protection: return checked(state.system_fault_protection);
     case ModuleId::cross_string: return checked(state.cross_string);
     case ModuleId::command_dispatcher: return checked(state.command_dispatcher);

@@ -9,7 +9,7 @@
 namespace aeolis::flight {
 
 /// Who asked for the clock's tick itself; the rate group gets its turn from sync.
-inline constexpr std::array clock_subscribers{ModuleId::sync, ModuleId::cross_string, ModuleId::edl_bg, ModuleId::mfsk,
+inline constexpr std::array clock_subscribers{ModuleId::sync, ModuleId::units, ModuleId::cross_string, ModuleId::edl_bg, ModuleId::mfsk,
                                               ModuleId::edl_comm};
 
 /// Everything that came with one tick, as messages at once: each to the one module that manages its device. R10
@@ -18,11 +18,12 @@ void post_interrupts(const DeviceInputs& in, Deliver&& deliver) {
     if (!in.imu.empty()) deliver(ModuleId::imu, ImuReadings{in.now, in.imu});
     if (!in.radar.empty()) deliver(ModuleId::radar, RadarReturns{in.now, in.radar});
     for (const auto& reply : in.pyro_replies) deliver(ModuleId::pyro, reply);
-    for (const auto& reply : in.switch_replies) deliver(ModuleId::power, reply);
+    for (const auto& reply : in.switch_replies)
+        deliver(is_telecom(reply.id) ? ModuleId::telecom : ModuleId::power, reply);
     if (in.engines) deliver(ModuleId::descent_engines, *in.engines);
     if (in.bridle) deliver(ModuleId::descent_engines, *in.bridle);
     if (in.thrusters) deliver(ModuleId::thrusters, *in.thrusters);
-    if (in.cruise_attitude) deliver(ModuleId::edl, *in.cruise_attitude);
+    if (in.cruise_attitude) deliver(ModuleId::cruise_attitude, *in.cruise_attitude);
     if (in.system_fault) deliver(ModuleId::system_fault_protection, *in.system_fault);
     state_parts(in.cross_string.span(), in.now, [&](const StatePart& part) { deliver(ModuleId::cross_string, part); });
     state_parts(in.restart_record.span(), in.now,

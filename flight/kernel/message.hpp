@@ -26,6 +26,9 @@ enum class ModuleId : std::uint8_t {
     descent_engines,
     thrusters,
     power,
+    telecom,
+    units,
+    cruise_attitude,
     system_fault_protection,
     cross_string,
     command_dispatcher,
@@ -33,7 +36,7 @@ enum class ModuleId : std::uint8_t {
     mfsk,
     edl_comm,
 };
-inline constexpr std::size_t module_count = 14;
+inline constexpr std::size_t module_count = 17;
 constexpr bool in_rate_group(ModuleId id) {
     return id <= ModuleId::thrusters;
 }
@@ -118,6 +121,10 @@ struct RunEngines {
     EngineCommand engines;
 };
 struct PayOutBridle {};
+struct UnitsSelected {  ///< to the managers of devices: address these from now on. R2
+    UnitSelection units;
+};
+struct EdlBegun {};  ///< "do edl" was accepted: what is chosen before EDL is chosen
 struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> up_M{};
@@ -162,6 +169,10 @@ struct SelectPrimeCommand {
     CommandTag tag;
     bool string_b = false;
 };
+struct SelectUnitsCommand {
+    CommandTag tag;
+    command::EDL_SELECT_UNITS arguments;
+};
 struct CommandOutcome {
     CommandTag tag;
     std::optional<CommandRefusal> refused;  ///< none: accepted and executed
@@ -194,9 +205,9 @@ struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
 using Message =
     std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
                  EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
-                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, NavigatedAttitude, SystemFaultReport,
+                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
                  InhibitEdl, SetParametersCommand,
-                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand,
+                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
                  EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,
                  Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");

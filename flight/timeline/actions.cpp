@@ -8,7 +8,7 @@ void ActionContext::fire(PyroId pyro) {
 }
 
 void ActionContext::set_switch(SwitchId id, bool on) {
-    command(ModuleId::power, SetSwitch{id, on});
+    command(is_telecom(id) ? ModuleId::telecom : ModuleId::power, SetSwitch{id, on});
     await({ReplyKind::device_switch, static_cast<std::uint8_t>(id)});
 }
 

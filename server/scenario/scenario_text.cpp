@@ -74,9 +74,10 @@ const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, relay_start_after_touchdown_s),
 };
 const Bindings<Scenario> scenario_fields = {
-    AEOLIS_BIND(Scenario, start_before_entry_s),  AEOLIS_BIND(Scenario, end_after_touchdown_s),
-    AEOLIS_BIND(Scenario, timeout_after_entry_s), AEOLIS_BIND(Scenario, parachute_drag_area_m2),
-    AEOLIS_BIND(Scenario, steady_wind_east_mps),  AEOLIS_BIND(Scenario, steady_wind_north_mps),
+    AEOLIS_BIND(Scenario, start_before_entry_s),       AEOLIS_BIND(Scenario, end_after_touchdown_s),
+    AEOLIS_BIND(Scenario, timeout_after_entry_s),      AEOLIS_BIND(Scenario, parachute_drag_area_m2),
+    AEOLIS_BIND(Scenario, steady_wind_east_mps),       AEOLIS_BIND(Scenario, steady_wind_north_mps),
+    AEOLIS_BIND(Scenario, bus_message_error_fraction),
 };
 const Bindings<Scenario> trigger_fields = {
     AEOLIS_BIND(Scenario, parachute_speed_mps),
@@ -90,6 +91,11 @@ const Bindings<simulation::DensityScale> density_fields = {
 const Bindings<simulation::SystemFault> fault_fields = {
     AEOLIS_BIND(SystemFault, begin_before_entry_s),
     AEOLIS_BIND(SystemFault, duration_s),
+};
+const Bindings<simulation::DeviceFault> device_fault_fields = {
+    AEOLIS_BIND(DeviceFault, begin_before_entry_s),
+    AEOLIS_BIND(DeviceFault, duration_s),
+    AEOLIS_BIND(DeviceFault, late_s),
 };
 const Bindings<simulation::ComputerReset> reset_fields = {
     AEOLIS_BIND(ComputerReset, before_entry_s),
@@ -171,6 +177,37 @@ std::string utc_text(Scet scet) {
                        clock.minutes().count(), clock.seconds().count(), clock.subseconds().count());
 }
 
+/// The schema counts from one behind its zero, "unspecified"; the structs from zero.
+template <typename Enumeration>
+Result<Enumeration> named(int number, bool known, const std::string& field) {
+    if (number == 0) return Error{field + ": missing"};
+    if (!known) return Error{fmt::format("{}: {} is not one of its values", field, number)};
+    return static_cast<Enumeration>(number - 1);
+}
+
+Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault& row, const std::string& name) {
+    const auto device = named<flight::Device>(row.device(), v1::Device_IsValid(row.device()), name + ".device");
+    if (!device) return device.error();
+    const auto unit = named<flight::Unit>(row.unit(), v1::RedundantUnit_IsValid(row.unit()), name + ".unit");
+    if (!unit) return unit.error();
+    const auto kind =
+        named<simulation::DeviceFault::Kind>(row.kind(), v1::DeviceFaultKind_IsValid(row.kind()), name + ".kind");
+    if (!kind) return kind.error();
+    simulation::DeviceFault fault;
+    fault.device = *device;
+    fault.unit = *unit;
+    fault.kind = *kind;
+    read(row, device_fault_fields, fault);
+    return fault;
+}
+
+void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& row) {
+    row.set_device(static_cast<v1::Device>(static_cast<int>(fault.device) + 1));
+    row.set_unit(static_cast<v1::RedundantUnit>(static_cast<int>(fault.unit) + 1));
+    row.set_kind(static_cast<v1::DeviceFaultKind>(static_cast<int>(fault.kind) + 1));
+    write(fault, device_fault_fields, row);
+}
+
 } // namespace
 
 Result<Scenario> scenario_from_message(const v1::Scenario& message) {
@@ -213,6 +250,11 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     }
     for (const auto& row : message.system_faults())
         read(row, fault_fields, scenario.system_faults.emplace_back());
+    for (int i = 0; i < message.device_faults_size(); ++i) {
+        auto fault = device_fault_from_message(message.device_faults(i), fmt::format("device_faults[{}]", i));
+        if (!fault) return fault.error();
+        scenario.device_faults.push_back(*fault);
+    }
     for (const auto& row : message.computer_resets())
         read(row, reset_fields, scenario.computer_resets.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
@@ -250,6 +292,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     }
     for (const auto& fault : scenario.system_faults)
         write(fault, fault_fields, *message.add_system_faults());
+    for (const auto& fault : scenario.device_faults)
+        write_device_fault(fault, *message.add_device_faults());
     for (const auto& reset : scenario.computer_resets)
         write(reset, reset_fields, *message.add_computer_resets());
     return message;
@@ -270,10 +314,10 @@ Result<Scenario> scenario_from_text(std::string_view text, const std::string& fi
     auto scenario = scenario_from_message(message);
     if (scenario) return scenario;
     std::istringstream lines{scenario.error().message};
-    std::vector<std::string> named;
+    std::vector<std::string> faulty;
     for (std::string line; std::getline(lines, line);)
-        named.push_back(line);
-    return Error{joined(named, file + ": ")};
+        faulty.push_back(line);
+    return Error{joined(faulty, file + ": ")};
 }
 
 Result<Scenario> scenario_from_file(const std::filesystem::path& file) {

@@ -3,85 +3,82 @@
 namespace aeolis::simulation {
 namespace {
 
+using flight::SwitchId;
+
 constexpr std::int64_t jitter_ticks = 3; // 0 … 2
 constexpr std::int64_t pyro_ticks = 2;
 constexpr std::int64_t thruster_ticks = 3;
 
-constexpr std::int64_t switch_ticks(flight::SwitchId id) {
+constexpr std::int64_t switch_ticks(SwitchId id) {
     switch (id) {
-    case flight::SwitchId::radar:
+    case SwitchId::radar:
         return 12;
-    case flight::SwitchId::uhf:
+    case SwitchId::uhf:
         return 32;
-    case flight::SwitchId::descent_imu:
+    case SwitchId::descent_imu:
         return 8;
-    case flight::SwitchId::entry_antenna:
+    case SwitchId::entry_antenna:
+    case SwitchId::parachute_antenna:
         return 6;
-    case flight::SwitchId::parachute_antenna:
-        return 6;
-    case flight::SwitchId::thruster_heaters:
+    case SwitchId::thruster_heaters:
         return 4;
+    }
+    return 1;
+}
+
+std::int64_t work_ticks(const BusCommand& command) {
+    switch (command.kind) {
+    case BusCommand::Kind::pyro:
+        return pyro_ticks;
+    case BusCommand::Kind::thrusters:
+        return thruster_ticks;
+    case BusCommand::Kind::device_switch:
+        return switch_ticks(command.switch_id);
     }
     return 1;
 }
 
 } // namespace
 
-void Avionics::later(Pending reply, std::int64_t tick, std::int64_t delay_ticks) {
-    reply.due_tick = tick + delay_ticks + static_cast<std::int64_t>(random_.bits() % jitter_ticks);
-    // A bus that is flooded loses replies; flight's time-outs cover it.
-    (void)pending_.try_push_back(reply);
+bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
+    bool first_firing = false;
+    Reply reply = faults.has(DeviceFault::Kind::refuses, command.device, command.unit) ? refuse(command)
+                                                                                       : obey(command, first_firing);
+    reply.ready_tick = tick + work_ticks(command) + static_cast<std::int64_t>(random_.bits() % jitter_ticks) +
+                       faults.late_ticks(command.device, command.unit);
+    // A terminal that is flooded loses replies; flight's time-outs cover it.
+    (void)replies_.try_push_back(reply);
+    return first_firing;
 }
 
-bool Avionics::fire(flight::PyroId pyro, std::int64_t tick) {
-    const auto index = static_cast<std::size_t>(pyro);
-    if (index >= fired_.size()) return false;
-    const bool first = !fired_[index];
-    fired_[index] = true;
-    later({0, Pending::Kind::pyro, pyro, {}, true}, tick, pyro_ticks);
-    return first;
-}
-
-void Avionics::set(const flight::SwitchReply& wanted, std::int64_t tick) {
-    using flight::SwitchId;
-    const auto index = static_cast<std::size_t>(wanted.id);
-    if (index >= on_.size()) return;
-    on_[index] = wanted.on;
-    if (wanted.on && wanted.id == SwitchId::entry_antenna)
-        on_[static_cast<std::size_t>(SwitchId::parachute_antenna)] = false;
-    if (wanted.on && wanted.id == SwitchId::parachute_antenna)
-        on_[static_cast<std::size_t>(SwitchId::entry_antenna)] = false;
-    later({0, Pending::Kind::device, {}, wanted.id, wanted.on}, tick, switch_ticks(wanted.id));
-}
-
-void Avionics::enable_thrusters(bool enabled, std::int64_t tick) {
-    thrusters_enabled_ = enabled;
-    later({0, Pending::Kind::thrusters, {}, {}, enabled}, tick, thruster_ticks);
-}
-
-void Avionics::reply(std::int64_t tick, flight::DeviceInputs& in) {
-    for (std::size_t i = 0; i < pending_.size();) {
-        const Pending& reply = pending_[i];
-        bool delivered = false;
-        if (reply.due_tick <= tick) {
-            switch (reply.kind) {
-            case Pending::Kind::pyro:
-                delivered = in.pyro_replies.try_push_back({reply.pyro, reply.on});
-                break;
-            case Pending::Kind::device:
-                delivered = in.switch_replies.try_push_back({reply.device, reply.on});
-                break;
-            case Pending::Kind::thrusters:
-                delivered = !in.thrusters.has_value();
-                if (delivered) in.thrusters = flight::ThrusterReply{reply.on};
-                break;
-            }
-        }
-        if (delivered)
-            pending_.erase_at(i);
-        else
-            ++i;
+Avionics::Reply Avionics::obey(const BusCommand& command, bool& first_firing) {
+    switch (command.kind) {
+    case BusCommand::Kind::pyro: {
+        // One that had fired before says so again: it is fired.
+        bool& fired = fired_[static_cast<std::size_t>(command.pyro)];
+        first_firing = !fired;
+        fired = true;
+        break;
     }
+    case BusCommand::Kind::device_switch:
+        on_[static_cast<std::size_t>(command.switch_id)][static_cast<std::size_t>(command.switched)] = command.on;
+        if (command.on && command.switch_id == SwitchId::entry_antenna)
+            on_[static_cast<std::size_t>(SwitchId::parachute_antenna)] = {};
+        if (command.on && command.switch_id == SwitchId::parachute_antenna)
+            on_[static_cast<std::size_t>(SwitchId::entry_antenna)] = {};
+        break;
+    case BusCommand::Kind::thrusters:
+        thrusters_enabled_ = command.on;
+        break;
+    }
+    return {0, command.device, command.unit, command.kind, command.pyro, command.switch_id, command.on, false};
+}
+
+Avionics::Reply Avionics::refuse(const BusCommand& command) const {
+    const bool as_it_is = command.kind == BusCommand::Kind::pyro        ? false
+                          : command.kind == BusCommand::Kind::thrusters ? thrusters_enabled_
+                                                                        : on(command.switch_id, command.switched);
+    return {0, command.device, command.unit, command.kind, command.pyro, command.switch_id, as_it_is, true};
 }
 
 } // namespace aeolis::simulation

@@ -1,50 +1,54 @@
 #pragma once
 
-#include "flight/devices/device_messages.hpp"
-#include "simulation/random.hpp"
-
-#include <cstdint>
+#include "simulation/buses/bus.hpp"
+#include "simulation/buses/device_faults.hpp"
 
 namespace aeolis::simulation {
 
-/// Switches, pyros and thrusters as boxes on a bus: what is on, and the replies that come back a little later.
+/// The boxes behind the remote terminals: what is on, what was fired, and the replies that they have ready a little
+/// later.
 ///
-/// Effects are at once, replies late by a fixed time and by up to 2 ticks of jitter. The times are ours:
-/// pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s).
-/// At start (ours): thrusters enabled, IMU on, entry antenna selected; radar, UHF and heaters off.
-/// An antenna that is switched on takes over from the other.
+/// A command acts when it reaches its terminal; the reply is ready a fixed time later and up to 2 ticks of jitter. The
+/// times are ours: pyro 2 ticks (31 ms), thrusters 3, heaters 4, antenna 6, IMU 8, radar 12 (0.19 s), UHF 32 (0.5 s).
+/// At start (ours): thrusters enabled, both IMUs and UHF transmitters on, entry antenna selected; radar and heaters
+/// off. An antenna that is switched on takes over from the other. Both units of a device drive the same hardware.
 class Avionics {
   public:
     explicit Avionics(Random random) : random_(random) {}
 
-    bool on(flight::SwitchId id) const { return on_[static_cast<std::size_t>(id)]; }
+    bool on(flight::SwitchId id, flight::Unit unit = flight::Unit::a) const {
+        return on_[static_cast<std::size_t>(id)][static_cast<std::size_t>(unit)];
+    }
     bool thrusters_enabled() const { return thrusters_enabled_; }
-
-    /// A pyro fires; false when it had fired before (its reply then says so again: it is fired).
-    bool fire(flight::PyroId pyro, std::int64_t tick);
     bool fired(flight::PyroId pyro) const { return fired_[static_cast<std::size_t>(pyro)]; }
-    void set(const flight::SwitchReply& wanted, std::int64_t tick);
-    void enable_thrusters(bool enabled, std::int64_t tick);
 
-    /// Adds the replies that are due to the inputs of this tick. What finds no room waits for the next.
-    void reply(std::int64_t tick, flight::DeviceInputs& in);
+    /// A command reached its terminal. True when it fired a pyro that had not been fired before.
+    bool execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults);
+
+    struct Reply {
+        std::int64_t ready_tick = 0;
+        flight::Device device{};
+        flight::Unit unit{};
+        BusCommand::Kind kind{};
+        flight::PyroId pyro{};
+        flight::SwitchId switch_id{};
+        bool on = false; ///< fired, on, enabled
+        bool refused = false;
+    };
+    /// Oldest command first. Their owner takes out what the bus fetched.
+    FixedVector<Reply, 64>& replies() { return replies_; }
 
   private:
-    struct Pending {
-        std::int64_t due_tick = 0;
-        enum class Kind : std::uint8_t { pyro, device, thrusters } kind{};
-        flight::PyroId pyro{};
-        flight::SwitchId device{};
-        bool on = false;
-    };
-    void later(Pending reply, std::int64_t tick, std::int64_t delay_ticks);
+    Reply obey(const BusCommand& command, bool& first_firing);
+    Reply refuse(const BusCommand& command) const;
 
-    // In cruise the IMU is on, and telemetry flows: the mission's came over X-band then, here the UHF link stands in for
-    // it from the start, so that ground sees the answers to its commands. Ours.
-    std::array<bool, 6> on_{false, true, true, true, false, false};
+    // In cruise telemetry flows: the mission's came over X-band then, here the UHF link stands in for it from the
+    // start, so that ground sees the answers to its commands. Both transmitters are on, the selected one gets the data.
+    // Ours.
+    std::array<std::array<bool, 2>, 6> on_{{{}, {true, true}, {true, true}, {true, true}, {}, {}}};
     std::array<bool, flight::pyro_count> fired_{};
     bool thrusters_enabled_ = true;
-    FixedVector<Pending, 64> pending_;
+    FixedVector<Reply, 64> replies_;
     Random random_;
 };
 

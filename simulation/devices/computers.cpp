@@ -5,8 +5,6 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double device_hold_s = 2.0; // [facts-l]
-
 flight::Load load_of(flight::Load load, flight::String string) {
     load.string = string;
     load.role = string == flight::String::a ? flight::Role::prime : flight::Role::second_chance;
@@ -17,8 +15,7 @@ flight::Load load_of(flight::Load load, flight::String string) {
 
 Computers::Computers(const flight::Load& load, Sclk start)
     : computers_{flight::Computer{load_of(load, flight::String::a), start},
-                 flight::Computer{load_of(load, flight::String::b), start}},
-      commanded_(start) {}
+                 flight::Computer{load_of(load, flight::String::b), start}} {}
 
 void Computers::step(flight::DeviceInputs& in) {
     const std::size_t listening = commander_ == nobody ? prime() : commander_;
@@ -47,28 +44,13 @@ void Computers::step(flight::DeviceInputs& in) {
 
     for (const flight::DeviceOutputs& out : out_)
         if (!out.restart_record.empty()) restart_record_ = out.restart_record;
-    choose_commander(in.now);
+    choose_commander();
     if (commander_ != nobody && out_[commander_].designate_b_prime) prime_is_b_ = *out_[commander_].designate_b_prime;
 }
 
-void Computers::choose_commander(Sclk now) {
+void Computers::choose_commander() {
     const std::size_t backup = 1 - prime();
     commander_ = out_[backup].in_command ? backup : out_[prime()].in_command ? prime() : nobody;
-    if (commander_ == nobody) {
-        if (now - commanded_ > device_hold_s) {
-            held_.attitude = {};
-            held_.engines = {};
-        }
-        return;
-    }
-    commanded_ = now;
-    held_.attitude = out_[commander_].attitude;
-    held_.engines = out_[commander_].engines;
-    held_.pay_out_bridle = out_[commander_].pay_out_bridle;
-}
-
-const flight::DeviceOutputs& Computers::obeyed() const {
-    return commander_ == nobody ? held_ : out_[commander_];
 }
 
 flight::Computer::Counters Computers::counters() const {

@@ -13,7 +13,7 @@ namespace aeolis::simulation {
 ///
 /// In       what reaches the computer in command with a tick; both hear the clock, the IMU's own link and the receiver
 /// Out      the commands that the bus takes, and what either computer records and radiates
-/// Faults   when neither is in command, devices hold their last command for 2 s [facts], then engines and thrusters rest
+/// Faults   when neither is in command nobody runs the buses; what devices then do is theirs (simulation/buses)
 /// Copying it is a fork, as of all the vehicle.
 class Computers {
   public:
@@ -26,8 +26,8 @@ class Computers {
     /// One cycle of both. `in` is completed with what only the computers give each other.
     void step(flight::DeviceInputs& in);
 
-    /// The commands of this cycle that the devices obey.
-    const flight::DeviceOutputs& obeyed() const;
+    /// The commands of this cycle that go out on the buses; none when neither computer is in command.
+    const flight::DeviceOutputs* commands() const { return commander_ == nobody ? nullptr : &out_[commander_]; }
     /// What the computer at `place` (0: A, 1: B) put out in this cycle.
     const flight::DeviceOutputs& outputs(std::size_t place) const { return out_[place]; }
 
@@ -41,13 +41,11 @@ class Computers {
     static constexpr std::size_t nobody = 2;
 
     std::size_t prime() const { return prime_is_b_ ? 1 : 0; }
-    void choose_commander(Sclk now);
+    void choose_commander();
 
     std::array<flight::Computer, 2> computers_;
     std::array<flight::DeviceOutputs, 2> out_;
-    flight::DeviceInputs beside_;  ///< of the computer that is not in command
-    flight::DeviceOutputs held_;   ///< what devices do while nobody commands
-    Sclk commanded_;               ///< when somebody last did
+    flight::DeviceInputs beside_; ///< of the computer that is not in command
     std::size_t commander_ = 0;
     flight::StateOctets restart_record_;
     std::shared_ptr<flight::CycleRunner> runner_;

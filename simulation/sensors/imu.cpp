@@ -28,9 +28,9 @@ void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_star
     turned_ = turned_ * q_MB_start.conjugate() * rotation({0.0, 0.0, mars_spin_rps * step_s}) * q_MB_end;
 }
 
-flight::ImuSample Imu::read() {
+flight::ImuSample Imu::read(std::uint32_t count) {
     flight::ImuSample sample;
-    sample.count = ++count_;
+    sample.count = count;
     Vector3 delta_v =
         delta_v_mps_ + accelerometer_scale_.cwiseProduct(delta_v_mps_) + accelerometer_bias_mps2_ * reading_s;
     Vector3 delta_angle = rotation_vector(turned_) + gyro_bias_rps_ * reading_s;
@@ -38,9 +38,13 @@ flight::ImuSample Imu::read() {
     if (angle_noise_rad_ > 0.0) delta_angle += angle_noise_rad_ * vector3(noise_.normal3());
     sample.delta_v_mps = array3(delta_v);
     sample.delta_angle_rad = array3(delta_angle);
+    begin_reading();
+    return sample;
+}
+
+void Imu::begin_reading() {
     delta_v_mps_.setZero();
     turned_.setIdentity();
-    return sample;
 }
 
 } // namespace aeolis::simulation

@@ -20,8 +20,10 @@ class Imu {
     /// ends.
     void integrate(const Vector3& specific_force_M_mps2, const Quaternion& q_MB_start, const Quaternion& q_MB_end,
                    double step_s);
-    /// The reading that ends here; the next begins.
-    flight::ImuSample read();
+    /// The reading that ends here; the next begins. `count` is its number since the unit was started.
+    flight::ImuSample read(std::uint32_t count);
+    /// Forgets what it has integrated of a reading: nobody listened when it began.
+    void begin_reading();
 
   private:
     Vector3 accelerometer_bias_mps2_, accelerometer_scale_, gyro_bias_rps_;
@@ -29,7 +31,6 @@ class Imu {
     Random noise_;
     Vector3 delta_v_mps_ = Vector3::Zero();
     Quaternion turned_ = Quaternion::Identity(); ///< since the last reading, relative to inertial space
-    std::uint32_t count_ = 0;
 };
 
 } // namespace aeolis::simulation

@@ -71,11 +71,12 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     }
 }
 
-void Vehicle::command(const flight::DeviceOutputs& out, bool thrusters_enabled, double now_s) {
-    attitude_command_ = out.attitude;
+void Vehicle::command(const flight::AttitudeCommand& attitude, bool thrusters_enabled,
+                      const flight::EngineCommand& engines, bool pay_out_bridle, double now_s) {
+    attitude_command_ = attitude;
     thrusters_enabled_ = thrusters_enabled;
-    engines_.command(out.engines, now_s);
-    if (out.pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
+    engines_.command(engines, now_s);
+    if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
 }
 
 bool Vehicle::parachute_open(double now_s) const {

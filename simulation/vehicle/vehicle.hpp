@@ -25,7 +25,9 @@ class Vehicle {
 
     /// What a pyro does to it. Firing one twice does nothing.
     void fire(flight::PyroId pyro, double now_s);
-    void command(const flight::DeviceOutputs& out, bool thrusters_enabled, double now_s);
+    /// What the drivers of thrusters, engines and bridle do from now on.
+    void command(const flight::AttitudeCommand& attitude, bool thrusters_enabled, const flight::EngineCommand& engines,
+                 bool pay_out_bridle, double now_s);
     /// Flies on by at most 5 ms.
     void step(double now_s, double step_s);
 

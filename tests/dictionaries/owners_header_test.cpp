@@ -22,6 +22,6 @@ TEST_CASE("each owner's code names its row of the spreadsheet, and its module as
 TEST_CASE("flight knows the owners at compile time", "[dictionary][R5]") {
     using namespace aeolis::flight;
     STATIC_REQUIRE(owner_of(Decision::tone) == ModuleId::mfsk);
-    STATIC_REQUIRE(owner_of(Device::pyros) == ModuleId::pyro);
+    STATIC_REQUIRE(owner_of(DeviceLine::pyros) == ModuleId::pyro);
     STATIC_REQUIRE(action_owner::fire_parachute_mortar == ModuleId::pyro);
 }

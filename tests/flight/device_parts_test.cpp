@@ -18,7 +18,7 @@ using Octets = std::vector<unsigned char>;
 
 std::vector<Octets> octets_of(DeviceOutputs& outputs) {
     std::vector<Octets> parts;
-    each_device(outputs, [&](Device, const auto& part) {
+    each_device(outputs, [&](DeviceLine, const auto& part) {
         Octets octets(sizeof part);
         std::memcpy(octets.data(), &part, sizeof part);
         parts.push_back(std::move(octets));
@@ -43,7 +43,7 @@ TEST_CASE("a module writes the devices that it owns and no other, whatever it is
     messages.emplace_back(ToneRequest{tone::touchdown, Sclk{1000.0}});
     messages.emplace_back(ClockTick{Sclk{1000.0}});
     messages.emplace_back(Tick{Sclk{1000.0}});
-    std::set<Device> written;
+    std::set<DeviceLine> written;
     auto state = std::make_unique<ComputerState>(Load{}, Sclk{1000.0});
     test::OutboxRecorder recorder;
     for (std::size_t i = 0; i < module_count; ++i) {
@@ -53,7 +53,7 @@ TEST_CASE("a module writes the devices that it owns and no other, whatever it is
             const auto before = octets_of(*recorder.bus);
             (void)with_module(*state, id, [&](auto& module) { return handle(module, message, recorder.out); });
             const auto after = octets_of(*recorder.bus);
-            each_device(*recorder.bus, [&, part = std::size_t{0}](Device device, const auto&) mutable {
+            each_device(*recorder.bus, [&, part = std::size_t{0}](DeviceLine device, const auto&) mutable {
                 const bool changed = before[part] != after[part];
                 ++part;
                 if (!changed) return;
@@ -90,5 +90,5 @@ TEST_CASE("a decision is explained by its owner; another that tries fails its ch
     test::OutboxRecorder recorder{ModuleId::mfsk};
     recorder.out.record(packet::Explanation{.decision = Decision::tone});
     CHECK(recorder.packets<packet::Explanation>() == 1);
-    CHECK_THROWS_AS(recorder.out.record(packet::Explanation{.decision = Decision::parachute}), CheckFailed);
+    CHECK_THROWS_AS(recorder.out.record(packet::Explanation{.decision = Decision::parachute_deploy}), CheckFailed);
 }

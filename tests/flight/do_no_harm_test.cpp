@@ -21,7 +21,7 @@ Load backup_load() {
 }
 
 bool commands_something(const DeviceOutputs& out) {
-    return out.in_command || !out.pyros.empty() || !out.switches.empty() || out.thrusters_enabled || out.engines.ignited ||
+    return out.in_command || !out.pyros.empty() || !out.switches.empty() || !out.telecom.empty() || out.thrusters_enabled || out.engines.ignited ||
            out.pay_out_bridle || out.tone || out.designate_b_prime || !out.cross_string.empty() ||
            out.attitude.mode != AttitudeCommand::Mode::idle;
 }

@@ -133,3 +133,34 @@ TEST_CASE("the scenarios that ship can be flown, and a wrong name is told the ri
     CHECK_THAT(names, Catch::VectorContains(std::string{"bench_wideband"}));
     CHECK_THAT(library.scenario("../scenarios/nominal").error().message, Catch::Contains("there are: "));
 }
+
+TEST_CASE("device faults are read by device, unit and kind, and come back as written", "[scenario][R2]") {
+    const auto scenario = scenario_from_text(least + R"(
+        device_faults { device: DEVICE_PYRO unit: REDUNDANT_UNIT_B kind: DEVICE_FAULT_KIND_SILENT
+                        begin_before_entry_s: 900 duration_s: 60 }
+        device_faults { device: DEVICE_UHF unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_LATE
+                        begin_before_entry_s: 800 duration_s: 10 late_s: 7 }
+        bus_message_error_fraction: 0.01)",
+                                             "s.textproto");
+    REQUIRE(scenario);
+    REQUIRE(scenario->device_faults.size() == 2);
+    CHECK(scenario->device_faults[0].device == flight::Device::pyro);
+    CHECK(scenario->device_faults[0].unit == flight::Unit::b);
+    CHECK(scenario->device_faults[0].kind == simulation::DeviceFault::Kind::silent);
+    CHECK(scenario->device_faults[1].late_s == 7.0);
+    CHECK(scenario->bus_message_error_fraction == 0.01);
+    const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
+    REQUIRE(again);
+    CHECK(again->device_faults.size() == 2);
+    CHECK(again->device_faults[1].device == flight::Device::uhf);
+    CHECK(again->device_faults[1].begin_before_entry_s == 800.0);
+}
+
+TEST_CASE("a device fault without device, unit or kind, or one that the device cannot have, is refused by its field",
+          "[scenario]") {
+    CHECK(error_of(least + "device_faults { unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_SILENT duration_s: 1 }") ==
+          "s.textproto: device_faults[0].device: missing");
+    CHECK_THAT(error_of(least + "device_faults { device: DEVICE_PYRO unit: REDUNDANT_UNIT_A "
+                                "kind: DEVICE_FAULT_KIND_DROPOUT duration_s: 1 }"),
+               Catch::StartsWith("s.textproto: device_faults[0].kind: "));
+}

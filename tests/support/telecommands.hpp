@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-// The two commands of a landing, packed field by field here and not by the encoder of commands/.
+// The commands of a landing, packed field by field here and not by the encoder of commands/.
 namespace aeolis::test {
 
 inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolution& solution) {
@@ -55,6 +55,14 @@ inline std::vector<std::uint8_t> enable_second_chance() {
 }
 inline std::vector<std::uint8_t> select_prime_b() {
     return with_one_octet(flight::command::SELECT_PRIME::opcode, 1);
+}
+/// Units in the order of flight::Device, 0 for A and 1 for B.
+inline std::vector<std::uint8_t> select_units(std::span<const std::uint8_t> units) {
+    std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SELECT_UNITS::argument_octets);
+    BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
+    for (const std::uint8_t unit : units) arguments.put(unit, 8);
+    seal_tc_packet(packet, Apid{1}, 2, flight::command::EDL_SELECT_UNITS::opcode);
+    return packet;
 }
 
 }  // namespace aeolis::test

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
+
+namespace aeolis::flight {
+
+/// The descent engines and the bridle's brake, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not.
+/// R5, R10, R22
+///
+/// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
+/// Out     engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when the engines start to run,
+///         and when the bridle is payed out; Confirm
+/// Faults  engines that do not run and a bridle that stops answer nobody: the timeline's time-out does
+class DescentEngines {
+  public:
+    explicit DescentEngines(const Load&) {}
+
+    void on(const RunEngines& command, Outbox& out);
+    void on(const PayOutBridle& command, Outbox& out);
+    void on(const EngineReply& reply, Outbox& out);
+    void on(const BridleReply& reply, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
+    void on(const Tick& tick, Outbox& out);
+
+  private:
+    EngineCommand command_;
+    Unit unit_ = Unit::a;
+    bool pay_out_ = false;
+    bool running_ = false;
+    bool payed_out_ = false;
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "flight/devices/switch_replies.hpp"
+#include "flight/load.hpp"
+
+namespace aeolis::flight {
+
+/// Power switching, on the 8 Hz bus: radar, IMU, thruster heaters. Outside the rate group. R5, R10, R28
+///
+/// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
+/// Out     switch commands; ActionReply to Edl when the switch is as commanded
+/// Faults  a switch that refuses is reported (DEVICE_REFUSED) and answers nobody: the timeline's time-out does. A reply
+///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED)
+class PowerManager {
+  public:
+    explicit PowerManager(const Load&) {}
+
+    void on(const SetSwitch& command, Outbox& out);
+    void on(const SwitchReply& reply, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
+
+  private:
+    SwitchReplies replies_;
+    Unit unit_ = Unit::a;
+};
+
+}  // namespace aeolis::flight

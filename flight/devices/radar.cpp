@@ -1,0 +1,20 @@
+#include "flight/devices/radar.hpp"
+
+namespace aeolis::flight {
+
+void RadarManager::on(const RadarReturns& returns, Outbox&) {
+    latest_ = returns;
+}
+
+void RadarManager::on(const UnitsSelected& selected, Outbox&) {
+    unit_ = selected.units[Device::radar];
+}
+
+void RadarManager::on(const Tick&, Outbox& out) {
+    out.bus().units[Device::radar] = unit_;
+    if (!latest_.beams.empty()) out.send(ModuleId::edl_bg, latest_);
+    latest_.beams.clear();
+    out.send(ModuleId::sync, Confirm{ModuleId::radar});
+}
+
+}  // namespace aeolis::flight

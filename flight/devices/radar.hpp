@@ -1,0 +1,26 @@
+#pragma once
+
+#include "flight/kernel/outbox.hpp"
+#include "flight/load.hpp"
+
+namespace aeolis::flight {
+
+/// The landing radar, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not. R5, R10, R22
+///
+/// In      RadarReturns (interrupt), Tick, UnitsSelected
+/// Out     RadarReturns to EdlBg, once a cycle when there are any; Confirm
+/// Faults  returns that do not come are missed by EdlBg, which needs them (RADAR_LOST)
+class RadarManager {
+  public:
+    explicit RadarManager(const Load&) {}
+
+    void on(const RadarReturns& returns, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
+    void on(const Tick& tick, Outbox& out);
+
+  private:
+    RadarReturns latest_;
+    Unit unit_ = Unit::a;
+};
+
+}  // namespace aeolis::flight

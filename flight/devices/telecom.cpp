@@ -1,0 +1,24 @@
+#include "flight/devices/telecom.hpp"
+
+namespace aeolis::flight {
+
+void TelecomManager::on(const SetSwitch& command, Outbox& out) {
+    address(out);
+    replies_.command(command, out.bus().telecom, out);
+}
+
+void TelecomManager::on(const SwitchReply& reply, Outbox& out) {
+    replies_.reply(reply, units_[switched_by(reply.id)], out);
+}
+
+void TelecomManager::on(const UnitsSelected& selected, Outbox& out) {
+    units_ = selected.units;
+    address(out);
+}
+
+void TelecomManager::address(Outbox& out) const {
+    out.bus().units[Device::uhf] = units_[Device::uhf];
+    out.bus().units[Device::x_band] = units_[Device::x_band];
+}
+
+}  // namespace aeolis::flight

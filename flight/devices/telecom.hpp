@@ -1,0 +1,30 @@
+#pragma once
+
+#include "flight/devices/switch_replies.hpp"
+#include "flight/load.hpp"
+
+namespace aeolis::flight {
+
+/// Telecom settings, on the 8 Hz bus: the UHF transmitter, and the antenna of UHF and X-band, which the X-band unit
+/// selects. An owner of its own, beside power: power decides whether a box has current, telecom what the radio does with
+/// it. Outside the rate group. R5, R10, R28
+///
+/// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
+/// Out     switch commands; ActionReply to Edl when the radio is as commanded
+/// Faults  as of power: DEVICE_REFUSED, REPLY_UNEXPECTED
+class TelecomManager {
+  public:
+    explicit TelecomManager(const Load&) {}
+
+    void on(const SetSwitch& command, Outbox& out);
+    void on(const SwitchReply& reply, Outbox& out);
+    void on(const UnitsSelected& selected, Outbox& out);
+
+  private:
+    void address(Outbox& out) const;
+
+    SwitchReplies replies_;
+    UnitSelection units_;
+};
+
+}  // namespace aeolis::flight

@@ -1,0 +1,39 @@
+#include "flight/devices/thrusters.hpp"
+
+namespace aeolis::flight {
+namespace {
+
+constexpr auto device = static_cast<std::uint8_t>(Device::thrusters);
+
+}  // namespace
+
+void Thrusters::on(const PointVehicle& command, Outbox&) {
+    attitude_ = command.attitude;
+}
+
+void Thrusters::on(const EnableThrusters& command, Outbox&) {
+    enable_ = awaited_ = command.enabled;
+}
+
+void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
+    if (!awaited_ || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device_number = device});
+    // The answer to a command that a newer one has overtaken: the newer one's is still due.
+    if (!reply.refused && reply.enabled != *awaited_) return;
+    awaited_.reset();
+    if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = device});
+    out.send(ModuleId::edl, ActionReply{ReplyKind::thrusters, 0});
+}
+
+void Thrusters::on(const UnitsSelected& selected, Outbox&) {
+    unit_ = selected.units[Device::thrusters];
+}
+
+void Thrusters::on(const Tick&, Outbox& out) {
+    out.bus().units[Device::thrusters] = unit_;
+    out.bus().attitude = attitude_;
+    if (enable_) out.bus().thrusters_enabled = *enable_;
+    enable_.reset();
+    out.send(ModuleId::sync, Confirm{ModuleId::thrusters});
+}
+
+}  // namespace aeolis::flight

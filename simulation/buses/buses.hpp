@@ -1,0 +1,88 @@
+#pragma once
+
+#include "simulation/buses/bus.hpp"
+#include "simulation/buses/device_faults.hpp"
+#include "simulation/devices/avionics.hpp"
+
+namespace aeolis::simulation {
+
+/// The vehicle's two 1553 buses, run by the computer that flies, with the devices behind their remote terminals. R2
+///
+///   64 Hz   radar, pyro controllers, descent engines with the bridle, thrusters
+///    8 Hz   power switches and heaters, UHF, X-band with the antennas
+///
+/// The IMU hangs on neither: its samples come over a link of its own.
+///
+/// In       what a cycle commands, each to the unit addressed in it      Out   what is done, and replies for the
+/// computer Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz
+/// with the next
+///          multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
+/// Cyclic   attitude, thrust and pay-out go out in every 64 Hz frame, and radar and engines are read in it. A driver
+/// that
+///          hears nothing keeps its last command for 2 s and then goes safe: no thrust, no torque. [facts]
+class Buses {
+  public:
+    Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
+
+    /// What the computer commands in this cycle.
+    void take(const flight::DeviceOutputs& out);
+    /// No computer runs the buses in this cycle: no frame begins with the next tick.
+    void leave_alone() { commanded_ = false; }
+    /// The frames that begin with this tick.
+    void frame(Sclk now);
+
+    /// Pyros that fired in the frame of this tick, each for the first time.
+    std::span<const flight::PyroId> fired() const { return fired_.span(); }
+    const flight::AttitudeCommand& attitude() const { return attitude_; }
+    const flight::EngineCommand& engines() const { return engines_; }
+    bool pay_out_bridle() const { return pay_out_bridle_; }
+    const Avionics& devices() const { return devices_; }
+
+    /// Adds the replies that the frames of this tick brought.
+    void reply(flight::DeviceInputs& in) const;
+    bool radar_was_read() const { return radar_was_read_; }
+    bool engines_were_read() const { return engines_were_read_; }
+    bool uhf_radiates() const;
+    /// Whether the sample that the IMU's link carries now arrives.
+    bool imu_sample_arrives();
+    flight::Unit unit(flight::Device device) const { return addressed_[device]; }
+    const DeviceFaults& faults() const { return faults_; }
+
+    const Bus::Counters& counters_64_hz() const { return bus_64_hz_.counters(); }
+    const Bus::Counters& counters_8_hz() const { return bus_8_hz_.counters(); }
+
+  private:
+    void take_switches(const flight::SwitchCommands& commands);
+    void run(Bus& bus, std::int64_t tick);
+    void run_cyclic(std::int64_t tick);
+    void fetch(Bus& bus, std::int64_t tick);
+    bool obeys(flight::Device device) const;
+
+    Bus bus_64_hz_;
+    Bus bus_8_hz_;
+    DeviceFaults faults_;
+    Avionics devices_;
+    Random imu_link_;
+
+    // As commanded in the cycle that ended last.
+    flight::UnitSelection addressed_;
+    flight::AttitudeCommand attitude_due_;
+    flight::EngineCommand engines_due_;
+    bool pay_out_bridle_due_ = false;
+    bool commanded_ = false;
+
+    // As the drivers hold it.
+    flight::AttitudeCommand attitude_;
+    flight::EngineCommand engines_;
+    bool pay_out_bridle_ = false;
+    std::int64_t attitude_tick_ = 0;
+    std::int64_t engines_tick_ = 0;
+
+    // Of the frames of this tick.
+    FixedVector<flight::PyroId, 32> fired_;
+    FixedVector<Avionics::Reply, 16> fetched_;
+    bool radar_was_read_ = false;
+    bool engines_were_read_ = false;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,60 @@
+#include "flight/devices/switch_replies.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/outbox.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+namespace {
+
+struct Fixture {
+    SwitchReplies replies;
+    test::OutboxRecorder recorder{ModuleId::power};
+    void command(SwitchId id, bool on) {
+        recorder.begin(ModuleId::power, Sclk{1.0});
+        replies.command({id, on}, recorder.bus->switches, recorder.out);
+    }
+    std::size_t answers(const SwitchReply& reply) {
+        recorder.begin(ModuleId::power, Sclk{1.0});
+        replies.reply(reply, Unit::a, recorder.out);
+        return recorder.sent<ActionReply>().size();
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a switch answers the timeline once, when it is as it was told to be", "[devices][R14]") {
+    Fixture f;
+    f.command(SwitchId::uhf, true);
+    CHECK(f.answers({SwitchId::uhf, true}) == 1);
+    CHECK(f.answers({SwitchId::uhf, true}) == 0);
+    CHECK(f.recorder.events<evr::REPLY_UNEXPECTED>() == 1);
+}
+
+TEST_CASE("a switch that refuses is reported and does not answer the timeline, even when it is on already",
+          "[devices][R14]") {
+    Fixture f;
+    f.command(SwitchId::uhf, true);
+    CHECK(f.answers({SwitchId::uhf, true, Unit::a, true}) == 0);
+    CHECK(f.recorder.events<evr::DEVICE_REFUSED>() == 1);
+}
+
+TEST_CASE("the answer to an overtaken switch command is not taken for the newer one's", "[devices][R14]") {
+    Fixture f;
+    f.command(SwitchId::radar, true);
+    f.command(SwitchId::radar, false);
+    CHECK(f.answers({SwitchId::radar, true}) == 0);
+    CHECK(f.recorder.out.sent().empty());
+    CHECK(f.answers({SwitchId::radar, false}) == 1);
+}
+
+TEST_CASE("a switch that there is not, and one more than the bus takes, are reported", "[devices][R4]") {
+    Fixture f;
+    f.command(static_cast<SwitchId>(99), true);
+    CHECK(f.recorder.events<evr::SWITCH_QUEUE_FULL>() == 1);
+    CHECK(f.answers({static_cast<SwitchId>(99), true}) == 0);
+    for (int i = 0; i < 8; ++i) f.command(SwitchId::radar, true);
+    f.command(SwitchId::radar, true);
+    CHECK(f.recorder.events<evr::SWITCH_QUEUE_FULL>() == 1);
+}

@@ -1,0 +1,41 @@
+#include "flight/devices/thrusters.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/device_module.hpp"
+
+using namespace aeolis;
+using namespace aeolis::flight;
+
+TEST_CASE("thrusters are enabled at their turn, and the driver's answer goes to Edl", "[devices][R5][R10][R14]") {
+    test::Spoken<Thrusters> thrusters{ModuleId::thrusters};
+    thrusters.on(EnableThrusters{true});
+    CHECK_FALSE(thrusters.recorder.bus->thrusters_enabled);
+    thrusters.on(Tick{Sclk{1.0}});
+    CHECK(thrusters.recorder.bus->thrusters_enabled == true);
+    thrusters.recorder.bus->begin_cycle();
+    thrusters.on(Tick{Sclk{1.0}});
+    CHECK_FALSE(thrusters.recorder.bus->thrusters_enabled);
+    CHECK(thrusters.on(ThrusterReply{true}).sent<ActionReply>().size() == 1);
+}
+
+TEST_CASE("an answer that is not due, from the other driver or a refusal does not answer the timeline",
+          "[devices][R2][R4][R14]") {
+    test::Spoken<Thrusters> thrusters{ModuleId::thrusters};
+    CHECK(thrusters.on(ThrusterReply{true}).events<evr::REPLY_UNEXPECTED>() == 1);
+    thrusters.on(EnableThrusters{false});
+    CHECK(thrusters.on(ThrusterReply{false, Unit::b}).events<evr::REPLY_UNEXPECTED>() == 1);
+    CHECK(thrusters.on(ThrusterReply{true, Unit::a, true}).events<evr::DEVICE_REFUSED>() == 1);
+    CHECK(thrusters.recorder.sent<ActionReply>().empty());
+}
+
+TEST_CASE("the answer to an overtaken thruster command is not taken for the newer one's", "[devices][R14]") {
+    test::Spoken<Thrusters> thrusters{ModuleId::thrusters};
+    thrusters.on(EnableThrusters{false});
+    thrusters.on(EnableThrusters{true});
+    CHECK(thrusters.on(ThrusterReply{false}).out.sent().empty());
+    CHECK(thrusters.on(ThrusterReply{true}).sent<ActionReply>().size() == 1);
+}
+
+TEST_CASE("the thrusters' manager confirms each tick and addresses the selected driver", "[devices][R2][R22]") {
+    CHECK(test::confirms_and_addresses<Thrusters>(ModuleId::thrusters, Device::thrusters));
+}

@@ -1,0 +1,234 @@
+#include "simulation/buses/device_faults.hpp"
+
+#include "common/space_packet.hpp"
+#include "generated/dictionary_flight.hpp"
+#include "simulation/devices/recorder.hpp"
+#include "simulation/landing.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/telecommands.hpp"
+
+#include <algorithm>
+#include <map>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+using flight::Device;
+using flight::Unit;
+using Kind = DeviceFault::Kind;
+
+// Landings with broken devices: what the vehicle makes of them is told by its own recording.
+namespace {
+
+using Selection = std::array<std::uint8_t, flight::device_count>;
+constexpr Selection all_a{};
+constexpr Selection all_b{1, 1, 1, 1, 1, 1, 1, 1};
+
+constexpr Selection only(Device device) {
+    Selection units{};
+    units[static_cast<std::size_t>(device)] = 1;
+    return units;
+}
+
+struct Landed {
+    Outcome outcome{};
+    std::string reason;
+    std::vector<std::uint8_t> recording;
+    std::map<std::uint16_t, flight::TimepointVerdict> verdicts; ///< by timepoint
+    std::map<std::uint16_t, int> events;
+
+    flight::TimepointVerdict verdict(TimepointId timepoint) const { return verdicts.at(timepoint.value); }
+    int count(EvrId id) const {
+        const auto found = events.find(id.value);
+        return found == events.end() ? 0 : found->second;
+    }
+    std::vector<std::uint16_t> timed_out() const {
+        std::vector<std::uint16_t> rows;
+        for (const auto& [row, verdict] : verdicts)
+            if (verdict == flight::TimepointVerdict::timed_out) rows.push_back(row);
+        return rows;
+    }
+};
+
+void read(Landed& landed) {
+    std::span<const std::uint8_t> octets{landed.recording};
+    for (auto packet = take_packet(octets); !packet.empty(); packet = take_packet(octets)) {
+        const Apid apid = read_primary_header(packet)->apid;
+        const auto field = [&](std::size_t bit, unsigned bits) {
+            return read_bits(packet, tm_data_offset_octets * 8 + bit, bits);
+        };
+        if (apid == flight::packet::TimepointFired::apid)
+            landed.verdicts[static_cast<std::uint16_t>(field(0, 16))] =
+                static_cast<flight::TimepointVerdict>(field(16 + 64 + 64, 8));
+        if (apid == flight::evr::EDL_BEGUN::apid) ++landed.events[static_cast<std::uint16_t>(field(0, 16))];
+    }
+}
+
+Landed land(const std::vector<DeviceFault>& faults, const Selection& units = all_a,
+            double bus_message_error_fraction = 1.0e-4) {
+    Scenario scenario = tests::gale_scenario(900.0);
+    scenario.device_faults = faults;
+    scenario.bus_message_error_fraction = bus_message_error_fraction;
+    REQUIRE(impossible_values(scenario).empty());
+    Landing landing{scenario, 1, 0};
+    landing.uplink(test::set_parameters(landing.solution()));
+    if (units != all_a) landing.uplink(test::select_units(units));
+    for (int i = 0; i < 64; ++i)
+        landing.step();
+    landing.uplink(test::do_edl());
+    while (landing.outcome() == Outcome::running)
+        landing.step();
+    Landed landed{landing.outcome(), landing.outcome_reason(), {}, {}, {}};
+    landed.recording.assign(landing.recording().begin(), landing.recording().end());
+    read(landed);
+    return landed;
+}
+
+DeviceFault all_the_time(Device device, Kind kind, Unit unit = Unit::a) {
+    return {device, unit, kind, 900.0, 2000.0};
+}
+
+/// UHF unit A, from before uhf_start at E-800 s to after it; not when the timeline stops UHF in the end.
+DeviceFault at_its_start(Kind kind) {
+    return {Device::uhf, Unit::a, kind, 810.0, 60.0};
+}
+
+} // namespace
+
+TEST_CASE("a landing without faults has every reply in time, and no device module has anything to report",
+          "[simulation][faults][R2][R14]") {
+    const Landed landed = land({});
+    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.timed_out().empty());
+    for (const EvrId id :
+         {flight::evr::REPLY_UNEXPECTED::id, flight::evr::DEVICE_REFUSED::id, flight::evr::PYRO_NOT_FIRED::id,
+          flight::evr::IMU_SAMPLES_MISSING::id, flight::evr::RADAR_LOST::id, flight::evr::CRUISE_ATTITUDE_UNUSABLE::id})
+        CHECK(landed.count(id) == 0);
+}
+
+TEST_CASE("a UHF unit that does not answer ends uhf_start in its time-out, and the landing goes on",
+          "[simulation][faults][R2][R14]") {
+    const Landed landed = land({at_its_start(Kind::silent)});
+    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.timed_out() == std::vector<std::uint16_t>{flight::timepoint::uhf_start.value});
+    CHECK(landed.count(flight::evr::TIMEPOINT_TIMED_OUT::id) == 1);
+}
+
+TEST_CASE("a UHF unit that refuses or answers too late ends uhf_start in its time-out too, and says why",
+          "[simulation][faults][R2][R14]") {
+    const Landed refused = land({at_its_start(Kind::refuses)});
+    CHECK(refused.outcome == Outcome::touchdown);
+    CHECK(refused.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::timed_out);
+    CHECK(refused.count(flight::evr::DEVICE_REFUSED::id) == 1);
+
+    const Landed late = land({at_its_start(Kind::late)});
+    CHECK(late.outcome == Outcome::touchdown);
+    CHECK(late.verdict(flight::timepoint::uhf_start) == flight::TimepointVerdict::timed_out);
+    CHECK(late.count(flight::evr::DEVICE_REFUSED::id) == 0);
+}
+
+TEST_CASE("faults of units that are not selected change nothing, to the last bit", "[simulation][faults][R2]") {
+    const Landed sound = land({});
+    std::vector<DeviceFault> faults;
+    for (std::size_t device = 0; device < flight::device_count; ++device)
+        faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::b));
+    CHECK(land(faults).recording == sound.recording);
+}
+
+TEST_CASE("with all B units selected the vehicle lands as well, by other sensors", "[simulation][faults][R2]") {
+    std::vector<DeviceFault> faults;
+    for (std::size_t device = 0; device < flight::device_count; ++device)
+        faults.push_back(all_the_time(static_cast<Device>(device), Kind::silent, Unit::a));
+    const Landed landed = land(faults, all_b);
+    INFO(landed.reason);
+    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.timed_out().empty());
+    CHECK(landed.count(flight::evr::UNITS_SELECTED::id) == 1);
+    CHECK(landed.recording != land({}).recording);
+}
+
+TEST_CASE("a pyro controller that is silent loses the landing, unless the other is selected before EDL",
+          "[simulation][faults][R2]") {
+    const std::vector<DeviceFault> faults{all_the_time(Device::pyro, Kind::silent)};
+    CHECK(land(faults, only(Device::pyro)).outcome == Outcome::touchdown);
+    const Landed lost = land(faults);
+    CHECK(lost.outcome == Outcome::not_commanded);
+    CHECK(lost.verdict(flight::timepoint::cruise_stage_separation) == flight::TimepointVerdict::timed_out);
+}
+
+TEST_CASE("EDL does not switch units over: a selection after do edl is refused and changes nothing",
+          "[simulation][faults][R2]") {
+    Landing landing{tests::gale_scenario(900.0), 1, 0};
+    const auto fly_on = [&] {
+        for (int i = 0; i < 64; ++i)
+            landing.step();
+    };
+    landing.uplink(test::set_parameters(landing.solution()));
+    fly_on();
+    landing.uplink(test::do_edl());
+    fly_on();
+    landing.uplink(test::select_units(all_b));
+    fly_on();
+    Landed landed;
+    landed.recording.assign(landing.recording().begin(), landing.recording().end());
+    read(landed);
+    CHECK(landed.count(flight::evr::EDL_BEGUN::id) == 1);
+    CHECK(landed.count(flight::evr::UNITS_SELECTED::id) == 0);
+    CHECK(landed.count(flight::evr::COMMAND_REFUSED::id) == 1);
+}
+
+TEST_CASE("a radar that loses its ground under the parachute is reported, and the vehicle lands by what it knew",
+          "[simulation][faults][R2]") {
+    // Heatshield separation is at about E+278 s, backshell separation at about E+375 s.
+    const Landed landed = land({{Device::radar, Unit::a, Kind::dropout, -300.0, 20.0}});
+    INFO(landed.reason);
+    CHECK(landed.count(flight::evr::RADAR_LOST::id) == 1);
+    CHECK(landed.outcome == Outcome::touchdown);
+}
+
+TEST_CASE("IMU samples that are lost are counted in flight", "[simulation][faults][R2]") {
+    const Landed landed = land({{Device::imu, Unit::a, Kind::dropout, 700.0, 5.0}});
+    INFO(landed.reason);
+    // Both computers listen to the IMU, and each reports the seconds of the fault.
+    CHECK(landed.count(flight::evr::IMU_SAMPLES_MISSING::id) >= 10);
+    CHECK(landed.count(flight::evr::IMU_SAMPLES_MISSING::id) <= 12);
+    CHECK(landed.outcome == Outcome::touchdown);
+}
+
+TEST_CASE("with one message in twenty garbled on both buses the vehicle still lands", "[simulation][faults][R2]") {
+    const Landed landed = land({}, all_a, 0.05);
+    INFO(landed.reason);
+    CHECK(landed.outcome == Outcome::touchdown);
+    CHECK(landed.timed_out().empty());
+}
+
+TEST_CASE("a fault holds from its beginning for its duration, and only for its unit", "[simulation][faults]") {
+    const DeviceFault fault{Device::uhf, Unit::b, Kind::late, 100.0, 10.0, 3.0};
+    DeviceFaults faults{{fault}, Sclk{1000.0}};
+    const auto holds = [&](double sclk_s) {
+        faults.at(Sclk{sclk_s});
+        return faults.has(Kind::late, Device::uhf, Unit::b);
+    };
+    CHECK_FALSE(holds(899.984375));
+    CHECK(holds(900.0));
+    CHECK(faults.late_ticks(Device::uhf, Unit::b) == 192);
+    CHECK(faults.late_ticks(Device::uhf, Unit::a) == 0);
+    CHECK(faults.answers(Device::uhf, Unit::b));
+    CHECK(holds(909.984375));
+    CHECK_FALSE(holds(910.0));
+}
+
+TEST_CASE("faults that a device cannot have are refused with the scenario", "[simulation][faults]") {
+    Scenario scenario = tests::gale_scenario();
+    const auto refused = [&](Device device, Kind kind) {
+        scenario.device_faults = {{device, Unit::a, kind, 10.0, 5.0}};
+        return !impossible_values(scenario).empty();
+    };
+    CHECK(refused(Device::radar, Kind::refuses));
+    CHECK(refused(Device::pyro, Kind::dropout));
+    CHECK(refused(Device::descent_engines, Kind::late));
+    CHECK_FALSE(refused(Device::radar, Kind::dropout));
+    CHECK_FALSE(refused(Device::uhf, Kind::late));
+    scenario.device_faults = {{Device::uhf, Unit::a, Kind::silent, 10.0, 0.0}};
+    CHECK(impossible_values(scenario).size() == 1);
+}
