@@ -120,13 +120,15 @@ Loaded load(const std::filesystem::path& directory) {
 
     const File state_machines_csv = read_file(directory / "state_machines.csv", all);
     std::vector<const Type*> enumerations;
-    if (system) enumerations = enumerations_of(system->packets, system->commands);
+    const bool has_enumerations = system && is_sound(xml);
+    if (has_enumerations) enumerations = enumerations_of(system->packets, system->commands);
     auto state_machines = read(state_machines_csv, [&](std::string_view text, Findings& findings) {
-        return read_state_machines(text, system ? &enumerations : nullptr, findings);
+        return read_state_machines(text, has_enumerations ? &enumerations : nullptr, findings);
     });
 
     const File owners_csv = read_file(directory / "owners.csv", all);
-    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr, system ? &enumerations : nullptr};
+    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr, 
+                             has_enumerations ? &enumerations : nullptr};
     auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {
         return read_owners(text, owned, findings);
     });

@@ -10,7 +10,7 @@ using aeolis::tests::Planted;
 TEST_CASE("a second owner and a missing one are refused, by file and line", "[dictionary][R5]") {
     static const std::vector<Planted> all{
         {"second owner of an action", "owners.csv", "action,fire_parachute_mortar,pyro,",
-         "action,fire_heatshield_separation,pyro,\naction,fire_parachute_mortar,pyro,", "has an owner already, in line ", 3},
+         "action,fire_heatshield_separation,pyro,\naction,fire_parachute_mortar,pyro,", "has an owner already, in line ", 4},
         {"second owner of a device", "owners.csv", "device,nvm,edl_comm", "device,tone,edl_comm",
          "device 'tone': has an owner already, in line "},
         {"second owner of a decision", "owners.csv", "decision,touchdown,edl", "decision,do_edl,command_dispatcher",

@@ -84,6 +84,13 @@ inline void fill(Source& from, Sclk& time) {
     time = Sclk::from_ticks(std::int64_t{from.take<std::int8_t>()} * 0x100000000 + low);
 }
 
+/// A class with a state of its own hands it to whoever carries it, as it does to the other computer.
+template <typename T>
+void carry_into(Source& from, T& value) {
+    const auto exchange = [&](auto&... fields) { (fill(from, fields), ...); };
+    value.carry(exchange);
+}
+
 template <typename T>
 void fill_fields(Source& from, T& value) {
     constexpr std::size_t n = field_count<T>();
@@ -95,6 +102,9 @@ void fill_fields(Source& from, T& value) {
     else if constexpr (n == 4) { auto& [a, b, c, d] = value; fill_each(from, a, b, c, d); }
     else if constexpr (n == 5) { auto& [a, b, c, d, e] = value; fill_each(from, a, b, c, d, e); }
     else if constexpr (n == 6) { auto& [a, b, c, d, e, f] = value; fill_each(from, a, b, c, d, e, f); }
+    else if constexpr (n == 7) { auto& [a, b, c, d, e, f, g] = value; fill_each(from, a, b, c, d, e, f, g); }
+    else if constexpr (n == 8) { auto& [a, b, c, d, e, f, g, h] = value; fill_each(from, a, b, c, d, e, f, g, h); }
+    else if constexpr (n == 9) { auto& [a, b, c, d, e, f, g, h, i] = value; fill_each(from, a, b, c, d, e, f, g, h, i); }
     else if constexpr (n == 17) {
         auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r] = value;
         fill_each(from, a, b, c, d, e, f, g, h, i, j, k, l, m, o, p, q, r);
@@ -112,6 +122,8 @@ void fill(Source& from, T& value) {
         value = static_cast<T>(from.take<std::underlying_type_t<T>>());
     else if constexpr (std::is_arithmetic_v<T>)
         value = from.take<T>();
+    else if constexpr (!std::is_aggregate_v<T>)
+        carry_into(from, value);
     else
         fill_fields(from, value);
 }
