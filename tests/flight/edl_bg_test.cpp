@@ -67,3 +67,23 @@ TEST_CASE("radar solutions go to the filter once a second, and not before the ra
     CHECK(solutions >= 8);
     CHECK(solutions <= 10);
 }
+
+TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and not when nobody wants it", "[edl_bg][R25]") {
+    Fixture f;
+    const auto losses = [&](double from_s, int seconds, bool wanted) {
+        int reports = 0;
+        for (int tick = 0; tick < 64 * seconds; ++tick) {
+            const double now_s = from_s + tick / 64.0;
+            f.handle(ClockTick{Sclk{now_s}}, now_s);
+            reports += f.recorder.events<evr::RADAR_LOST>();
+            if (wanted) f.handle(NavigatedAttitude{{0, 1, 0, 0}, {0, 0, 1}, true}, now_s);
+        }
+        return reports;
+    };
+    CHECK(losses(1000.0, 4, true) == 0);
+    CHECK(losses(1004.0, 30, true) == 1);
+    Fixture quiet;
+    std::swap(f, quiet);
+    CHECK(losses(1000.0, 3, true) == 0);
+    CHECK(losses(1003.0, 30, false) == 0);
+}
