@@ -29,9 +29,6 @@ constexpr TaskLimits limits_of(ModuleId id) {
     case ModuleId::telecom: return {tick_s, 200.0};
     case ModuleId::units: return {tick_s, 200.0};
     case ModuleId::cruise_attitude: return {tick_s, 200.0};
-    case ModuleId::telecom: return {tick_s, 200.0};
-    case ModuleId::units: return {tick_s, 200.0};
-    case ModuleId::cruise_attitude: return {tick_s, 200.0};
     case ModuleId::system_fault_protection: return {tick_s, 200.0};
     case ModuleId::cross_string: return {tick_s, 500.0};
     case ModuleId::command_dispatcher: return {tick_s, 500.0};

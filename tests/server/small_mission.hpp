@@ -57,12 +57,12 @@ inline dictionary::Dictionary small_dictionary() {
     too_fast.ranges = {{Severity::warning, {}, 6000.0}};
     d.channels[speed.value].type.alarms = too_fast;
     const unsigned data = tm_data_offset_octets * 8;
-    Packet navigation{"Navigation", "", navigation_apid, {}, tm_overhead_octets + 9, {}, 64.0};
+    Packet navigation{"Navigation", "", navigation_apid, {}, tm_overhead_octets + 9, {}, 64.0, {}};
     navigation.fields = {{"altitude_m", d.channels[0].type, altitude, data, data + 64},
                          {"speed_mps", d.channels[1].type, speed, data + 32, {}}};
-    Packet status{"Status", "", status_apid, {}, tm_overhead_octets + 1, {}, 1.0};
+    Packet status{"Status", "", status_apid, {}, tm_overhead_octets + 1, {}, 1.0, {}};
     status.fields = {{"edl_phase", d.channels[2].type, phase, data, {}}};
-    Packet fired{"TimepointFired", "", fired_apid, {}, tm_overhead_octets + 19, {}, {}};
+    Packet fired{"TimepointFired", "", fired_apid, {}, tm_overhead_octets + 19, {}, {}, {}};
     auto verdict = whole(8);
     verdict.kind = ValueKind::enumerated;
     verdict.enumeration = {{0, "completed"}, {1, "timed_out"}};
@@ -70,7 +70,7 @@ inline dictionary::Dictionary small_dictionary() {
                     {"triggered_sclk", real64("s"), {}, data + 16, {}},
                     {"fired_sclk", real64("s"), {}, data + 80, {}},
                     {"verdict", verdict, {}, data + 144, {}}};
-    Packet mortar{"PARACHUTE_DEPLOY", "", event_apid, mortar_event, tm_overhead_octets + 6, {}, {}};
+    Packet mortar{"PARACHUTE_DEPLOY", "", event_apid, mortar_event, tm_overhead_octets + 6, {}, {}, {}};
     mortar.fields = {{"event_id", whole(16), {}, data, {}}, {"speed_mps", real32("m/s"), {}, data + 16, {}}};
     d.packets = {navigation, status, fired, mortar};
     d.events = {{mortar_event, "PARACHUTE_DEPLOY", EventLevel::activity_hi, "mortar fired at {speed_mps} m/s", 3}};
