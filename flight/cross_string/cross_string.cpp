@@ -15,27 +15,27 @@ void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {
 
 }  // namespace
 
-void CrossString::put(StateOctets& line, const StateFrame& state) {
+void CrossString::put(StateOctets& line, std::span<const std::uint8_t> state) {
     line.clear();  // of two states within a cycle the later one counts
-    line.append(state.octets());
+    line.append(state);
+}
+
+void CrossString::tell(const StatePart& part, Outbox& out) {
+    if (!assembly_.take(part)) return;
+    put(out.bus().cross_string, assembly_.octets());
+    const std::uint32_t revision = StateFrame::header_of(assembly_.octets()).revision;
+    if (revision == kept_revision_) return;
+    kept_revision_ = revision;
+    put(out.bus().restart_record, assembly_.octets());
 }
 
 void CrossString::on(const StatePart& part, Outbox& out) {
-    const auto state = assembly_.on(part);
-    if (load_role_ == Role::prime) {
-        if (!state) return;
-        put(out.bus().cross_string, *state);
-        if (state->header().revision == kept_revision_) return;
-        kept_revision_ = state->header().revision;
-        put(out.bus().restart_record, *state);
-        return;
-    }
+    if (load_role_ == Role::prime) return tell(part, out);
     heard_ = out.now();
-    if (!state || in_control_) return;
-    // Told as prime changes them, not at the take-over: its first command must find its unit.
-    const UnitSelection before = latest_.empty() ? UnitSelection{} : latest_.header().units;
+    if (in_control_) return;
+    const auto state = assembly_.on(part);
+    if (!state) return;
     latest_ = *state;
-    if (latest_.header().units != before) out.send(ModuleId::units, UnitsSelected{latest_.header().units});
     if (latest_.header().touchdown && !off_) turn_off(out);
 }
 

@@ -34,7 +34,8 @@ class CrossString {
     bool in_control() const { return in_control_ && !off_; }
 
   private:
-    static void put(StateOctets& line, const StateFrame& state);
+    static void put(StateOctets& line, std::span<const std::uint8_t> state);
+    void tell(const StatePart& part, Outbox& out);
     void turn_off(Outbox& out);
     bool may_take_over(Sclk now) const;
 

@@ -12,16 +12,24 @@ T number_at(std::span<const std::uint8_t> octets, std::size_t at) {
     return value;
 }
 
-/// FNV-1a over words of eight octets, the last one filled up with zeros. [fnv]
+/// FNV-1a over words of eight octets, the last one filled up with zeros, in four lanes that do not wait for each other;
+/// the last word of all is the lanes themselves. [fnv]
 std::uint64_t checksum(std::span<const std::uint8_t> octets) {
-    std::uint64_t sum = 0xCBF29CE484222325U;
-    for (std::size_t at = 0; at < octets.size(); at += sizeof(std::uint64_t)) {
-        std::uint64_t word = 0;
-        std::memcpy(&word, octets.data() + at, std::min(sizeof word, octets.size() - at));
+    constexpr std::size_t lanes = 4;
+    constexpr std::size_t row = lanes * sizeof(std::uint64_t);
+    const auto add = [](std::uint64_t& sum, std::uint64_t word) {
         sum = (sum ^ word) * 0x100000001B3U;
         sum ^= sum >> 29U;  // a multiplication alone never brings high bits down
+    };
+    std::array<std::uint64_t, lanes> sums{0xCBF29CE484222325U, 1, 2, 3};
+    for (std::size_t at = 0; at < octets.size(); at += row) {
+        std::array<std::uint64_t, lanes> words{};
+        std::memcpy(words.data(), octets.data() + at, std::min(row, octets.size() - at));
+        for (std::size_t lane = 0; lane < lanes; ++lane) add(sums[lane], words[lane]);
     }
-    return sum;
+    std::uint64_t all = octets.size();
+    for (const std::uint64_t sum : sums) add(all, sum);
+    return all;
 }
 
 }  // namespace
@@ -46,14 +54,20 @@ std::optional<StateFrame> StateFrame::read(std::span<const std::uint8_t> octets)
     return frame;
 }
 
-StateHeader StateFrame::header() const {
+StateHeader StateFrame::header_of(std::span<const std::uint8_t> octets) {
     StateHeader header;
-    StateExchange exchange{content()};
+    if (octets.size() < prefix_octets) return header;
+    StateExchange exchange{octets.subspan(prefix_octets)};
     exchange(header);
     return header;
 }
 
 std::optional<StateFrame> StateAssembly::on(const StatePart& part) {
+    if (!take(part)) return std::nullopt;
+    return StateFrame::read(octets_.span());
+}
+
+bool StateAssembly::take(const StatePart& part) {
     if (part.index == 0) {
         octets_.clear();
         next_ = 0;
@@ -63,12 +77,12 @@ std::optional<StateFrame> StateAssembly::on(const StatePart& part) {
     if (part.index != next_ || part.time != time_ || part.index >= part.count || !fits) {
         next_ = 0;
         octets_.clear();
-        return std::nullopt;
+        return false;
     }
     octets_.append(std::span{part.octets}.first(part.size));
-    if (++next_ < part.count) return std::nullopt;
+    if (++next_ < part.count) return false;
     next_ = 0;
-    return StateFrame::read(octets_.span());
+    return true;
 }
 
 }  // namespace aeolis::flight

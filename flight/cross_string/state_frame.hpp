@@ -47,7 +47,9 @@ class StateFrame {
     /// None when the octets are no whole frame of ours.
     static std::optional<StateFrame> read(std::span<const std::uint8_t> octets);
 
-    StateHeader header() const;
+    StateHeader header() const { return header_of(octets()); }
+    /// Of octets that are a frame, or may be.
+    static StateHeader header_of(std::span<const std::uint8_t> octets);
 
     /// False when the state does not fill the frame: then nothing may be believed.
     template <typename State>
@@ -81,6 +83,10 @@ class StateAssembly {
   public:
     /// The frame that this piece completes, if it does.
     std::optional<StateFrame> on(const StatePart& part);
+
+    /// The same for who only passes it on: true when this piece is the last, octets() then being all, unread.
+    bool take(const StatePart& part);
+    std::span<const std::uint8_t> octets() const { return octets_.span(); }
 
   private:
     FixedVector<std::uint8_t, state_octets_max> octets_;
