@@ -130,7 +130,7 @@ void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
 }
 
 void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out) {
-    constexpr double worth_telling_after_s = 0.5;  // ours: most replies take a tenth of that
+    const double worth_telling_after_s = ParameterDefaults{}.held_worth_telling_after_s;
     const Sclk now = out.now();
     FixedVector<gnc::Condition, 2> conditions;
     if (const auto waiting = timeline.waiting(); waiting && now - waiting->triggered >= worth_telling_after_s) {

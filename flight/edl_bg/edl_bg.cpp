@@ -7,8 +7,6 @@ namespace {
 
 constexpr ParameterDefaults parameters{};
 
-constexpr double radar_gap_max_s = 5.0;  // five solutions; the first takes 3.5 s from when Edl wants them
-
 double norm(double x, double y, double z) {
     return std::sqrt(x * x + y * y + z * z);
 }
@@ -67,7 +65,7 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
 void EdlBg::watch_radar(Sclk now, Outbox& out) {
     const bool wanted = now - attitude_at_ < 1.0;
     const double gap_s = now - solved_at_;
-    if (!wanted || radar_lost_ || gap_s < radar_gap_max_s) return;
+    if (!wanted || radar_lost_ || gap_s < parameters.radar_gap_max_s) return;
     radar_lost_ = true;
     out.event(evr::RADAR_LOST{.gap_s = gap_s});
 }

@@ -20,14 +20,14 @@ TEST_CASE("a second owner and a missing one are refused, by file and line", "[di
         {"a decision that is none", "owners.csv", "decision,touchdown,", "decision,touchup,",
          "is no label of the enumeration 'Decision'"},
         {"unknown kind", "owners.csv", "device,nvm,", "devise,nvm,", "kind 'devise' is none of action, device, decision"},
-        {"module no name", "owners.csv", "action,stop_uhf,power", "action,stop_uhf,", "module"},
+        {"module no name", "owners.csv", "action,stop_uhf,telecom", "action,stop_uhf,", "module"},
     };
     for (const Planted& planted : all)
         tests::check_planted(planted);
 }
 
 TEST_CASE("what has no owner is named", "[dictionary][R5]") {
-    for (const auto& [row, message] : {std::pair{"action,stop_uhf,power,\n", "action 'stop_uhf' has no owner"},
+    for (const auto& [row, message] : {std::pair{"action,stop_uhf,telecom,\n", "action 'stop_uhf' has no owner"},
                                        std::pair{"decision,touchdown,edl,\n", "decision 'touchdown' has no owner"}}) {
         const tests::MissionCopy mission;
         std::string text = mission.text("owners.csv");

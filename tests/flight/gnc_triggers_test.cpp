@@ -48,9 +48,9 @@ TEST_CASE("the descent rate that ground expects at the backshell moves the altit
 }
 
 TEST_CASE("a decision is near when its subject holds or is within a twentieth of its bound", "[gnc][R38]") {
-    CHECK(near(parachute({407.1, 9000.0, 100.0}, {405.0, 6000.0}, 0)));
-    CHECK(near(parachute({425.0, 9000.0, 100.0}, {405.0, 6000.0}, 0)));
-    CHECK_FALSE(near(parachute({426.0, 9000.0, 100.0}, {405.0, 6000.0}, 0)));
+    CHECK(near(parachute({407.1, 12000.0, 110.0}, bounds, 0)));
+    CHECK(near(parachute({425.0, 12000.0, 110.0}, bounds, 0)));
+    CHECK_FALSE(near(parachute({426.0, 12000.0, 110.0}, bounds, 0)));
     CHECK(near(heatshield(120.0, 142.0, 12.0)));
     CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0))); // the speed is its subject, not the time
     CHECK_FALSE(near({}));
@@ -60,8 +60,8 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
 }
 
 TEST_CASE("a count of cycles that has not begun is not worth telling", "[gnc][R38]") {
-    CHECK(worth_telling(parachute({407.1, 9000.0, 100.0}, {405.0, 6000.0}, 0)).size() == 1);
-    CHECK(worth_telling(parachute({404.9, 9000.0, 100.0}, {405.0, 6000.0}, 1)).size() == 2);
+    CHECK(worth_telling(parachute({407.1, 12000.0, 110.0}, bounds, 0)).size() == 1);
+    CHECK(worth_telling(parachute({404.9, 12000.0, 110.0}, bounds, 1)).size() == 2);
 }
 
 TEST_CASE("a break starts the count of cycles anew", "[gnc][R17]") {

@@ -138,7 +138,7 @@ TEST_CASE("a sub-constraint that does not hold is told by its two moments and it
         .raw("comparison_1", number_of(dictionary, "comparison_1", "ge"));
     REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
     CHECK(explain(dictionary, decoded)->text ==
-          "sub_constraint " + subject + " violated: elapsed 12.500 s, not >= 20.000 s");
+          "sub_constraint " + subject + " violated: elapsed 12.500 s < 20.000 s");
 
     auto event = PacketFiller{dictionary, "SUB_CONSTRAINT_VIOLATED"};
     event.raw("constraint", number).real("elapsed_s", 12.5).real("bound_s", 20.0).raw("violations", 1);

@@ -26,7 +26,7 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-constexpr double near_fraction = 0.05; // of the bound
+constexpr double near_fraction = ParameterDefaults{}.held_near_fraction; // of the bound
 
 } // namespace
 
