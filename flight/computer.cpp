@@ -40,14 +40,15 @@ Computer::~Computer() = default;
 
 void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* runner) {
     const Role designated = in.prime_is_b == (state_->load.string == String::b) ? Role::prime : Role::second_chance;
-    if (designated != state_->load.role) start_anew(in.now, designated);
+    if (designated != state_->load.role) start_anew(in.now, designated, state_->now);
     if (state_->runs_from && in.now < *state_->runs_from) {
         out.begin_cycle();
         command_nothing(out);
         out.in_command = false;
-        out.wants_restart_record = in.now + seconds_per_tick >= *state_->runs_from;
+        out.wants_restart_record = !state_->forgets && in.now + seconds_per_tick >= *state_->runs_from;
         return;
     }
+    if (state_->runs_from) state_->ran_from = state_->runs_from;
     state_->runs_from.reset();
     try {
         if (runner != nullptr)
@@ -56,8 +57,12 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* run
             Executive{*state_}.cycle(in, out);
         out.in_command = in_command(*state_);
     } catch (const CheckFailed& bug) {
-        // A bug on board stays on board: the computer starts anew, and says why in its first cycle.
-        start_anew(in.now, designated);
+        // A bug on board stays on board: the computer starts anew, and says why in its first cycle. What the failed cycle
+        // put out is not to be trusted, and a state on which it fails at once is not taken up a second time.
+        const bool at_once = state_->ran_from && in.now - *state_->ran_from < restart_s;
+        start_anew(in.now, designated, in.now - seconds_per_tick);
+        state_->forgets = at_once;
+        out.begin_cycle();
         state_->outbox.begin(ModuleId::sync, in.now, out);
         state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = state_->resets});
         state_->outbox.send(ModuleId::mfsk, ToneRequest{tone::check_failed, in.now + restart_s});
@@ -68,13 +73,14 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* run
 }
 
 void Computer::reset(Sclk now) {
-    start_anew(now, state_->load.role);
+    start_anew(now, state_->load.role, state_->now);
 }
 
-void Computer::start_anew(Sclk now, Role role) {
+void Computer::start_anew(Sclk now, Role role, Sclk told_until) {
     const std::uint32_t resets = state_->resets + 1;
     Load load = state_->load;
     load.role = role;
+    if (!state_->runs_from) load.told_until = told_until;  // else it has told nothing since it was last started
     std::destroy_at(state_.get());
     std::construct_at(state_.get(), load, now);
     state_->resets = resets;

@@ -52,7 +52,7 @@ class Computer {
     Role role() const;
 
   private:
-    void start_anew(Sclk now, Role role);
+    void start_anew(Sclk now, Role role, Sclk told_until);
 
     std::unique_ptr<ComputerState> state_;
 };

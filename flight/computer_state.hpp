@@ -67,6 +67,8 @@ struct ComputerState {
     std::uint32_t unexpected_messages = 0;
     std::uint32_t resets = 0;
     std::optional<Sclk> runs_from;  // while it starts after a reset
+    std::optional<Sclk> ran_from;   // since it did
+    bool forgets = false;           // starts from nothing: with what was kept it failed at once
 };
 static_assert(std::is_copy_constructible_v<ComputerState> && std::is_trivially_destructible_v<ComputerState>,
               "copying a computer is a snapshot");

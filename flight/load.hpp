@@ -1,7 +1,10 @@
 #pragma once
 
+#include "common/time.hpp"
+
 #include <array>
 #include <cstdint>
+#include <optional>
 
 // What is loaded into a flight computer before the first tick and never changes in flight by itself: mission design
 // values that are not commands. The scenario fills it; the ground's navigation comes by EDL_SET_PARAMETERS.
@@ -34,6 +37,8 @@ enum class String : std::uint8_t { a, b };
 struct Load {
     String string = String::a;
     Role role = Role::prime;
+    /// After a restart: the last cycle whose state the other computer can have.
+    std::optional<Sclk> told_until;
     double uhf_rate_bps = 8000.0;             ///< rate of the real-time link
     Plan telemetry_plan = Plan::mission;      ///< wideband: a synthetic load for benchmarks
     double entry_mass_kg = 3153.0;

@@ -36,6 +36,12 @@ void CrossString::on(const StatePart& part, Outbox& out) {
     const auto state = assembly_.on(part);
     if (!state) return;
     latest_ = *state;
+    too_old_told_ = false;
+    // The managers are to address the right units from the first command on.
+    if (const UnitSelection& units = latest_.header().units; units != told_units_) {
+        told_units_ = units;
+        out.send(ModuleId::units, UnitsSelected{units});
+    }
     if (latest_.header().touchdown && !off_) turn_off(out);
 }
 
@@ -67,10 +73,16 @@ void CrossString::on(const SelectPrimeCommand& command, Outbox& out) {
     designate_at_ = out.now() + answer_first_s;
 }
 
-bool CrossString::may_take_over(Sclk now) const {
+bool CrossString::may_take_over(Sclk now, Outbox& out) {
     if (!enabled_ || off_ || in_control_ || latest_.empty() || !heard_) return false;
     const StateHeader prime = latest_.header();
-    return now - *heard_ > prime_silent_s && prime.begun && !prime.pre_edl && !prime.touchdown;
+    const bool due = now - *heard_ > prime_silent_s && prime.begun && !prime.pre_edl && !prime.touchdown;
+    const bool fresh = now - prime.time <= state_age_max_s;
+    if (due && !fresh && !too_old_told_) {
+        too_old_told_ = true;
+        out.event(evr::SECOND_CHANCE_STATE_TOO_OLD{.silence_s = now - prime.time});
+    }
+    return due && fresh;
 }
 
 void CrossString::on(const ClockTick& tick, Outbox& out) {
@@ -80,7 +92,7 @@ void CrossString::on(const ClockTick& tick, Outbox& out) {
         out.bus().designate_b_prime = designated_b_;
         return;
     }
-    if (may_take_over(tick.now)) {
+    if (may_take_over(tick.now, out)) {
         in_control_ = true;
         resume(latest_, ResumeReason::take_over, out);
     }

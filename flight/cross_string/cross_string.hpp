@@ -9,14 +9,17 @@ namespace aeolis::flight {
 /// Ours: well beyond a cycle or two that an overrun costs, well within the second in which Second Chance must fly.
 inline constexpr double prime_silent_s = 0.25;
 
+/// A state that is older is not flown from: Edl keeps the IMU's readings of one second.
+inline constexpr double state_age_max_s = 0.9;
+
 /// The line between the two computers. On prime it tells; in Second Chance it listens, and decides to take over.
 ///
 /// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
 ///         EnableSecondChanceCommand, SelectPrimeCommand, EdlFinished
 /// Out     prime: the state on the line each cycle, and kept for a restart when it has changed; after a restart the kept
 ///         state to edl, and Resume. Second Chance: the same when it takes over; the units that prime addresses, to units; SecondChanceStatus; CommandOutcome
-/// Rule    it takes over when ground has enabled it, prime's line has been silent for 0.25 s, and prime's last state
-///         says that EDL had begun, pre-EDL was over and touchdown was still to come. What comes on the line counts as
+/// Rule    it takes over when ground has enabled it, prime's line has been silent for 0.25 s, prime's last state is less
+///         than 0.9 s old, and says that EDL had begun, pre-EDL was over and touchdown was still to come. What comes on the line counts as
 ///         life, readable or not: in doubt it does nothing. Touchdown turns it off for good. R1, R33, R34
 class CrossString {
   public:
@@ -37,7 +40,7 @@ class CrossString {
     static void put(StateOctets& line, std::span<const std::uint8_t> state);
     void tell(const StatePart& part, Outbox& out);
     void turn_off(Outbox& out);
-    bool may_take_over(Sclk now) const;
+    bool may_take_over(Sclk now, Outbox& out);
 
     Role load_role_;
     StateAssembly assembly_;
@@ -46,7 +49,9 @@ class CrossString {
     std::uint32_t kept_revision_ = 0;
     std::optional<Sclk> designate_at_;
     bool designated_b_ = false;
+    UnitSelection told_units_;
     bool enabled_ = false;
+    bool too_old_told_ = false;
     bool in_control_ = false;
     bool off_ = false;
 };

@@ -202,6 +202,8 @@ void EdlMain::on(const DoEdlCommand& command, Outbox& out) {
         refused = CommandRefusal::no_parameters;
     else if (timeline_.begun())
         refused = CommandRefusal::already_running;
+    else if (designation_pending_)
+        refused = CommandRefusal::wrong_phase;
     else if (inhibited_)
         refused = CommandRefusal::inhibited;
     else if (!late_cruise(out.now()))

@@ -30,7 +30,9 @@ void EdlMain::on(const StatePart& part, Outbox&) {
 void EdlMain::on(const Resume& resume, Outbox& out) {
     const std::optional<StateFrame> state = std::exchange(state_of_another_, std::nullopt);
     if (!state || timeline_.begun()) return out.event(evr::STATE_UNREADABLE{});
-    AEOLIS_CHECK(state->restore(*this));  // a whole frame of this build always fits
+    // Of another build with the same dictionary: found by its size before anything of it is taken.
+    const bool fits = StateFrame::of(state->header(), *this).octets().size() == state->octets().size();
+    if (!fits || !state->restore(*this)) return out.event(evr::STATE_UNREADABLE{});
     revision_ = state->header().revision + 1;
     if (timeline_.begun()) out.send(ModuleId::units, EdlBegun{});
     if (resume.reason == ResumeReason::restart)
@@ -40,7 +42,8 @@ void EdlMain::on(const Resume& resume, Outbox& out) {
 }
 
 void EdlMain::restart(Sclk now, Outbox& out) {
-    if (timeline_.begun() && !pre_edl(now)) {
+    // By what the other computer was last told: it takes over from just that state on which this one stands by.
+    if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
         activity_ = Activity::stands_by;
         out.send(ModuleId::mfsk, StandBy{});
         return out.event(evr::PRIME_STANDS_BY{});
@@ -76,7 +79,9 @@ void EdlMain::on(const SelectPrimeCommand& command, Outbox& out) {
     else
         out.event(evr::PRIME_DESIGNATED{.string_number = static_cast<std::uint8_t>(command.string_b ? 1 : 0)});
     out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, refused});
-    if (!refused) out.send(ModuleId::cross_string, command);
+    if (refused) return;
+    designation_pending_ = true;
+    out.send(ModuleId::cross_string, command);
 }
 
 }  // namespace aeolis::flight

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <pthread.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 namespace aeolis::server {
@@ -33,9 +33,12 @@ class ThreadedExecutive::Task {
   public:
     Task(ThreadedExecutive& house, flight::ModuleId id) : house_(house), id_(id) {
         times_.module = id;
-        const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-        stack_ = static_cast<std::uint8_t*>(std::aligned_alloc(page, stack_octets));
-        AEOLIS_CHECK(stack_ != nullptr);
+        // Below the stack a page that nobody may touch: an overflow ends the program instead of writing elsewhere.
+        guard_octets_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+        void* room = mmap(nullptr, guard_octets_ + stack_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        AEOLIS_CHECK(room != MAP_FAILED);
+        AEOLIS_CHECK(mprotect(room, guard_octets_, PROT_NONE) == 0);
+        stack_ = static_cast<std::uint8_t*>(room) + guard_octets_;
         std::memset(stack_, paint, stack_octets);
         start();
     }
@@ -46,14 +49,14 @@ class ThreadedExecutive::Task {
         }
         wake_.notify_one();
         pthread_join(thread_, nullptr);
-        std::free(stack_);
+        munmap(stack_ - guard_octets_, guard_octets_ + stack_octets);
     }
     Task(const Task&) = delete;
     Task& operator=(const Task&) = delete;
 
     bool push(const flight::Message& message) {
         const std::lock_guard lock{mutex_};
-        return mailbox_.try_push(message);
+        return mailbox().try_push(message);
     }
     void wake() {
         {
@@ -67,8 +70,8 @@ class ThreadedExecutive::Task {
     }
     void drop_mail() {
         const std::lock_guard lock{mutex_};
-        while (!mailbox_.empty())
-            mailbox_.pop();
+        while (!mailbox().empty())
+            mailbox().pop();
         later_.clear();
     }
 
@@ -81,6 +84,11 @@ class ThreadedExecutive::Task {
     }
 
   private:
+    /// Mail lies in the computer, so that what a cycle leaves goes with it: a restart or a copy takes none along.
+    FixedQueue<flight::Message, flight::mailbox_messages_max>& mailbox() {
+        return house_.state_->mailboxes[static_cast<std::size_t>(id_)];
+    }
+
     void start() {
         pthread_attr_t attributes;
         pthread_attr_init(&attributes);
@@ -138,9 +146,9 @@ class ThreadedExecutive::Task {
 
     std::optional<flight::Message> next() {
         const std::lock_guard lock{mutex_};
-        if (mailbox_.empty()) return std::nullopt;
-        const flight::Message message = mailbox_.front();
-        mailbox_.pop();
+        if (mailbox().empty()) return std::nullopt;
+        const flight::Message message = mailbox().front();
+        mailbox().pop();
         return message;
     }
 
@@ -168,10 +176,10 @@ class ThreadedExecutive::Task {
     ThreadedExecutive& house_;
     flight::ModuleId id_;
     std::uint8_t* stack_ = nullptr;
+    std::size_t guard_octets_ = 0;
     pthread_t thread_{};
     std::mutex mutex_;
     std::condition_variable wake_;
-    FixedQueue<flight::Message, flight::mailbox_messages_max> mailbox_;
     bool ready_ = false, stop_ = false;
     // Of the task's own thread; read by others only while it is idle.
     flight::Outbox outbox_;

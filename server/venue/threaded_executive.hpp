@@ -22,7 +22,7 @@ namespace aeolis::server {
 /// Clock    virtual: cycle() returns when every task is idle, however long that took. Real: a cycle that is not done
 ///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
 ///          running, reports the overrun and skips that cycle; ticks_skipped() says how many, SCLK goes on
-/// Memory   made with it: a mailbox, an outbox and a painted stack of 256 KiB a task
+/// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
 /// Faults   a task whose check fails: cycle() throws it once all tasks are idle, with every mailbox empty
 class ThreadedExecutive final : public flight::CycleRunner {
   public:

@@ -93,6 +93,36 @@ TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl o
     }
 }
 
+TEST_CASE("a state that is too old is not flown from, and ground hears why", "[cross_string][R34]") {
+    SECTION("enabled a minute after prime fell silent") {
+        Backup backup;
+        backup.handle(state_at(100.0, in_edl), 100.0);
+        backup.enable(160.0);
+        CHECK_FALSE(backup.after_silence(160.0, 160.0));
+        CHECK(backup.recorder.events<evr::SECOND_CHANCE_STATE_TOO_OLD>() == 1);
+        CHECK_FALSE(backup.after_silence(160.0 + 1.0 / 64, 170.0));
+        CHECK(backup.recorder.events<evr::SECOND_CHANCE_STATE_TOO_OLD>() == 0);  // said once
+    }
+    SECTION("a second of noise before the silence") {
+        Backup backup;
+        backup.enable(90.0);
+        backup.handle(state_at(100.0, in_edl), 100.0);
+        for (int cycle = 1; cycle <= 64; ++cycle) backup.handle(StatePart{}, 100.0 + cycle / 64.0);
+        CHECK_FALSE(backup.after_silence(101.0, 110.0));
+    }
+}
+
+TEST_CASE("while it listens the backup's managers learn which units prime addresses", "[cross_string][R2][R33]") {
+    Backup backup;
+    StateHeader header = in_edl;
+    header.units[Device::pyro] = Unit::b;
+    backup.handle(state_at(100.0, header), 100.0);
+    REQUIRE(backup.recorder.sent<UnitsSelected>().size() == 1);
+    CHECK(backup.recorder.sent<UnitsSelected>()[0].units == header.units);
+    backup.handle(state_at(101.0, header), 101.0);
+    CHECK(backup.recorder.sent<UnitsSelected>().empty());
+}
+
 TEST_CASE("what comes on the line is life, readable or not", "[cross_string][R34]") {
     Backup backup;
     backup.enable(90.0);

@@ -50,3 +50,15 @@ TEST_CASE("a landing's report is the object of the design, its real time proven 
     CHECK(fields.at("overruns").number_value() == 0);
     CHECK(fields.at("timepoints").list_value().values_size() >= 60);
 }
+
+TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][rehearsal][R32][R33]") {
+    for (const char* name : {"pre_edl", "second_chance"}) {
+        INFO(name);
+        Rehearsal rehearsal{test::shipped_scenario(name), 1, 0, tests::shipped_dictionary()};
+        while (!rehearsal.finished())
+            rehearsal.step();
+        CHECK(rehearsal.outcome() == "touchdown");
+        CHECK(rehearsal.proof().holds());
+        CHECK(rehearsal.landing().counters().resets == 1);
+    }
+}

@@ -1,15 +1,18 @@
 #include "server/venue/threaded_executive.hpp"
 
 #include "flight/computer.hpp"
+#include "flight/kernel/deadlines.hpp"
 #include "simulation/entry_reference.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/world.hpp"
+#include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <thread>
 
 using namespace aeolis;
@@ -76,6 +79,31 @@ TEST_CASE("both executives fly one landing alike: recorded packets, firings, eve
     CHECK(threaded.landing.counters().mailbox_overflows == 0);
 }
 
+TEST_CASE("both executives are alike through a restart of prime and a change of roles, bit for bit", "[venue][threads][R8][R32]") {
+    const auto fly = [](std::shared_ptr<flight::CycleRunner> runner) {
+        simulation::Landing landing{tests::gale_scenario(17000.0), 1};
+        landing.run_prime_by(std::move(runner));
+        const auto pass = [&](double for_s) {
+            for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick)
+                landing.step();
+        };
+        landing.uplink(test::set_parameters(landing.solution()));
+        pass(1.0);
+        landing.uplink(test::select_prime_b());
+        pass(60.0);
+        landing.uplink(test::do_edl());
+        pass(4.0);
+        landing.reset_prime();
+        pass(60.0);
+        return landing;
+    };
+    const auto deterministic = fly(nullptr);
+    const auto threaded = fly(std::make_shared<ThreadedExecutive>());
+    CHECK(deterministic.counters().resets == 3);
+    CHECK(threaded.counters().resets == 3);
+    CHECK(same_recording(deterministic, threaded));
+}
+
 TEST_CASE("a task that takes too long: sync reports the overruns, those cycles are skipped, SCLK goes on",
           "[venue][threads][R8][R22]") {
     const Sclk slow_at{1000.0 + 20 * seconds_per_tick};
@@ -120,24 +148,27 @@ TEST_CASE("a check that fails in a task's thread resets the computer and nothing
     CHECK(bench.out->in_command);
 }
 
-TEST_CASE("each task's processor time is measured by message, against its budget, and its stack against its bound",
+TEST_CASE("each task's processor time is measured by message, keeps its budget on average, and is told in telemetry",
           "[venue][threads][R8][R37]") {
     ThreadedExecutive::Options options;
     options.measure = true;
     const auto executive = std::make_shared<ThreadedExecutive>(options);
     CommandedLanding run{executive, 700.0};
     run.fly(30.0);
+    std::set<flight::ModuleId> told;
+    telemetry::PacketStream packets{run.landing.recording()};
+    while (const auto packet = packets.next())
+        if (read_primary_header(*packet)->apid == flight::packet::TaskTimes::apid)
+            told.insert(static_cast<flight::ModuleId>(read_bits(*packet, tm_data_offset_octets * 8, 8)));
+    CHECK(told.size() == flight::module_count);
     for (const TaskTimes& times : executive->times()) {
         INFO("task " << static_cast<int>(times.module));
         std::uint64_t handled = 0;
         for (const Durations& of_type : times.by_message)
             handled += of_type.count();
         CHECK((handled > 0) == (times.cycle.count() > 0));
-        if (times.cycle.count() == 0) continue;
-        CHECK(times.cycle.least_us() <= times.cycle.mean_us());
-        CHECK(times.cycle.mean_us() <= times.cycle.worst_us());
-        CHECK(times.cycle.p999_us() <= times.cycle.worst_us());
-        CHECK(unevenness(times) >= 1.0);
+        // On average only: the worst belongs to this machine's other work as well. bench/threaded_bench has all of it.
+        CHECK(times.cycle.mean_us() <= flight::limits_of(times.module).budget_us);
         CHECK(times.stack_used_octets > 0);
     }
 }

@@ -183,3 +183,43 @@ TEST_CASE("prime cannot be designated once EDL has begun", "[second_chance][R1]"
     CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().empty());
     CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
 }
+
+TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichever it is", "[second_chance][R32][R33]") {
+    Commanded run{14500.0};
+    for (const double e_s : {-14431.0, -14415.0, -14400.0 - 2.0 / 64, -14400.0 - 1.0 / 64, -14400.0, -14400.0 + 1.0 / 64, -14399.0}) {
+        run.fly_to(e_s);
+        Commanded fork{run};
+        fork.landing.reset_prime();
+        fork.fly(60.0);
+        const Recorded recorded{fork.landing};
+        const auto took_over = recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size();
+        const auto stands_by = recorded.times<flight::evr::PRIME_STANDS_BY>().size();
+        INFO("reset at E" << e_s << " s: took over " << took_over << ", prime stands by " << stands_by);
+        CHECK(took_over == stands_by);  // exactly one of them flies
+        // Ground's time of entry, from which flight counts, is not the truth's to the tick.
+        if (e_s < -14400.5) CHECK(took_over == 0);
+        if (e_s > -14399.5) CHECK(took_over == 1);
+    }
+}
+
+TEST_CASE("do edl is refused while the computers are about to change roles", "[second_chance][R1][R23]") {
+    Landing landing{tests::gale_scenario(1200.0), 1};
+    landing.uplink(test::set_parameters(landing.solution()));
+    const auto fly = [&](double for_s) {
+        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
+    };
+    fly(light);
+    landing.uplink(test::select_prime_b());
+    landing.uplink(test::do_edl());
+    fly(60.0);
+    const Recorded recorded{landing};
+    CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().size() == 1);
+    CHECK(recorded.times<flight::evr::EDL_BEGUN>().empty());
+    CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
+    CHECK(landing.counters().resets == 2);
+    landing.uplink(test::do_edl());
+    fly(5.0);
+    const Recorded after{landing};
+    CHECK(after.times<flight::evr::EDL_BEGUN>().size() == 1);
+    CHECK(after.times<flight::evr::PRIME_STANDS_BY>().empty());
+}
