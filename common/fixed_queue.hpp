@@ -23,6 +23,11 @@ class FixedQueue {
         ++size_;
         return true;
     }
+    /// A place at the end for the caller to fill, holding what stood there before; none when full.
+    [[nodiscard]] constexpr T* try_grow() {
+        if (full()) return nullptr;
+        return &values_[(first_ + size_++) % N];
+    }
     constexpr const T& front() const {
         AEOLIS_CHECK(!empty());
         return values_[first_];

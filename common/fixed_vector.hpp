@@ -25,6 +25,11 @@ class FixedVector {
         values_[size_++] = value;
         return true;
     }
+    /// A place at the end for the caller to fill, holding what stood there before; none when full.
+    [[nodiscard]] constexpr T* try_grow() {
+        if (full()) return nullptr;
+        return &values_[size_++];
+    }
     /// The caller knows that there is room.
     constexpr void push_back(const T& value) {
         AEOLIS_CHECK(!full());

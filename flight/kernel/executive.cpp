@@ -35,7 +35,10 @@ void Executive::run(ModuleId id, DeviceOutputs& out) {
 void Executive::deliver(const Envelope& envelope) {
     const ModuleId to = envelope.to;
     if (!is_loaded(state_.load.role, to)) return;
-    if (!state_.mailboxes[static_cast<std::size_t>(to)].try_push(envelope.message)) ++state_.mailbox_overflows;
+    if (Message* const place = state_.mailboxes[static_cast<std::size_t>(to)].try_grow())
+        copy_content(*place, envelope.message);
+    else
+        ++state_.mailbox_overflows;
     if (wakes(to, envelope.message)) state_.ready |= bit_of(to);
 }
 
@@ -43,10 +46,15 @@ void Executive::distribute(ModuleId from) {
     state_.mailbox_overflows += state_.outbox.dropped();
     for (const Envelope& envelope : state_.outbox.sent()) {
         if (tap_ != nullptr) tap_->sent(from, envelope.to, envelope.message);
-        if (in_rate_group(from))
+        if (in_rate_group(from)) {
             deliver(envelope);
-        else if (!state_.next_cycle.try_push_back(envelope))
+        } else if (Envelope* const place = state_.next_cycle.try_grow()) {
+            place->from = envelope.from;
+            place->to = envelope.to;
+            copy_content(place->message, envelope.message);
+        } else {
             ++state_.mailbox_overflows;
+        }
     }
 }
 

@@ -3,7 +3,6 @@
 #include "flight/kernel/message.hpp"
 #include "flight/load.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace aeolis::flight {
@@ -17,10 +16,15 @@ namespace aeolis::flight {
 /// (listens instead of telling), command dispatcher (deaf but for its enabling until it is in control).
 inline constexpr std::array left_out_of_second_chance{ModuleId::cruise_attitude, ModuleId::system_fault_protection};
 
+constexpr std::uint32_t left_out_bits() {
+    std::uint32_t bits = 0;
+    for (const ModuleId id : left_out_of_second_chance) bits |= bit_of(id);
+    return bits;
+}
+
 constexpr bool is_loaded(Role role, ModuleId id) {
-    if (role == Role::prime) return true;
-    return std::find(left_out_of_second_chance.begin(), left_out_of_second_chance.end(), id) ==
-           left_out_of_second_chance.end();
+    constexpr std::uint32_t left_out = left_out_bits();
+    return role == Role::prime || (left_out & bit_of(id)) == 0;
 }
 
 }  // namespace aeolis::flight

@@ -212,6 +212,11 @@ using Message =
                  Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
+/// Copies what a message holds, not the room that the largest one takes.
+inline void copy_content(Message& to, const Message& from) {
+    std::visit([&](const auto& content) { to.emplace<std::remove_cvref_t<decltype(content)>>(content); }, from);
+}
+
 /// Whether a message makes its module run. In the rate group that is the turn alone: other mail waits for it. R22
 inline bool wakes(ModuleId to, const Message& message) {
     return to == ModuleId::sync || !in_rate_group(to) || std::holds_alternative<Tick>(message);

@@ -24,7 +24,14 @@ class Outbox {
 
     template <typename M>
     void send(ModuleId to, const M& message) {
-        if (!sent_.try_push_back({from_, to, message})) ++dropped_;
+        Envelope* const place = sent_.try_grow();
+        if (place == nullptr) {
+            ++dropped_;
+            return;
+        }
+        place->from = from_;
+        place->to = to;
+        place->message.emplace<M>(message);
     }
 
     /// An event report: recorded, and sent to ground by the telemetry plan. R29, R30

@@ -25,3 +25,14 @@ TEST_CASE("a full fixed queue refuses and keeps what it has", "[common][R7]") {
     CHECK(queue.front() == 1);
     CHECK(queue.size() == 2);
 }
+
+TEST_CASE("a queue that grows gives the place to fill, in order, until it is full", "[common]") {
+    FixedQueue<int, 2> queue;
+    *queue.try_grow() = 1;
+    *queue.try_grow() = 2;
+    CHECK(queue.try_grow() == nullptr);
+    CHECK(queue.front() == 1);
+    queue.pop();
+    *queue.try_grow() = 3;
+    CHECK(queue.front() == 2);
+}

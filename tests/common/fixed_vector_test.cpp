@@ -29,3 +29,10 @@ TEST_CASE("an index past the end is a bug", "[common]") {
     CHECK_THROWS_AS(values[0], CheckFailed);
     CHECK_THROWS_AS(values.append(std::array{1, 2, 3, 4, 5}), CheckFailed);
 }
+
+TEST_CASE("a vector that grows gives the place to fill until it is full", "[common]") {
+    FixedVector<int, 1> vector;
+    *vector.try_grow() = 7;
+    CHECK(vector.back() == 7);
+    CHECK(vector.try_grow() == nullptr);
+}
