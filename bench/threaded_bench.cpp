@@ -20,35 +20,42 @@ namespace {
 
 using namespace aeolis;
 
-constexpr const char* task_names[] = {"sync",  "radar",   "imu",   "edl",   "pyro",            "descent_engines", "thrusters",
-                                      "power", "telecom", "units", "cruise_attitude", "system_fault_protection", "cross_string",
-                                      "command_dispatcher", "edl_bg", "mfsk", "edl_comm"};
-static_assert(std::size(task_names) == flight::module_count);
-
-/// A message type's name as the compiler knows it.
-template <typename M>
-constexpr std::string_view name_of() {
-    std::string_view text = __PRETTY_FUNCTION__;
-    text.remove_prefix(text.find("M = ") + 4);
-    text = text.substr(0, text.find_first_of(";]"));
-    return text.substr(text.rfind(':') == std::string_view::npos ? 0 : text.rfind(':') + 1);
+/// The last word of what the compiler calls its template argument: a message's type, a module.
+constexpr std::string_view argument_in(std::string_view signature) {
+    signature = signature.substr(signature.find(" = ") + 3);
+    signature = signature.substr(0, signature.find_first_of(";]"));
+    return signature.substr(signature.rfind(':') + 1);  // all of it where there is none
+}
+template <typename Message>
+std::string_view type_name() {
+    return argument_in(__PRETTY_FUNCTION__);
+}
+template <flight::ModuleId id>
+std::string_view module_name() {
+    return argument_in(__PRETTY_FUNCTION__);
 }
 template <std::size_t... I>
-std::vector<std::string_view> names(std::index_sequence<I...>) {
-    return {name_of<std::variant_alternative_t<I, flight::Message>>()...};
+std::vector<std::string_view> message_names(std::index_sequence<I...>) {
+    return {type_name<std::variant_alternative_t<I, flight::Message>>()...};
+}
+template <std::size_t... I>
+std::vector<std::string_view> module_names(std::index_sequence<I...>) {
+    return {module_name<static_cast<flight::ModuleId>(I)>()...};
 }
 
 void print(const server::TaskTimes& task) {
-    const auto message_names = names(std::make_index_sequence<server::message_type_count>{});
+    static const auto modules = module_names(std::make_index_sequence<flight::module_count>{});
+    static const auto messages = message_names(std::make_index_sequence<server::message_type_count>{});
+    const std::string_view name = modules[static_cast<std::size_t>(task.module)];
     const double budget_us = flight::limits_of(task.module).budget_us;
-    std::printf("%-24s %9llu %8.1f %8.1f %8.1f %8.1f %8.0f %6.2f %7.1f %7zu\n", task_names[static_cast<std::size_t>(task.module)],
+    std::printf("%-24.*s %9llu %8.1f %8.1f %8.1f %8.1f %8.0f %6.2f %7.1f %7zu\n", static_cast<int>(name.size()), name.data(),
                 static_cast<unsigned long long>(task.cycle.count()), task.cycle.least_us(), task.cycle.mean_us(),
                 task.cycle.p999_us(), task.cycle.worst_us(), budget_us, task.cycle.p999_us() / budget_us,
                 server::unevenness(task), task.stack_used_octets);
     for (std::size_t type = 0; type < task.by_message.size(); ++type)
         if (const auto& times = task.by_message[type]; times.count() > 0)
-            std::printf("  %-22.*s %9llu %8.1f %8.1f %8.1f %8.1f\n", static_cast<int>(message_names[type].size()),
-                        message_names[type].data(), static_cast<unsigned long long>(times.count()), times.least_us(),
+            std::printf("  %-22.*s %9llu %8.1f %8.1f %8.1f %8.1f\n", static_cast<int>(messages[type].size()),
+                        messages[type].data(), static_cast<unsigned long long>(times.count()), times.least_us(),
                         times.mean_us(), times.p999_us(), times.worst_us());
 }
 

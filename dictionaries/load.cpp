@@ -90,6 +90,10 @@ Loaded load(const std::filesystem::path& directory) {
         Findings findings{file.name, all};
         return reader(*file.text, findings);
     };
+    // A name that its own sheet has wrong is one fault, not one more for each row of another that uses it.
+    const auto is_sound = [&](const File& file) {
+        return std::ranges::find(all, file.name, &Finding::file) == all.end();
+    };
     auto system = read(xml, xtce::read_space_system);
     auto anchors = read(anchors_csv, read_anchors);
     auto tones = read(tones_csv, read_tones);
@@ -102,16 +106,11 @@ Loaded load(const std::filesystem::path& directory) {
     });
 
     const File plan_csv = read_file(directory / "telemetry_plan.csv", all);
-    const bool packets_sound = std::ranges::find(all, xml.name, &Finding::file) == all.end();
     auto telemetry_plan = read(plan_csv, [&](std::string_view text, Findings& findings) {
-        return read_telemetry_plan(text, system && packets_sound ? &system->packets : nullptr, findings);
+        return read_telemetry_plan(text, system && is_sound(xml) ? &system->packets : nullptr, findings);
     });
 
     const File constraints_csv = read_file(directory / "constraints.csv", all);
-    // A name that its own sheet has wrong is one fault, not one more for each constraint that uses it.
-    const auto is_sound = [&](const File& file) {
-        return std::ranges::find(all, file.name, &Finding::file) == all.end();
-    };
     const ConstraintContext moments{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
                                     anchors && is_sound(anchors_csv) ? &*anchors : nullptr};
     auto constraints = read(constraints_csv, [&](std::string_view text, Findings& findings) {
@@ -127,7 +126,7 @@ Loaded load(const std::filesystem::path& directory) {
     });
 
     const File owners_csv = read_file(directory / "owners.csv", all);
-    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr, 
+    const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
                              has_enumerations ? &enumerations : nullptr};
     auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {
         return read_owners(text, owned, findings);

@@ -16,6 +16,11 @@ std::string integer_type(const Type& type) {
 
 } // namespace
 
+std::string made_by_autocoder(const Dictionary& dictionary, std::string_view source) {
+    return "// Made by the autocoder from the dictionary of " + dictionary.mission + ". Not to be edited: change " +
+           std::string{source} + ".\n";
+}
+
 std::string hexadecimal(std::uint64_t value, unsigned digits) {
     std::array<char, 24> text{};
     std::snprintf(text.data(), text.size(), "0x%0*llX", static_cast<int>(digits),

@@ -10,6 +10,9 @@
 // Small pieces of C++ text. Names were checked by the loader: they are identifiers and no keywords.
 namespace aeolis::dictionary::autocoder {
 
+/// The first line of whatever the autocoder writes: from which mission, and `source`, what to change instead of it.
+std::string made_by_autocoder(const Dictionary& dictionary, std::string_view source);
+
 /// "0x020".
 std::string hexadecimal(std::uint64_t value, unsigned digits);
 

@@ -40,9 +40,8 @@ class HeaderWriter {
     explicit HeaderWriter(const Dictionary& dictionary) : dictionary_(dictionary) {}
 
     std::string write() {
-        out_ << "// Made by the autocoder from the dictionary of " << dictionary_.mission
-             << ". Not to be edited: change the dictionary.\n"
-                "#pragma once\n\n"
+        out_ << made_by_autocoder(dictionary_, "the dictionary")
+           << "#pragma once\n\n"
                 "#include \"common/bytes.hpp\"\n#include \"common/ids.hpp\"\n\n"
                 "#include <array>\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include "
                 "<optional>\n#include <span>\n\n"

@@ -1,5 +1,7 @@
 #include "dictionaries/autocoder/owners_header.hpp"
 
+#include "dictionaries/autocoder/cpp_text.hpp"
+
 #include <algorithm>
 #include <sstream>
 
@@ -27,9 +29,8 @@ void write_owner_of(const Dictionary& dictionary, Kind kind, const char* type, s
 
 std::string owners_header(const Dictionary& dictionary) {
     std::ostringstream out;
-    out << "// Made by the autocoder from the dictionary of " << dictionary.mission
-        << ". Not to be edited: change owners.csv.\n"
-           "#pragma once\n\n#include \"flight/kernel/message.hpp\"\n\n#include <cstddef>\n#include <cstdint>\n\n"
+    out << made_by_autocoder(dictionary, "owners.csv")
+           << "#pragma once\n\n#include \"flight/kernel/message.hpp\"\n\n#include <cstddef>\n#include <cstdint>\n\n"
            "namespace aeolis::flight {\n\nenum class DeviceLine : std::uint8_t {\n";
     each_row(dictionary, Kind::device, [&](const OwnerRow& row) { out << "    " << row.name << ",\n"; });
     out << "};\ninline constexpr std::size_t device_line_count = "

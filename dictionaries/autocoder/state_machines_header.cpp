@@ -37,9 +37,8 @@ void write_machine(const StateMachineTable& machine, std::ostringstream& out) {
 
 std::string state_machines_header(const Dictionary& dictionary) {
     std::ostringstream out;
-    out << "// Made by the autocoder from the dictionary of " << dictionary.mission
-        << ". Not to be edited: change state_machines.csv.\n"
-           "#pragma once\n\n#include \"common/state_machine.hpp\"\n#include \"generated/dictionary_flight.hpp\"\n\n"
+    out << made_by_autocoder(dictionary, "state_machines.csv")
+           << "#pragma once\n\n#include \"common/state_machine.hpp\"\n#include \"generated/dictionary_flight.hpp\"\n\n"
            "#include <array>\n#include <cstdint>\n\nnamespace aeolis::flight {\n\n";
     for (const StateMachineTable& machine : dictionary.state_machines)
         write_machine(machine, out);

@@ -19,9 +19,8 @@ std::string encoder_of(const Dictionary& dictionary, const TelemetryPlanRow& row
 
 std::string telemetry_plan_source(const Dictionary& dictionary) {
     std::ostringstream out;
-    out << "// Made by the autocoder from the dictionary of " << dictionary.mission
-        << ". Not to be edited: change the spreadsheets.\n"
-           "#include \"flight/edl_comm/telemetry_plan.hpp\"\n\n"
+    out << made_by_autocoder(dictionary, "the spreadsheets")
+           << "#include \"flight/edl_comm/telemetry_plan.hpp\"\n\n"
            "#include <array>\n\n"
            "namespace aeolis::flight {\nnamespace {\n\n"
         << "constexpr std::array<TelemetryPlanRow, " << dictionary.telemetry_plan.size() << "> rows{{\n";

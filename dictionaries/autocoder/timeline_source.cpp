@@ -62,9 +62,8 @@ void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
 
 std::string timeline_source(const Dictionary& dictionary) {
     std::ostringstream out;
-    out << "// Made by the autocoder from the dictionary of " << dictionary.mission
-        << ". Not to be edited: change the spreadsheets.\n"
-           "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
+    out << made_by_autocoder(dictionary, "the spreadsheets")
+           << "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
            "#include \"flight/timeline/timepoint.hpp\"\n#include \"generated/owners.hpp\"\n\n"
            "namespace aeolis::flight {\n\n";
     write_timeline(dictionary, out);

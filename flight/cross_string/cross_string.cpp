@@ -37,12 +37,13 @@ void CrossString::on(const StatePart& part, Outbox& out) {
     if (!state) return;
     latest_ = *state;
     too_old_told_ = false;
+    const StateHeader prime = latest_.header();
     // The managers are to address the right units from the first command on.
-    if (const UnitSelection& units = latest_.header().units; units != told_units_) {
-        told_units_ = units;
-        out.send(ModuleId::units, UnitsSelected{units});
+    if (prime.units != told_units_) {
+        told_units_ = prime.units;
+        out.send(ModuleId::units, UnitsSelected{prime.units});
     }
-    if (latest_.header().touchdown && !off_) turn_off(out);
+    if (prime.touchdown && !off_) turn_off(out);
 }
 
 void CrossString::on(const StoredStatePart& stored, Outbox& out) {

@@ -30,7 +30,6 @@ class StateFrame {
   public:
     std::span<const std::uint8_t> octets() const { return octets_.span(); }
     bool empty() const { return octets_.empty(); }
-    void clear() { octets_.clear(); }
 
     /// The state that `carry` says, framed.
     template <typename State>

@@ -148,22 +148,14 @@ void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, Mayb
     constexpr ParameterDefaults parameters{};
     const double now_s = out.now().seconds;
     FixedVector<gnc::Condition, 4> conditions;
-    const auto add = [&](Quantity quantity, double value, gnc::Condition::Comparison comparison, double bound, bool holds) {
-        conditions.push_back({static_cast<std::uint16_t>(quantity), value, bound, comparison, holds});
-    };
-    const bool received = refused != CommandRefusal::no_parameters;
-    add(Quantity::parameters_received, received, gnc::Condition::Comparison::eq, 1, received);
-    const bool inhibited = refused == CommandRefusal::inhibited;
-    if (inhibited) add(Quantity::fault_inhibit, 1, gnc::Condition::Comparison::eq, 0, false);
-    if (entry.defined()) {
-        const double to_entry_s = entry.get()->seconds - now_s;
-        add(Quantity::time_to_entry_s, to_entry_s, gnc::Condition::Comparison::le,
-            parameters.late_cruise_before_entry_s, to_entry_s <= parameters.late_cruise_before_entry_s);
-    }
-    if (first_desired.defined()) {
-        const double last_s = first_desired.get()->seconds - parameters.do_edl_margin_s;
-        add(Quantity::clock_sclk, now_s, gnc::Condition::Comparison::lt, last_s, now_s < last_s);
-    }
+    conditions.push_back(is(Quantity::parameters_received, refused == CommandRefusal::no_parameters ? 0.0 : 1.0, 1.0));
+    if (refused == CommandRefusal::inhibited) conditions.push_back(is(Quantity::fault_inhibit, 1.0, 0.0));
+    if (entry.defined())
+        conditions.push_back(at_most(Quantity::time_to_entry_s, entry.get()->seconds - now_s,
+                                     parameters.late_cruise_before_entry_s));
+    if (first_desired.defined())
+        conditions.push_back(
+            below(Quantity::clock_sclk, now_s, first_desired.get()->seconds - parameters.do_edl_margin_s));
     out.record(explanation(Decision::do_edl, refused ? ExplanationVerdict::refused : ExplanationVerdict::fired, 0,
                            conditions.span()));
 }

@@ -14,10 +14,10 @@ packet::Explanation explanation(Decision decision, ExplanationVerdict verdict, s
         if (i >= conditions.size()) return;
         const gnc::Condition& c = conditions[i];
         holds = c.holds;
-        quantity = static_cast<Quantity>(c.quantity);
+        quantity = c.quantity;
         value = c.value;
         bound = c.bound;
-        comparison = static_cast<Comparison>(c.comparison);
+        comparison = c.comparison;
     };
     put(0, e.holds_1, e.condition_1, e.value_1, e.bound_1, e.comparison_1);
     put(1, e.holds_2, e.condition_2, e.value_2, e.bound_2, e.comparison_2);

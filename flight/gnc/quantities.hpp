@@ -3,8 +3,6 @@
 #include "common/fixed_vector.hpp"
 #include "generated/dictionary_flight.hpp"
 
-#include <cstdint>
-
 // What a decision of GNC looked at, so that it can explain itself. R38
 namespace aeolis::flight::gnc {
 
@@ -12,7 +10,7 @@ using flight::Quantity;
 
 /// One condition behind a decision, for its explanation. R38
 struct Condition {
-    std::uint16_t quantity = 0; ///< a Quantity
+    Quantity quantity = Quantity::none;
     double value = 0.0;
     double bound = 0.0;
     using Comparison = flight::Comparison;
@@ -21,13 +19,13 @@ struct Condition {
 };
 
 constexpr Condition at_most(Quantity quantity, double value, double bound) {
-    return {static_cast<std::uint16_t>(quantity), value, bound, Condition::Comparison::le, value <= bound};
+    return {quantity, value, bound, Condition::Comparison::le, value <= bound};
 }
 constexpr Condition at_least(Quantity quantity, double value, double bound) {
-    return {static_cast<std::uint16_t>(quantity), value, bound, Condition::Comparison::ge, value >= bound};
+    return {quantity, value, bound, Condition::Comparison::ge, value >= bound};
 }
 constexpr Condition below(Quantity quantity, double value, double bound) {
-    return {static_cast<std::uint16_t>(quantity), value, bound, Condition::Comparison::lt, value < bound};
+    return {quantity, value, bound, Condition::Comparison::lt, value < bound};
 }
 
 using Conditions = FixedVector<Condition, 4>;

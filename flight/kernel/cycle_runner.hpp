@@ -9,7 +9,7 @@ struct ComputerState;
 /// How one 64 Hz cycle of a computer's modules is run: the deterministic executive when there is none, else the one that
 /// a venue brings (server/venue). Whatever runs them, the modules do the same. R36
 ///
-/// Faults  throws CheckFailed when a module's check failed; then nothing of the cycle may be left in its mailboxes
+/// Faults  throws CheckFailed when a module's check failed: the state is of no use then, and the caller makes it anew
 class CycleRunner {
   public:
     virtual ~CycleRunner() = default;

@@ -68,13 +68,6 @@ class ThreadedExecutive::Task {
         }
         wake_.notify_one();
     }
-    void drop_mail() {
-        const std::lock_guard lock{mutex_};
-        while (!mailbox().empty())
-            mailbox().pop();
-        later_.clear();
-    }
-
     FixedVector<flight::Envelope, 128>& later() { return later_; }
     TaskTimes times() const {
         TaskTimes times = times_;
@@ -166,10 +159,7 @@ class ThreadedExecutive::Task {
                 if (!later_.try_push_back(envelope)) ++house_.overflows_;
                 continue;
             }
-            house_.post(envelope);
-            if (flight::wakes(envelope.to, envelope.message) &&
-                flight::is_loaded(house_.state_->load.role, envelope.to))
-                house_.task(envelope.to).wake();
+            if (house_.post(envelope.to, envelope.message)) house_.task(envelope.to).wake();
         }
     }
 
@@ -194,9 +184,10 @@ ThreadedExecutive::ThreadedExecutive(Options options) : options_(std::move(optio
 
 ThreadedExecutive::~ThreadedExecutive() = default;
 
-void ThreadedExecutive::post(const flight::Envelope& envelope) {
-    if (!flight::is_loaded(state_->load.role, envelope.to)) return;
-    if (!task(envelope.to).push(envelope.message)) ++overflows_;
+bool ThreadedExecutive::post(flight::ModuleId to, const flight::Message& message) {
+    if (!flight::is_loaded(state_->load.role, to)) return false;
+    if (!task(to).push(message)) ++overflows_;
+    return flight::wakes(to, message);
 }
 
 void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::DeviceInputs& in,
@@ -212,8 +203,7 @@ void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::Device
     // All that came with the tick lies in the mailboxes before the first task runs.
     std::uint32_t awake = 0;
     const auto deliver = [&](flight::ModuleId to, const flight::Message& message) {
-        post({flight::ModuleId::sync, to, message});
-        if (flight::wakes(to, message) && flight::is_loaded(state.load.role, to)) awake |= flight::bit_of(to);
+        if (post(to, message)) awake |= flight::bit_of(to);
     };
     for (const flight::Envelope& envelope : state.next_cycle)
         deliver(envelope.to, envelope.message);
@@ -242,8 +232,7 @@ void ThreadedExecutive::wait_until_idle() {
             deadline += tick;
             lock.unlock();
             const Sclk late = now_ + ticks_skipped_ * seconds_per_tick;
-            post({flight::ModuleId::sync, flight::ModuleId::sync, flight::ClockTick{late}});
-            task(flight::ModuleId::sync).wake();
+            if (post(flight::ModuleId::sync, flight::ClockTick{late})) task(flight::ModuleId::sync).wake();
             lock.lock();
         }
     }
@@ -254,7 +243,7 @@ void ThreadedExecutive::collect(flight::ComputerState& state) {
     state.unexpected_messages += unexpected_.exchange(0);
     if (failed_) {
         for (auto& one : tasks_)
-            one->drop_mail();
+            one->later().clear(); // mailboxes go with the computer's state
         const CheckFailed bug = *failed_;
         failed_.reset();
         throw CheckFailed{bug};

@@ -23,7 +23,7 @@ namespace aeolis::server {
 ///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
 ///          running, reports the overrun and skips that cycle; ticks_skipped() says how many, SCLK goes on
 /// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
-/// Faults   a task whose check fails: cycle() throws it once all tasks are idle, with every mailbox empty
+/// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the state that failed
 class ThreadedExecutive final : public flight::CycleRunner {
   public:
     enum class Clock { virtual_time, real_time };
@@ -53,7 +53,8 @@ class ThreadedExecutive final : public flight::CycleRunner {
   private:
     class Task;
 
-    void post(const flight::Envelope& envelope);
+    /// True when the message makes its module run: whoever posts it wakes the task. False, too, in a load without it.
+    bool post(flight::ModuleId to, const flight::Message& message);
     void wait_until_idle();
     void collect(flight::ComputerState& state);
     void report_times(flight::ComputerState& state);

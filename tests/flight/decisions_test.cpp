@@ -20,7 +20,7 @@ TEST_CASE("each decision of GNC is an event and an explanation with its conditio
     for (std::size_t i = 0; i < gnc::trigger_count; ++i) {
         test::OutboxRecorder recorder;
         gnc::Output output;
-        output.conditions.push_back({1, 404.6, 405.0, gnc::Condition::Comparison::le, true});
+        output.conditions.push_back({Quantity{1}, 404.6, 405.0, gnc::Condition::Comparison::le, true});
         announce(static_cast<gnc::Trigger>(i), output, recorder.out);
         CHECK(recorder.packets<evr::PARACHUTE_DEPLOY>() == 1);
         explain(static_cast<gnc::Trigger>(i), output, 0, recorder.out);

@@ -75,7 +75,7 @@ TEST_CASE("drag starts entry guidance once, and explains it", "[gnc][R17][R38]")
             if (trigger != Trigger::guidance_start) continue;
             ++started;
             REQUIRE(out.conditions.size() == 1);
-            CHECK(out.conditions[0].quantity == static_cast<std::uint16_t>(Quantity::drag_mps2));
+            CHECK(out.conditions[0].quantity == Quantity::drag_mps2);
             CHECK(out.conditions[0].value >= 1.96);
             CHECK(drag > 1.96); // filtered: later than the raw drag
             CHECK(drag < 2.3);

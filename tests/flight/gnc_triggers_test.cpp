@@ -29,7 +29,7 @@ TEST_CASE("below its lowest altitude the parachute waits for its speed no longer
     CHECK(parachute_due({405.0, 12000.0, 110.0}, bounds));
     const auto low = parachute({500.0, 6000.0, 150.0}, bounds, 3);
     CHECK(all_hold(low));
-    CHECK(low[0].quantity == static_cast<std::uint16_t>(aeolis::flight::Quantity::altitude_m)); // and says why
+    CHECK(low[0].quantity == aeolis::flight::Quantity::altitude_m); // and says why
     CHECK_FALSE(all_hold(parachute({500.0, 6000.0, 150.0}, bounds, 2)));
 }
 

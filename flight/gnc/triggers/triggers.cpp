@@ -33,14 +33,14 @@ constexpr double near_fraction = ParameterDefaults{}.held_near_fraction; // of t
 bool near(const Conditions& conditions) {
     if (conditions.empty()) return false;
     const Condition& first = conditions[0];
-    if (first.quantity == static_cast<std::uint16_t>(Quantity::time_in_mode_s)) return false; // a timer decides nothing
+    if (first.quantity == Quantity::time_in_mode_s) return false; // a timer decides nothing
     return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
 }
 
 Conditions worth_telling(const Conditions& conditions) {
     Conditions told;
     for (const Condition& condition : conditions)
-        if (condition.quantity != static_cast<std::uint16_t>(Quantity::cycles_held) || condition.value > 0.0)
+        if (condition.quantity != Quantity::cycles_held || condition.value > 0.0)
             told.push_back(condition);
     return told;
 }
