@@ -64,7 +64,7 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* run
         state_->forgets = at_once;
         out.begin_cycle();
         state_->outbox.begin(ModuleId::sync, in.now, out);
-        state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = state_->resets});
+        state_->outbox.event(evr::FATAL_CHECK_FAILED{.source_line = bug.line(), .resets = state_->load.resets});
         state_->outbox.send(ModuleId::mfsk, ToneRequest{tone::check_failed, in.now + restart_s});
         for (const Envelope& envelope : state_->outbox.sent()) state_->next_cycle.push_back(envelope);
         out.in_command = false;
@@ -77,23 +77,18 @@ void Computer::reset(Sclk now) {
 }
 
 void Computer::start_anew(Sclk now, Role role, Sclk told_until) {
-    const std::uint32_t resets = state_->resets + 1;
     Load load = state_->load;
     load.role = role;
+    ++load.resets;
     if (!state_->runs_from) load.told_until = told_until;  // else it has told nothing since it was last started
     std::destroy_at(state_.get());
     std::construct_at(state_.get(), load, now);
-    state_->resets = resets;
     state_->runs_from = now + restart_s;
 }
 
 Computer::Counters Computer::counters() const {
     return {state_->sync.cycles(), state_->sync.overruns(), state_->mailbox_overflows, state_->unexpected_messages,
-            state_->resets};
-}
-
-Role Computer::role() const {
-    return state_->load.role;
+            state_->load.resets};
 }
 
 }  // namespace aeolis::flight

@@ -49,7 +49,6 @@ class Computer {
         std::uint32_t resets = 0;
     };
     Counters counters() const;
-    Role role() const;
 
   private:
     void start_anew(Sclk now, Role role, Sclk told_until);

@@ -65,7 +65,6 @@ struct ComputerState {
 
     std::uint32_t mailbox_overflows = 0;
     std::uint32_t unexpected_messages = 0;
-    std::uint32_t resets = 0;
     std::optional<Sclk> runs_from;  // while it starts after a reset
     std::optional<Sclk> ran_from;   // since it did
     bool forgets = false;           // starts from nothing: with what was kept it failed at once

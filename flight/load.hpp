@@ -39,6 +39,7 @@ struct Load {
     Role role = Role::prime;
     /// After a restart: the last cycle whose state the other computer can have.
     std::optional<Sclk> told_until;
+    std::uint32_t resets = 0;  ///< so far
     double uhf_rate_bps = 8000.0;             ///< rate of the real-time link
     Plan telemetry_plan = Plan::mission;      ///< wideband: a synthetic load for benchmarks
     double entry_mass_kg = 3153.0;

@@ -47,6 +47,7 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
     switch (packet->opcode.value) {
     case command::NO_OP::opcode.value:
         return route<command::NO_OP>(out, tag, packet->arguments, [&](const command::NO_OP&) {
+            out.event(evr::NO_OP_EXECUTED{});
             on(CommandOutcome{tag, std::nullopt}, out);
         });
     case command::EDL_SET_PARAMETERS::opcode.value:

@@ -24,13 +24,15 @@ EdlMain::EdlMain(const Load& load)
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
     if (activity_ != Activity::flies) return out.send(ModuleId::sync, Confirm{ModuleId::edl});
-    ++cycle_count_;
+    const bool after_restart = cycle_count_++ == 0 && load_.resets > 0 && load_.role == Role::prime;
+    if (after_restart) out.event(evr::COMPUTER_STARTED{.reset_count = reset_count()});
     timeline_.begin_cycle();
     watch_approach(tick.now, out);
     run_timeline(tick.now, out);
     run_gnc(tick.now, out);
     take_triggers(tick.now, out);
     run_timeline(tick.now, out);
+    if (timeline_.limited(tick.now)) out.event(evr::FIRINGS_LIMITED{.timepoint = timeline_.current().value});
     explain_held(output_, held_, out);
     if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
     update_phase(tick.now, out);
@@ -228,11 +230,12 @@ void EdlMain::on(const SetTimepointOffsetCommand& command, Outbox& out) {
                           is_multiple_of_tick(arguments.minimum_offset_s) &&
                           timeline_.set_timepoint_offsets(TimepointId{arguments.timepoint}, arguments.desired_offset_s,
                                                           arguments.minimum_offset_s);
-    if (possible) ++revision_;
-    if (possible)
+    if (possible) {
+        ++revision_;
         out.event(evr::TIMEPOINT_OFFSET_CHANGED{.timepoint = arguments.timepoint,
                                                 .desired_offset_s = arguments.desired_offset_s,
                                                 .minimum_offset_s = arguments.minimum_offset_s});
+    }
     answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
 }
 
@@ -240,9 +243,10 @@ void EdlMain::on(const SetAnchorOffsetCommand& command, Outbox& out) {
     const auto& arguments = command.arguments;
     const bool possible = is_multiple_of_tick(arguments.offset_s) &&
                           timeline_.set_anchor_offset(AnchorId{arguments.anchor}, arguments.offset_s);
-    if (possible) ++revision_;
-    if (possible)
+    if (possible) {
+        ++revision_;
         out.event(evr::ANCHOR_OFFSET_CHANGED{.anchor = arguments.anchor, .offset_s = arguments.offset_s});
+    }
     answer(out, command.tag, possible ? std::nullopt : std::optional{CommandRefusal::bad_argument});
 }
 

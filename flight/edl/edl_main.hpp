@@ -9,6 +9,7 @@
 #include "flight/timeline/constraint_monitor.hpp"
 #include "flight/timeline/timeline.hpp"
 
+#include <algorithm>
 #include <optional>
 
 namespace aeolis::flight {
@@ -75,6 +76,7 @@ class EdlMain {
     void update_phase(Sclk now, Outbox& out);
     void record_channels(Sclk now, Outbox& out);
     packet::ParametersHeld parameters_held() const;
+    std::uint8_t reset_count() const { return static_cast<std::uint8_t>(std::min(load_.resets, 255U)); }
     MaybeTime entry() const { return timeline_.anchor_time(anchor::entry); }
     bool late_cruise(Sclk now) const;
     bool pre_edl(Sclk now) const;

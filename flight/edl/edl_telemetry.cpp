@@ -135,6 +135,7 @@ void EdlMain::record_channels(Sclk now, Outbox& out) {
                                      .seconds_to_entry_s =
                                          entry().defined() ? std::optional{*entry().get() - now} : std::nullopt,
                                      .edl_cycle_count = cycle_count_,
+                                     .reset_count = reset_count(),
                                      .fault_inhibit = inhibited_,
                                      .computer_role = static_cast<ComputerRole>(load_.role)});
         out.record(packet::TimelineStatus{.timeline_version = timeline_version,

@@ -3,6 +3,10 @@
 namespace aeolis::flight {
 
 void Sync::on(const ClockTick& tick, Outbox& out) {
+    if (mailbox_overflows_ != overflows_told_) {
+        overflows_told_ = mailbox_overflows_;
+        out.event(evr::MAILBOX_OVERFLOW{.lost = mailbox_overflows_});
+    }
     if (at_resolution(tick.now, 1) == tick.now)
         out.record(packet::SyncStatus{.cycles = static_cast<std::uint32_t>(cycles_),
                                       .overruns = static_cast<std::uint32_t>(overruns_),

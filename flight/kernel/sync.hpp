@@ -12,7 +12,8 @@ namespace aeolis::flight {
 ///
 /// In       ClockTick (64 Hz), Confirm           Out   Tick to each module in order; SyncStatus at 1 Hz
 /// Faults   a tick that comes before the last module confirmed is an overrun: counted and reported (CYCLE_OVERRUN),
-///          that cycle skipped; SCLK goes on, because the tick carries it
+///          that cycle skipped; SCLK goes on, because the tick carries it. Messages that found no room in a mailbox in the
+///          cycle before are told by their number (MAILBOX_OVERFLOW)
 class Sync {
   public:
     explicit Sync(const Load&) {}
@@ -39,6 +40,7 @@ class Sync {
     std::uint64_t cycles_ = 0;
     std::uint64_t overruns_ = 0;
     std::uint32_t mailbox_overflows_ = 0;
+    std::uint32_t overflows_told_ = 0;
     std::uint32_t unexpected_messages_ = 0;
 };
 

@@ -37,11 +37,8 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
             complete(now, replied_ ? FiringVerdict::replied : FiringVerdict::timed_out, firings);
             continue;
         }
-        if (fired_in_cycle_ == firings_per_cycle_max) return;
+        if (fired_in_cycle_ == firings_per_cycle_max || !current_may_fire(now)) return;
         const auto& row = rows_[current_];
-        if (!may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_],
-                      now))
-            return;
 
         ++fired_in_cycle_;
         triggered_ = now;
@@ -60,6 +57,14 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
         }
         complete(now, row.action ? FiringVerdict::completed : FiringVerdict::no_operation, firings);
     }
+}
+
+bool Timeline::current_may_fire(Sclk now) const {
+    return may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_], now);
+}
+
+bool Timeline::limited(Sclk now) const {
+    return fired_in_cycle_ == firings_per_cycle_max && !finished() && !waiting_ && current_may_fire(now);
 }
 
 void Timeline::complete(Sclk now, FiringVerdict verdict, Firings& firings) {

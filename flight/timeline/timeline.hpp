@@ -53,6 +53,9 @@ class Timeline {
     /// One pass: anchors first, then the current timepoint, and the next while no reply is awaited. R15, R16
     void pass(Sclk now, ActionContext& context, Firings& firings);
 
+    /// Whether only the limit of firings keeps the current timepoint from firing in this cycle. R15
+    bool limited(Sclk now) const;
+
     /// The answer that the current timepoint may be waiting for. It counts at the next pass. R14
     void reply(const ActionReply& reply);
 
@@ -96,6 +99,7 @@ class Timeline {
   private:
     void complete(Sclk now, FiringVerdict verdict, Firings& firings);
     MaybeTime desired_base(std::size_t row) const;
+    bool current_may_fire(Sclk now) const;
     bool runs(const TimepointSpec& row) const { return !essential_only_ || row.essential || !row.action; }
 
     std::span<const TimepointSpec> rows_;

@@ -43,6 +43,7 @@ TEST_CASE("NO_OP is accepted and executed", "[commands][R44]") {
     f.handle(received(telecommand(command::NO_OP::opcode, 0)));
     CHECK(f.recorder.events<evr::COMMAND_ACCEPTED>() == 1);
     CHECK(f.recorder.events<evr::COMMAND_EXECUTED>() == 1);
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 1);
 }
 
 TEST_CASE("do edl goes to its one owner, and nothing is claimed before the owner has answered", "[commands][R5][R23]") {

@@ -53,3 +53,12 @@ TEST_CASE("a confirmation out of turn is not taken for another's", "[sync][R4][R
     CHECK_FALSE(f.turn_after(Confirm{ModuleId::edl}, 0.25).has_value());
     CHECK(f.turn_after(Confirm{ModuleId::radar}, 0.25) == ModuleId::imu);
 }
+
+TEST_CASE("messages that found no room are told once, with their number", "[sync][R6]") {
+    Fixture f;
+    f.sync.set_executive_counts(3, 0);
+    (void)f.turn_after(ClockTick{Sclk{0.25}}, 0.25);
+    CHECK(f.recorder.events<evr::MAILBOX_OVERFLOW>() == 1);
+    (void)f.turn_after(ClockTick{Sclk{0.5}}, 0.5);
+    CHECK(f.recorder.events<evr::MAILBOX_OVERFLOW>() == 0);
+}

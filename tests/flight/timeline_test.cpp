@@ -102,8 +102,10 @@ TEST_CASE("at most five timepoints fire in one cycle, both passes together", "[t
     Fixture f{std::vector<TimepointSpec>(7, row({}, 0.0, 0.0))};
     f.timeline.begin(at(0));
     CHECK(f.cycle(at(0)).size() == 5);
+    CHECK(f.timeline.limited(at(0)));
     CHECK(f.pass(at(0)).empty());
     CHECK(f.cycle(at(1.0 / 64)).size() == 2);
+    CHECK_FALSE(f.timeline.limited(at(1.0 / 64)));
     CHECK(f.timeline.finished());
 }
 

@@ -46,6 +46,10 @@ struct Recorded {
     }
 };
 
+void fly_on(Landing& landing, double for_s) {
+    for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
+}
+
 struct Commanded {
     Landing landing;
     explicit Commanded(double start_before_entry_s, bool second_chance = true)
@@ -56,9 +60,7 @@ struct Commanded {
         landing.uplink(test::do_edl());
         fly(light);
     }
-    void fly(double for_s) {
-        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
-    }
+    void fly(double for_s) { fly_on(landing, for_s); }
     void fly_to(double e_s) {
         while (landing.truth().e_s < e_s) landing.step();
     }
@@ -142,6 +144,7 @@ TEST_CASE("a reset in pre-EDL: prime starts anew, goes back over the named timep
     CHECK(recorded.times<flight::evr::TIMELINE_BACKTRACKED>().size() == 1);
     CHECK(recorded.times<flight::evr::DESCENT_IMU_POWERED>().size() == 2);
     CHECK(recorded.times<flight::evr::EDL_CONFIGURED>().size() == 2);
+    CHECK(recorded.times<flight::evr::COMPUTER_STARTED>().size() == 1);
     CHECK(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().empty());
 
     Commanded in_between{17000.0};
@@ -159,12 +162,9 @@ TEST_CASE("ground designates the other computer prime: both start anew, and it i
           "[second_chance][R1]") {
     Landing landing{tests::gale_scenario(1200.0), 1};
     landing.uplink(test::set_parameters(landing.solution()));
-    const auto fly = [&](double for_s) {
-        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
-    };
-    fly(light);
+    fly_on(landing, light);
     landing.uplink(test::select_prime_b());
-    fly(60.0);
+    fly_on(landing, 60.0);
     CHECK(landing.counters().resets == 2);
     landing.uplink(test::do_edl());  // parameters were kept over the restart
     while (landing.outcome() == Outcome::running) landing.step();
@@ -205,20 +205,17 @@ TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichev
 TEST_CASE("do edl is refused while the computers are about to change roles", "[second_chance][R1][R23]") {
     Landing landing{tests::gale_scenario(1200.0), 1};
     landing.uplink(test::set_parameters(landing.solution()));
-    const auto fly = [&](double for_s) {
-        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
-    };
-    fly(light);
+    fly_on(landing, light);
     landing.uplink(test::select_prime_b());
     landing.uplink(test::do_edl());
-    fly(60.0);
+    fly_on(landing, 60.0);
     const Recorded recorded{landing};
     CHECK(recorded.times<flight::evr::PRIME_DESIGNATED>().size() == 1);
     CHECK(recorded.times<flight::evr::EDL_BEGUN>().empty());
     CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
     CHECK(landing.counters().resets == 2);
     landing.uplink(test::do_edl());
-    fly(5.0);
+    fly_on(landing, 5.0);
     const Recorded after{landing};
     CHECK(after.times<flight::evr::EDL_BEGUN>().size() == 1);
     CHECK(after.times<flight::evr::PRIME_STANDS_BY>().empty());
