@@ -3,8 +3,8 @@
 // hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
 //
 // Goal: no cycle's own processor time, of all tasks together, above 1/64 s.
-#include "flight/kernel/deadlines.hpp"
 #include "server/scenario/scenario_text.hpp"
+#include "server/venue/task_report.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
 #include "tests/support/telecommands.hpp"
@@ -13,51 +13,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
-#include <string_view>
 #include <thread>
 
 namespace {
 
 using namespace aeolis;
-
-/// The last word of what the compiler calls its template argument: a message's type, a module.
-constexpr std::string_view argument_in(std::string_view signature) {
-    signature = signature.substr(signature.find(" = ") + 3);
-    signature = signature.substr(0, signature.find_first_of(";]"));
-    return signature.substr(signature.rfind(':') + 1);  // all of it where there is none
-}
-template <typename Message>
-std::string_view type_name() {
-    return argument_in(__PRETTY_FUNCTION__);
-}
-template <flight::ModuleId id>
-std::string_view module_name() {
-    return argument_in(__PRETTY_FUNCTION__);
-}
-template <std::size_t... I>
-std::vector<std::string_view> message_names(std::index_sequence<I...>) {
-    return {type_name<std::variant_alternative_t<I, flight::Message>>()...};
-}
-template <std::size_t... I>
-std::vector<std::string_view> module_names(std::index_sequence<I...>) {
-    return {module_name<static_cast<flight::ModuleId>(I)>()...};
-}
-
-void print(const server::TaskTimes& task) {
-    static const auto modules = module_names(std::make_index_sequence<flight::module_count>{});
-    static const auto messages = message_names(std::make_index_sequence<server::message_type_count>{});
-    const std::string_view name = modules[static_cast<std::size_t>(task.module)];
-    const double budget_us = flight::limits_of(task.module).budget_us;
-    std::printf("%-24.*s %9llu %8.1f %8.1f %8.1f %8.1f %8.0f %6.2f %7.1f %7zu\n", static_cast<int>(name.size()), name.data(),
-                static_cast<unsigned long long>(task.cycle.count()), task.cycle.least_us(), task.cycle.mean_us(),
-                task.cycle.p999_us(), task.cycle.worst_us(), budget_us, task.cycle.p999_us() / budget_us,
-                server::unevenness(task), task.stack_used_octets);
-    for (std::size_t type = 0; type < task.by_message.size(); ++type)
-        if (const auto& times = task.by_message[type]; times.count() > 0)
-            std::printf("  %-22.*s %9llu %8.1f %8.1f %8.1f %8.1f\n", static_cast<int>(messages[type].size()),
-                        messages[type].data(), static_cast<unsigned long long>(times.count()), times.least_us(),
-                        times.mean_us(), times.p999_us(), times.worst_us());
-}
 
 }  // namespace
 
@@ -95,22 +55,12 @@ int main() {
     }
     const double wall_s = std::chrono::duration<double>{clock::now() - began}.count();
 
-    std::printf("%-24s %9s %8s %8s %8s %8s %8s %6s %7s %7s\n", "task, its messages", "times", "least us", "mean", "99.9 %", "worst",
-                "budget", "ratio", "uneven", "stack");
-    double together_us = 0.0;
-    bool within = true;
-    for (const server::TaskTimes& task : executive->times()) {
-        print(task);
-        together_us += task.cycle.worst_us();
-        within = within && task.cycle.p999_us() <= flight::limits_of(task.module).budget_us;
-    }
-    const double tick_us = seconds_per_tick * 1.0e6;
-    std::printf("\n%llu cycles in %.1f s; worst of all tasks together %.0f us of a cycle's %.0f us, ratio %.2f\n",
-                static_cast<unsigned long long>(cycles), wall_s, together_us, tick_us, together_us / tick_us);
+    std::printf("%s%llu cycles in %.1f s\n", server::task_table(executive->times()).c_str(),
+                static_cast<unsigned long long>(cycles), wall_s);
     std::printf("overruns that sync counted: %llu; ticks that passed in a cycle beyond its own: %llu\n",
                 static_cast<unsigned long long>(landing.counters().overruns), static_cast<unsigned long long>(skipped));
     if (real_time)
         std::printf("lateness of a tick: mean %.0f us, 99.9 %% %.0f us, worst %.0f us\n", lateness.mean_us(), lateness.p999_us(),
                     lateness.worst_us());
-    return within && together_us <= tick_us ? 0 : 1;
+    return server::within_budgets(executive->times()) ? 0 : 1;
 }

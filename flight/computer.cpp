@@ -86,6 +86,14 @@ void Computer::start_anew(Sclk now, Role role, Sclk told_until) {
     state_->runs_from = now + restart_s;
 }
 
+const gnc::Configuration& Computer::gnc_configuration() const {
+    return state_->edl.configuration();
+}
+
+void Computer::replace_gnc(const gnc::Output& told) {
+    state_->edl.replace_gnc(told);
+}
+
 Computer::Counters Computer::counters() const {
     return {state_->sync.cycles(), state_->sync.overruns(), state_->mailbox_overflows, state_->unexpected_messages,
             state_->load.resets};

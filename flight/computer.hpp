@@ -9,6 +9,10 @@
 namespace aeolis::flight {
 
 struct ComputerState;
+namespace gnc {
+struct Configuration;
+struct Output;
+}  // namespace gnc
 
 /// Ours: from a reset until the software runs again.
 inline constexpr double restart_s = 30.0;
@@ -36,6 +40,11 @@ class Computer {
 
     /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
     void reset(Sclk now);
+
+    /// The test venue "all but GNC": what stands in for GNC looks at what the timeline has done, and what it tells counts as
+    /// GNC's in the next step. R36
+    const gnc::Configuration& gnc_configuration() const;
+    void replace_gnc(const gnc::Output& told);
 
     /// What it holds, for faults that are put in from outside (flight/computer_state.hpp).
     ComputerState& state() { return *state_; }

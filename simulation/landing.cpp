@@ -2,8 +2,8 @@
 
 #include "common/bytes.hpp"
 #include "simulation/devices/computers.hpp"
+#include "simulation/devices/load.hpp"
 #include "simulation/devices/recorder.hpp"
-#include "simulation/entry_reference.hpp"
 #include "simulation/links/in_flight.hpp"
 #include "simulation/links/relay_link.hpp"
 #include "simulation/links/uhf_link.hpp"
@@ -11,6 +11,8 @@
 #include "simulation/mars/earth.hpp"
 #include "simulation/moments.hpp"
 #include "simulation/random.hpp"
+#include "simulation/venues/gnc_alone.hpp"
+#include "simulation/venues/gnc_stand_in.hpp"
 #include "simulation/world.hpp"
 
 #include <algorithm>
@@ -24,21 +26,31 @@ constexpr double light_mps = 299792458.0;     // [bipm-si]
 constexpr std::size_t remembered_ticks = 256; // 4 s: an event report is recorded within a few cycles
 constexpr double symbol_s = 10.0;
 
-flight::Load load_for(const Scenario& scenario) {
-    flight::Load load;
-    load.uhf_rate_bps = scenario.radio.uhf_rate_bps;
-    load.telemetry_plan = scenario.telemetry_plan;
-    load.entry_mass_kg = scenario.masses.entry_kg;
-    load.powered_descent_mass_kg = scenario.masses.powered_descent_kg;
-    load.descent_stage_dry_kg =
-        scenario.masses.powered_descent_kg - scenario.masses.rover_kg - scenario.masses.propellant_kg;
-    load.rover_mass_kg = scenario.masses.rover_kg;
-    load.entry_reference = make_entry_reference(scenario);
-    return load;
-}
-
 std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
+}
+
+/// Its name among those in decided_on_board; none for what the truth shows by itself.
+const char* decided_by_gnc(flight::gnc::Trigger trigger) {
+    using flight::gnc::Trigger;
+    switch (trigger) {
+    case Trigger::guidance_start:
+        return "guidance_start";
+    case Trigger::heading_alignment:
+        return "heading_alignment";
+    case Trigger::radar_lock:
+        return "radar_lock";
+    case Trigger::powered_approach:
+        return "powered_approach_start";
+    case Trigger::constant_velocity:
+        return "constant_velocity_start";
+    case Trigger::constant_deceleration:
+        return "constant_deceleration_start";
+    case Trigger::touchdown:
+        return "touchdown";
+    default:
+        return nullptr;
+    }
 }
 
 /// A link's last told state: a change is sent to Earth like everything else.
@@ -64,6 +76,9 @@ struct Landing::State {
     std::vector<EventReportName> reports;
     World world;
     Computers computers;
+    std::optional<GncAlone> gnc_alone; // in that venue the computers stay off
+    std::optional<GncStandIn> gnc_stand_in;
+    flight::DeviceOutputs gnc_alone_out;
     flight::OctetBuffer<16384> radiated; // by either computer in this cycle
     Recorder recorder;
     UhfLink uhf;
@@ -89,6 +104,8 @@ struct Landing::State {
           x_band(s.radio, Random{seed, case_number, Stream::x_band}), relay(s.radio.relay_rate_bps),
           light_time_us(microseconds(s.radio.light_time_s)) {
         computer_on = world.outcome() == Outcome::running;
+        if (s.test_venue == TestVenue::gnc_alone) gnc_alone.emplace(load_for(s), world.solution(), world.sclk());
+        if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load_for(s));
     }
 
     void inject_resets() {
@@ -101,8 +118,11 @@ struct Landing::State {
     std::int64_t now_us() const { return correlation().scet_of(sclk()).microseconds; }
 
     void fly();
+    /// The commands of this cycle that go out on the buses; none: nobody runs them.
+    const flight::DeviceOutputs* run_computers();
+    const flight::DeviceOutputs* run_gnc_alone();
     void radiate(std::int64_t cycle_start_us);
-    void receive_tone(std::int64_t cycle_start_us);
+    void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us);
@@ -122,7 +142,24 @@ void Landing::State::fly() {
     world.set_nvm(static_cast<std::uint32_t>(recorder.octets().size()), Recorder::capacity_octets);
     remembered[static_cast<std::size_t>(world.sclk().ticks()) % remembered_ticks] = world.truth();
 
+    const flight::DeviceOutputs* commands = gnc_alone ? run_gnc_alone() : run_computers();
+    radiate(cycle_start_us);
+    receive_tone(commands != nullptr ? commands->tone : std::nullopt, cycle_start_us);
+    if (commands != nullptr)
+        world.advance(*commands);
+    else
+        world.advance_uncommanded();
+    report.events.insert(report.events.end(), world.events().begin(), world.events().end());
+    read_event_reports();
+
+    const bool landed = world.outcome() == Outcome::touchdown;
+    const bool over = world.outcome() != Outcome::running;
+    computer_on = !over || (landed && world.sclk() - *world.contact() < scenario.end_after_touchdown_s);
+}
+
+const flight::DeviceOutputs* Landing::State::run_computers() {
     inject_resets();
+    if (gnc_stand_in) computers.replace_gnc(gnc_stand_in->cycle(world, computers.gnc_configuration()));
     computers.step(world.sense());
 
     const std::size_t recorded_before = recorder.octets().size();
@@ -133,18 +170,14 @@ void Landing::State::fly() {
     }
     report.recorded = recorder.octets().subspan(recorded_before);
     report.radiated = radiated.span();
-    radiate(cycle_start_us);
-    receive_tone(cycle_start_us);
-    if (const flight::DeviceOutputs* commands = computers.commands())
-        world.advance(*commands);
-    else
-        world.advance_uncommanded();
-    report.events.assign(world.events().begin(), world.events().end());
-    read_event_reports();
+    return computers.commands();
+}
 
-    const bool landed = world.outcome() == Outcome::touchdown;
-    const bool over = world.outcome() != Outcome::running;
-    computer_on = !over || (landed && world.sclk() - *world.contact() < scenario.end_after_touchdown_s);
+const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
+    gnc_alone->cycle(world.sense(), gnc_alone_out);
+    for (const flight::gnc::Trigger trigger : gnc_alone->told().triggers)
+        if (const char* name = decided_by_gnc(trigger)) report.events.push_back(moment(name, world.truth()));
+    return &gnc_alone_out;
 }
 
 void Landing::State::radiate(std::int64_t cycle_start_us) {
@@ -159,12 +192,11 @@ void Landing::State::radiate(std::int64_t cycle_start_us) {
     tell(uhf_told, uhf.up(), uhf.reason(), cycle_start_us);
 }
 
-void Landing::State::receive_tone(std::int64_t cycle_start_us) {
+void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    if (auto tone = x_band.cycle(computers.commands() != nullptr ? computers.commands()->tone : std::nullopt,
-                                 {truth.sclk, truth.e_s, doppler_hz})) {
+    if (auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz})) {
         tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         tones.send(tone->end.microseconds, *tone);

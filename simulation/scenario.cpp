@@ -171,7 +171,32 @@ void check_computer_resets(const Scenario& scenario, std::vector<std::string>& f
     }
 }
 
+/// What nobody in that venue could take part in.
+void check_test_venue(const Scenario& scenario, std::vector<std::string>& found) {
+    if (scenario.test_venue != TestVenue::gnc_alone) return;
+    const auto refuse = [&](bool any, const char* field) {
+        if (any) found.push_back(std::string(field) + ": in the test venue gnc_alone there is no computer that takes them");
+    };
+    refuse(!scenario.commands.empty(), "commands");
+    refuse(!scenario.system_faults.empty(), "system_faults");
+    refuse(!scenario.computer_resets.empty(), "computer_resets");
+}
+
 } // namespace
+
+const char* name_of(TestVenue venue) {
+    switch (venue) {
+    case TestVenue::flight_software:
+        return "flight_software";
+    case TestVenue::gnc_alone:
+        return "gnc_alone";
+    case TestVenue::all_but_gnc:
+        return "all_but_gnc";
+    case TestVenue::performance:
+        return "performance";
+    }
+    return "flight_software";
+}
 
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
@@ -196,6 +221,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_system_faults(scenario, found);
     check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
+    check_test_venue(scenario, found);
     return found;
 }
 

@@ -107,6 +107,17 @@ struct ComputerReset {
     double before_entry_s = 0.0; ///< a multiple of 1/64 s; negative after entry
 };
 
+/// What of the flight software flies, and what is simulated beside it; the software is the same in each. R36
+enum class TestVenue : std::uint8_t {
+    flight_software, ///< all of it
+    gnc_alone,       ///< EdlGnc, with a few lines in place of the timeline
+    all_but_gnc,     ///< what stands in for EdlGnc looks at the truth
+    performance,     ///< all of it as tasks of the threaded executive, each message timed
+};
+
+/// "flight_software", …
+const char* name_of(TestVenue venue);
+
 struct Scenario {
     std::string name;
     std::string title;            ///< a line for people
@@ -124,6 +135,7 @@ struct Scenario {
     double steady_wind_east_mps = 0.0;
     double steady_wind_north_mps = 0.0;
     Radio radio;
+    TestVenue test_venue = TestVenue::flight_software;
     flight::Plan telemetry_plan = flight::Plan::mission;
     double parachute_speed_mps = 405.0; ///< trigger of ground's solution
     double heatshield_speed_mps = 142.0;

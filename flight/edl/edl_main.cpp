@@ -4,6 +4,7 @@
 #include "flight/timeline/actions.hpp"
 
 #include <cmath>
+#include <utility>
 
 namespace aeolis::flight {
 namespace {
@@ -80,7 +81,10 @@ void EdlMain::run_timeline(Sclk now, Outbox& out) {
 
 void EdlMain::run_gnc(Sclk now, Outbox& out) {
     gnc_inputs_.now = now;
-    gnc_.cycle(gnc_inputs_, configuration_, output_);
+    if (instead_of_gnc_)
+        output_ = *std::exchange(instead_of_gnc_, std::nullopt);
+    else
+        gnc_.cycle(gnc_inputs_, configuration_, output_);
     if (output_.mode != mode_) {
         mode_ = output_.mode;
         out.event(evr::GNC_MODE_CHANGED{.gnc_mode = static_cast<GncMode>(mode_)});

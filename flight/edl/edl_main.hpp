@@ -49,6 +49,10 @@ class EdlMain {
     void on(const StatePart& part, Outbox& out);
     void on(const Resume& resume, Outbox& out);
 
+    /// The test venue "all but GNC": `told` counts in the next cycle in place of what EdlGnc would say. R36
+    void replace_gnc(const gnc::Output& told) { instead_of_gnc_ = told; }
+    const gnc::Configuration& configuration() const { return configuration_; }
+
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 
@@ -89,6 +93,7 @@ class EdlMain {
     gnc::EdlGnc gnc_;
     gnc::Configuration configuration_;
     gnc::Output output_;
+    std::optional<gnc::Output> instead_of_gnc_;
     DeviceInputs gnc_inputs_;  // what the device managers sent for this cycle
     StateAssembly assembly_;
     std::optional<StateFrame> state_of_another_;

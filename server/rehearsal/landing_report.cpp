@@ -1,6 +1,8 @@
 #include "server/rehearsal/landing_report.hpp"
 
 #include "server/api/json_object.hpp"
+#include "server/scenario/scenario_text.hpp"
+#include "server/venue/task_report.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -50,8 +52,9 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
                                                  .number("latitude_deg", touchdown->latitude_deg)
                                                  .number("longitude_deg", touchdown->longitude_deg)
                                                  .str();
-    return JsonObject{}
-        .text("scenario", rehearsal.scenario().name)
+    JsonObject report;
+    report.text("scenario", rehearsal.scenario().name)
+        .text("test_venue", name_of(rehearsal.scenario().test_venue))
         .count("seed", rehearsal.seed())
         .text("outcome", rehearsal.outcome())
         .text("digest", rehearsal.digest())
@@ -74,14 +77,16 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
         .count("cycles", rehearsal.cycles())
         .count("overruns", landing.counters().overruns)
         .number("wall_s", wall_s)
-        .number("real_time_factor", real_time_factor(rehearsal, wall_s))
-        .str();
+        .number("real_time_factor", real_time_factor(rehearsal, wall_s));
+    if (const auto tasks = rehearsal.task_times(); !tasks.empty()) report.raw("tasks", task_json(tasks));
+    return report.str();
 }
 
 std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
     std::string text =
-        fmt::format("{} (seed {}): {}", rehearsal.scenario().name, rehearsal.seed(), rehearsal.outcome());
+        fmt::format("{} (seed {}, {}): {}", rehearsal.scenario().name, rehearsal.seed(),
+                                   name_of(rehearsal.scenario().test_venue), rehearsal.outcome());
     if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
     text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");
     for (const auto& event : sorted_events(rehearsal))
@@ -96,7 +101,8 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& tones = rehearsal.tones();
     text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
                         rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);
-    text += telemetry::text_of(rehearsal.proof()) + '\n';
+    const auto proof = rehearsal.proof();
+    text += proof.recorded == 0 ? "nothing was recorded\n" : telemetry::text_of(proof) + '\n';
     for (const auto& [identity, product] : rehearsal.products().products())
         text += "product " + telemetry::text_of(identity, product) + '\n';
     for (const auto& refusal : rehearsal.script_refusals())
@@ -104,6 +110,7 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",
                         rehearsal.digest(), rehearsal.cycles(), landing.counters().overruns, wall_s,
                         real_time_factor(rehearsal, wall_s));
+    if (const auto tasks = rehearsal.task_times(); !tasks.empty()) text += '\n' + task_table(tasks);
     return text;
 }
 

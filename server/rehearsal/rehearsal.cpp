@@ -55,7 +55,13 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
       landing_(scenario, seed, case_number, event_reports(dictionary)),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
       script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)),
-      product_packet_(dictionary.packet(product_packet_name)), decommutator_(dictionary) {}
+      product_packet_(dictionary.packet(product_packet_name)), decommutator_(dictionary) {
+    if (scenario.test_venue != simulation::TestVenue::performance) return;
+    ThreadedExecutive::Options options;
+    options.measure = true;
+    executive_ = std::make_shared<ThreadedExecutive>(options);
+    landing_.run_prime_by(executive_);
+}
 
 const simulation::CycleReport& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;

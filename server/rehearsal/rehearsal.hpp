@@ -5,11 +5,13 @@
 #include "server/archive/records.hpp"
 #include "server/gateway/command_gateway.hpp"
 #include "server/rehearsal/digest.hpp"
+#include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
 #include "telemetry/product_assembler.hpp"
 #include "telemetry/proof.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -69,6 +71,8 @@ class Rehearsal {
     telemetry::Proof proof() const;
     /// Data products as ground put them together from what came, real time or recording.
     const telemetry::ProductAssembler& products() const { return products_; }
+    /// In the test venue "performance": what each task of the prime computer took. Else empty.
+    std::vector<TaskTimes> task_times() const { return executive_ ? executive_->times() : std::vector<TaskTimes>{}; }
 
   private:
     void send_script();
@@ -80,6 +84,7 @@ class Rehearsal {
     const dictionary::Dictionary& dictionary_;
     std::uint64_t seed_ = 0, case_number_ = 0;
     simulation::Landing landing_;
+    std::shared_ptr<ThreadedExecutive> executive_; ///< of the venue "performance"
     CommandGateway gateway_;
     std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
     std::vector<archive::StageRecord> stages_;

@@ -8,6 +8,7 @@
 #include <google/protobuf/text_format.h>
 #include <initializer_list>
 #include <sstream>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -16,6 +17,7 @@ using google::protobuf::Message;
 using simulation::Scenario;
 
 constexpr std::size_t scenario_octets_max = 1 << 20; // ours: ours are under 2 KiB
+constexpr int like_chain_max = 8;                    // ours
 
 /// A field of the message and the member of the struct that carry the same number under the same name.
 template <typename Struct>
@@ -215,6 +217,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     collect_not_finite(message, "", faults);
     if (!faults.empty()) return Error{joined(faults, "")};
     if (message.name().empty()) return Error{"name: missing"};
+    if (!message.like().empty()) return Error{"like: only a file can be like another"};
     if (message.entry_scet().empty()) return Error{"entry_scet: missing"};
     const auto entry_scet = scet_from_text(message.entry_scet());
     if (!entry_scet) return Error{"entry_scet: " + entry_scet.error().message};
@@ -237,6 +240,12 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         simulation::DensityScale scale;
         read(row, density_fields, scale);
         scenario.density_scale.push_back(scale);
+    }
+    if (message.test_venue() != v1::TEST_VENUE_UNSPECIFIED) {
+        const auto venue = named<simulation::TestVenue>(message.test_venue(),
+                                                        v1::TestVenue_IsValid(message.test_venue()), "test_venue");
+        if (!venue) return venue.error();
+        scenario.test_venue = *venue;
     }
     if (message.telemetry_plan() == v1::TELEMETRY_PLAN_WIDEBAND) scenario.telemetry_plan = flight::Plan::wideband;
     for (const auto& row : message.commands()) {
@@ -277,6 +286,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale)
         write(scale, density_fields, *message.add_density_scale());
+    message.set_test_venue(static_cast<v1::TestVenue>(static_cast<int>(scenario.test_venue) + 1));
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);
     for (const auto& command : scenario.commands) {
@@ -305,12 +315,19 @@ std::string scenario_to_text(const Scenario& scenario) {
     return text;
 }
 
-Result<Scenario> scenario_from_text(std::string_view text, const std::string& file) {
+namespace {
+
+Result<v1::Scenario> parsed(std::string_view text, const std::string& file) {
     v1::Scenario message;
     Faults faults{file};
     google::protobuf::TextFormat::Parser parser;
     parser.RecordErrorsTo(&faults);
     if (!parser.ParseFromString(std::string{text}, &message)) return Error{faults.text()};
+    return message;
+}
+
+/// With each line of an error behind the name of the file.
+Result<Scenario> checked(const v1::Scenario& message, const std::string& file) {
     auto scenario = scenario_from_message(message);
     if (scenario) return scenario;
     std::istringstream lines{scenario.error().message};
@@ -320,7 +337,7 @@ Result<Scenario> scenario_from_text(std::string_view text, const std::string& fi
     return Error{joined(faulty, file + ": ")};
 }
 
-Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
+Result<std::string> text_of(const std::filesystem::path& file) {
     std::error_code error;
     if (std::filesystem::is_directory(file, error)) return Error{file.string() + ": is a directory, not a scenario"};
     std::ifstream stream{file, std::ios::binary};
@@ -330,7 +347,39 @@ Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > scenario_octets_max)
         return Error{fmt::format("{}: larger than {} octets: not a scenario", file.string(), scenario_octets_max)};
-    return scenario_from_text(text, file.string());
+    return text;
+}
+
+/// What it is like merged in, and what that is like.
+Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
+    const auto text = text_of(file);
+    if (!text) return text.error();
+    auto message = parsed(*text, file.string());
+    if (!message || message->like().empty()) return message;
+
+    const std::string like = std::exchange(*message->mutable_like(), {});
+    const auto refused = [&](const std::string& why) { return Error{fmt::format("{}: like: {}", file.string(), why)}; };
+    if (like.find('/') != std::string::npos) return refused('\'' + like + "' is a path, not a scenario beside it");
+    if (further == 0) return refused("too many are like one another: is it a circle?");
+    auto base = whole(file.parent_path() / (like + file.extension().string()), further - 1);
+    if (!base) return refused(base.error().message);
+    base->clear_name(); // a name is nobody else's
+    base->MergeFrom(*message);
+    return base;
+}
+
+} // namespace
+
+Result<Scenario> scenario_from_text(std::string_view text, const std::string& file) {
+    const auto message = parsed(text, file);
+    if (!message) return message.error();
+    return checked(*message, file);
+}
+
+Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
+    const auto message = whole(file, like_chain_max);
+    if (!message) return message.error();
+    return checked(*message, file.string());
 }
 
 } // namespace aeolis::server

@@ -15,7 +15,8 @@ namespace aeolis::server {
 /// Parses and checks. Errors are one line a fault: "FILE:LINE:COLUMN: what" for the text, "FILE: field: …" for values.
 Result<simulation::Scenario> scenario_from_text(std::string_view text, const std::string& file);
 
-/// The same from a file of at most 1 MiB; an error names the file.
+/// The same from a file of at most 1 MiB; an error names the file. A file may be `like` another beside it: what it sets
+/// counts over what that one sets, its lists come after that one's.
 Result<simulation::Scenario> scenario_from_file(const std::filesystem::path& file);
 
 /// From the API's message. Checked; an error names the field.

@@ -48,6 +48,15 @@ void Computers::step(flight::DeviceInputs& in) {
     if (commander_ != nobody && out_[commander_].designate_b_prime) prime_is_b_ = *out_[commander_].designate_b_prime;
 }
 
+const flight::gnc::Configuration& Computers::gnc_configuration() {
+    return computers_[commander_ == nobody ? prime() : commander_].gnc_configuration();
+}
+
+void Computers::replace_gnc(const flight::gnc::Output& told) {
+    for (flight::Computer& computer : computers_)
+        computer.replace_gnc(told);
+}
+
 void Computers::choose_commander() {
     const std::size_t backup = 1 - prime();
     commander_ = out_[backup].in_command ? backup : out_[prime()].in_command ? prime() : nobody;

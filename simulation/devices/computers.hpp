@@ -26,6 +26,10 @@ class Computers {
     /// One cycle of both. `in` is completed with what only the computers give each other.
     void step(flight::DeviceInputs& in);
 
+    /// The test venue "all but GNC": both computers take what stands in for GNC as their own.
+    const flight::gnc::Configuration& gnc_configuration();
+    void replace_gnc(const flight::gnc::Output& told);
+
     /// The commands of this cycle that go out on the buses; none when neither computer is in command.
     const flight::DeviceOutputs* commands() const { return commander_ == nobody ? nullptr : &out_[commander_]; }
     /// What the computer at `place` (0: A, 1: B) put out in this cycle.

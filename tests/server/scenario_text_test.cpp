@@ -3,7 +3,11 @@
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
 #include <functional>
+#include <unistd.h>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -117,6 +121,34 @@ TEST_CASE("no number of the schema is left out on the way to the simulation", "[
 TEST_CASE("a scenario file that cannot be read is named", "[scenario]") {
     CHECK(scenario_from_file("/nowhere/x.textproto").error().message == "/nowhere/x.textproto: cannot be opened");
     CHECK(scenario_from_file("/tmp").error().message == "/tmp: is a directory, not a scenario");
+}
+
+TEST_CASE("a scenario file may be like another: what it sets counts, its lists come after", "[scenario]") {
+    const auto folder = std::filesystem::temp_directory_path() / fmt::format("aeolis_like_{}", ::getpid());
+    std::filesystem::create_directories(folder);
+    const auto file = [&](const std::string& name, const std::string& text) {
+        std::ofstream{folder / (name + ".textproto")} << text;
+        return scenario_from_file(folder / (name + ".textproto"));
+    };
+    REQUIRE(file("base", least + "radio { light_time_s: 5 uhf_rate_bps: 9000 } system_faults { begin_before_entry_s: 9 "
+                                 "duration_s: 1 }"));
+    const auto like = file("other", "name: \"other\" like: \"base\" test_venue: TEST_VENUE_ALL_BUT_GNC radio { light_time_s: 7 } "
+                                    "system_faults { begin_before_entry_s: 3 duration_s: 1 }");
+    REQUIRE(like);
+    CHECK(like->name == "other");
+    CHECK(like->radio.light_time_s == 7.0);
+    CHECK(like->radio.uhf_rate_bps == 9000.0);
+    CHECK(like->test_venue == simulation::TestVenue::all_but_gnc);
+    REQUIRE(like->system_faults.size() == 2);
+    CHECK(like->system_faults[1].begin_before_entry_s == 3.0);
+    CHECK(file("third", "name: \"third\" like: \"other\"")->radio.light_time_s == 7.0);
+
+    CHECK_THAT(file("nameless", "like: \"base\"").error().message, Catch::EndsWith("name: missing"));
+    CHECK_THAT(file("lost", "name: \"l\" like: \"nobody\"").error().message, Catch::EndsWith("cannot be opened"));
+    CHECK_THAT(file("path", "name: \"p\" like: \"../x\"").error().message, Catch::Contains("is a path"));
+    CHECK_THAT(file("round", "name: \"r\" like: \"round\"").error().message, Catch::Contains("is it a circle?"));
+    CHECK(error_of(least + "like: \"base\"") == "s.textproto: like: only a file can be like another");
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("the scenarios that ship can be flown, and a wrong name is told the right ones", "[scenario]") {

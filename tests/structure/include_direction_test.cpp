@@ -58,6 +58,9 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
         {"flight", {"common/", "dictionaries/", "flight/", "generated/"}},
         {"simulation",
          {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "simulation/"}},
+        // A test venue flies parts of the flight software without the rest, so it knows them by name.
+        {"simulation/venues",
+         {"common/", "flight/devices/", "flight/gnc/", "flight/load.hpp", "generated/", "simulation/"}},
         {"telemetry", {"common/", "dictionaries/", "telemetry/"}},
         {"commands", {"common/", "dictionaries/", "commands/"}},
         {"server",
@@ -125,7 +128,8 @@ TEST_CASE("a folder includes only what stands before it in the house", "[structu
             continue;
         }
         ++seen;
-        if (!starts_with_any(include.target, allowed().at(top_folder(include.file)))) {
+        const bool venue = include.file.starts_with("simulation/venues/");
+        if (!starts_with_any(include.target, allowed().at(venue ? "simulation/venues" : top_folder(include.file)))) {
             broken += where(include) + "\n";
         }
     }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "flight/gnc/edl_gnc.hpp"
+#include "flight/gnc/navigation/radar_batch.hpp"
+#include "simulation/landing.hpp"
+#include "simulation/venues/venue_timeline.hpp"
+
+namespace aeolis::simulation {
+
+/// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as they fly, and a few lines in place
+/// of the timeline. Nothing of executive, telemetry, commands or radio takes part. R36
+///
+/// In       DeviceInputs of each tick                     Out   DeviceOutputs of that cycle, what GNC told
+/// Rate     64 Hz        Memory   a value: copying it is a fork
+class GncAlone {
+  public:
+    GncAlone(const flight::Load& load, const NavigationSolution& solution, Sclk now);
+
+    void cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out);
+
+    const flight::gnc::Output& told() const { return told_; }
+    const flight::gnc::Configuration& configuration() const { return timeline_.configuration(); }
+    const flight::gnc::EdlGnc& gnc() const { return gnc_; }
+
+  private:
+    flight::gnc::EdlGnc gnc_;
+    flight::gnc::RadarBatch batch_;
+    flight::gnc::Output told_;
+    VenueTimeline timeline_;
+};
+
+} // namespace aeolis::simulation

@@ -1,0 +1,206 @@
+#include "simulation/venues/gnc_stand_in.hpp"
+
+#include "simulation/mars/mars.hpp"
+#include "simulation/vectors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace aeolis::simulation {
+namespace {
+
+using flight::GncModeEvent;
+using flight::Quantity;
+using flight::gnc::at_least;
+using flight::gnc::at_most;
+using flight::gnc::Mode;
+using flight::gnc::Trigger;
+using Attitude = flight::AttitudeCommand::Mode;
+
+constexpr double guidance_start_mps2 = 1.96;
+constexpr double heading_alignment_mps = 1100.0;
+constexpr double sufr_mps = 453.0; // [od137]
+constexpr double sufr_lasts_s = 9.0;
+constexpr double parachute_lasts_s = 20.0;
+constexpr double priming_above_backshell_m = 1340.0;
+constexpr double weight_mps2 = 3.71;
+constexpr double approach_end_m = 150.0, approach_end_mps = 32.0, slow_below_m = 32.0, sky_crane_mps = 0.75;
+
+/// Lift to the left or right as in [od137], roughly.
+double bank_deg(const TruthState& truth) {
+    if (truth.speed_mps <= heading_alignment_mps) return 0.0;
+    if (truth.e_s > 124.0) return -49.0;
+    if (truth.e_s > 98.0) return 46.0;
+    return truth.e_s > 72.0 ? -48.0 : 72.0;
+}
+
+int reversals(const TruthState& truth) {
+    return (truth.e_s > 72.0) + (truth.e_s > 98.0) + (truth.e_s > 124.0);
+}
+
+/// Two stretches of even deceleration, then slow and steady.
+double wanted_climb_mps(double height_m) {
+    if (height_m > approach_end_m)
+        return -std::min(75.0, std::sqrt(approach_end_mps * approach_end_mps + 6.0 * (height_m - approach_end_m)));
+    if (height_m > slow_below_m) return -std::sqrt(0.56 + 8.6 * (height_m - slow_below_m));
+    return -sky_crane_mps;
+}
+
+} // namespace
+
+bool GncStandIn::take(GncModeEvent event) {
+    if (!mode_.take(event)) return false;
+    mode_since_ = now_;
+    return true;
+}
+
+bool GncStandIn::fire(Trigger trigger, const flight::gnc::Condition& condition) {
+    if (fired(trigger) || told_.triggers.full() || !condition.holds) return false;
+    fired_[static_cast<std::size_t>(trigger)] = true;
+    told_.triggers.push_back(trigger);
+    told_.conditions.clear();
+    told_.conditions.push_back(condition);
+    return true;
+}
+
+const flight::gnc::Output& GncStandIn::cycle(const World& world, const flight::gnc::Configuration& configuration) {
+    told_ = {};
+    now_ = world.sclk();
+    follow(configuration);
+    decide_in_air(world, configuration);
+    decide_on_engines(world, configuration);
+    guide(world, configuration);
+    report(world);
+    return told_;
+}
+
+void GncStandIn::follow(const flight::gnc::Configuration& configuration) {
+    if (configuration.enabled) take(GncModeEvent::enabled);
+    if (configuration.guidance_armed) take(GncModeEvent::guidance_armed);
+    if (now_ - mode_since_ >= sufr_lasts_s) take(GncModeEvent::straightened_up);
+    if (configuration.parachute_out) take(GncModeEvent::parachute_out);
+    if (configuration.backshell_gone) take(GncModeEvent::backshell_gone);
+    if (configuration.sky_crane_started) take(GncModeEvent::throttled_down);
+    if (configuration.touchdown_declared) take(GncModeEvent::touchdown_declared);
+    if (configuration.flyaway_started) take(GncModeEvent::flyaway_started);
+}
+
+void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configuration& configuration) {
+    const TruthState truth = world.truth();
+    const NavigationSolution& solution = world.solution();
+    if (mode_.can(GncModeEvent::drag_felt) &&
+        fire(Trigger::guidance_start, at_least(Quantity::drag_mps2, truth.sensed_mps2, guidance_start_mps2)))
+        take(GncModeEvent::drag_felt);
+    if (mode_.can(GncModeEvent::slow_for_heading) &&
+        fire(Trigger::heading_alignment, at_most(Quantity::speed_mps, truth.speed_mps, heading_alignment_mps)))
+        take(GncModeEvent::slow_for_heading);
+    if (mode_.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
+        fire(Trigger::sufr_start, at_most(Quantity::speed_mps, truth.speed_mps, sufr_mps)))
+        take(GncModeEvent::parachute_near);
+    if (mode_.state() == Mode::wait_for_parachute)
+        fire(Trigger::parachute, at_most(Quantity::speed_mps, truth.speed_mps, solution.parachute_speed_mps));
+    if (mode_.state() != Mode::parachute_descent) return;
+    const double parachute_s = configuration.parachute_time ? now_ - *configuration.parachute_time : 0.0;
+    if (parachute_s > parachute_lasts_s)
+        fire(Trigger::heatshield, at_most(Quantity::speed_mps, truth.speed_mps, solution.heatshield_speed_mps));
+    if (!configuration.heatshield_gone) return;
+    if (configuration.radar_on) fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, 9000.0));
+    fire(Trigger::engine_priming, at_most(Quantity::altitude_m, truth.altitude_m,
+                                          solution.backshell_altitude_m + priming_above_backshell_m));
+    if (configuration.engines_primed)
+        fire(Trigger::backshell, at_most(Quantity::altitude_m, truth.altitude_m, solution.backshell_altitude_m));
+}
+
+void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Configuration& configuration) {
+    const TruthState truth = world.truth();
+    const double in_mode_s = now_ - mode_since_;
+    switch (mode_.state()) {
+    case Mode::free_fall:
+        if (fire(Trigger::powered_approach, at_least(Quantity::time_in_mode_s, in_mode_s, 1.0)))
+            take(GncModeEvent::fallen_clear);
+        break;
+    case Mode::powered_approach:
+        if (fire(Trigger::constant_velocity, at_most(Quantity::altitude_m, truth.altitude_m, approach_end_m)))
+            take(GncModeEvent::approached);
+        break;
+    case Mode::constant_velocity:
+        if (fire(Trigger::constant_deceleration, at_most(Quantity::altitude_m, truth.altitude_m, approach_end_m)))
+            take(GncModeEvent::low_enough);
+        break;
+    case Mode::constant_deceleration:
+        fire(Trigger::sky_crane, at_most(Quantity::altitude_m, truth.altitude_m, slow_below_m - 2.0));
+        break;
+    case Mode::sky_crane:
+        fire(Trigger::rover_separation, at_least(Quantity::time_in_mode_s, in_mode_s, 2.5));
+        if (configuration.touchdown_logic_ready && world.contact())
+            fire(Trigger::touchdown, at_least(Quantity::time_in_mode_s, now_ - *world.contact(), 1.25));
+        break;
+    default:
+        break;
+    }
+}
+
+void GncStandIn::guide(const World& world, const flight::gnc::Configuration& configuration) {
+    const TruthState truth = world.truth();
+    const Mode mode = mode_.state();
+    if (mode == Mode::approach ? configuration.turning_to_entry
+                               : mode >= Mode::wait_for_guidance_start && mode <= Mode::wait_for_parachute) {
+        told_.attitude.mode = Attitude::entry_bank;
+        told_.attitude.bank_rad = bank_deg(truth) * degree_rad;
+        if (mode == Mode::range_control && reversals(truth) > reversals_)
+            told_.bank_reversal = static_cast<std::uint8_t>(++reversals_);
+    }
+    if (mode == Mode::parachute_descent) told_.attitude.mode = Attitude::suspended;
+    if (mode < Mode::free_fall) return;
+
+    const Horizon local = horizon(vector3(truth.p_MoB_M_m));
+    const Vector3 v = vector3(truth.v_MB_M_mps);
+    told_.attitude.mode = Attitude::thrust;
+    told_.engines.ignited = configuration.engines_ignited && !configuration.engines_off;
+    if (mode == Mode::flyaway) {
+        told_.attitude.thrust_direction_M = array3((local.up + 0.8 * local.north).normalized());
+        told_.engines.throttle.fill(0.9);
+        return;
+    }
+    const double up_mps = v.dot(local.up);
+    const double feed_forward_mps2 = truth.altitude_m > slow_below_m ? 3.0 : 0.0;
+    const double climb_mps2 =
+        weight_mps2 + feed_forward_mps2 + 1.2 * (wanted_climb_mps(truth.altitude_m) - up_mps);
+    const Vector3 push = climb_mps2 * local.up - 0.3 * (v - up_mps * local.up);
+    const double mass_kg = world.inspect().mass_kg - (world.contact() ? load_.rover_mass_kg : 0.0);
+    const double thrust_N = std::min(25000.0, push.norm() * mass_kg);
+    told_.attitude.thrust_direction_M = array3(push.normalized());
+    const double full_N = load_.engine_max_thrust_N, least_N = load_.engine_min_thrust_N;
+    for (std::size_t i = 0; i < told_.engines.throttle.size(); ++i)
+        told_.engines.throttle[i] = !configuration.sky_crane_started ? thrust_N / 8 / full_N
+                                    : i < 4                          ? 0.0
+                                                                     : (thrust_N - 4 * least_N) / 4 / full_N;
+}
+
+void GncStandIn::report(const World& world) {
+    const TruthState truth = world.truth();
+    const World::Inspection seen = world.inspect();
+    const Horizon local = horizon(vector3(truth.p_MoB_M_m));
+    const Vector3 v = vector3(truth.v_MB_M_mps);
+    told_.mode = mode_.state();
+    told_.p_MoB_M_m = truth.p_MoB_M_m;
+    told_.v_MB_M_mps = truth.v_MB_M_mps;
+    told_.q_MB = seen.q_MB;
+    told_.altitude_m = truth.altitude_m;
+    told_.speed_mps = truth.speed_mps;
+    told_.descent_rate_mps = -v.dot(local.up);
+    told_.horizontal_speed_mps = (v - v.dot(local.up) * local.up).norm();
+    told_.flight_path_deg = std::atan2(-told_.descent_rate_mps, told_.horizontal_speed_mps) / degree_rad;
+    told_.bank_deg = seen.bank_deg;
+    told_.bank_command_deg = told_.attitude.bank_rad / degree_rad;
+    told_.angle_of_attack_deg = seen.angle_of_attack_deg;
+    told_.drag_mps2 = mode_.state() < Mode::free_fall ? truth.sensed_mps2 : 0.0;
+    told_.dynamic_pressure_Pa = seen.dynamic_pressure_Pa;
+    told_.mach = seen.mach;
+    told_.reversals = static_cast<std::uint8_t>(reversals_);
+    told_.mass_kg = seen.mass_kg;
+    told_.propellant_kg = seen.propellant_kg;
+    told_.radar_locked = fired(Trigger::radar_lock);
+}
+
+} // namespace aeolis::simulation

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+#include "flight/gnc/edl_gnc.hpp"
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace aeolis::simulation {
+
+/// A few lines in place of the timeline, for venues that fly without it: what the vehicle needs to land, at the times of
+/// [facts] Timeline, with nothing that waits, fails or is told.
+///
+/// In       GNC's triggers, which start anchors          Out   the configuration that GNC flies, commands to devices
+/// Rate     64 Hz: act() before GNC and after it         Memory   none beyond itself; a value
+class VenueTimeline {
+  public:
+    explicit VenueTimeline(Sclk entry);
+
+    void act(Sclk now, flight::DeviceOutputs& out);
+    void take(const flight::gnc::Output& told, Sclk now);
+
+    const flight::gnc::Configuration& configuration() const { return configuration_; }
+
+  private:
+    static constexpr std::size_t rows_max = 32;
+
+    flight::gnc::Configuration configuration_;
+    std::optional<Sclk> entry_;
+    std::array<std::optional<Sclk>, flight::gnc::trigger_count> triggered_{};
+    std::array<bool, rows_max> done_{};
+};
+
+} // namespace aeolis::simulation
