@@ -31,7 +31,7 @@ void Thrusters::on(const UnitsSelected& selected, Outbox&) {
 void Thrusters::on(const Tick&, Outbox& out) {
     out.bus().units[Device::thrusters] = unit_;
     out.bus().attitude = attitude_;
-    if (enable_) out.bus().thrusters_enabled = *enable_;
+    if (enable_) out.bus().thrusters_enabled = enable_;
     enable_.reset();
     out.send(ModuleId::sync, Confirm{ModuleId::thrusters});
 }

@@ -17,30 +17,30 @@ using Action = void (*)(ActionContext&);
 
 /// A row of the timeline as the engineers wrote it. Commands change copies of the offsets, never this.
 struct TimepointSpec {
-    const char* name;
+    const char* name = "";
     std::optional<AnchorId> anchor;  ///< none: the desired offset is from the previous timepoint
     MaybeOffset desired_offset_s;
     MaybeOffset minimum_offset_s;    ///< from the previous timepoint
-    Action action;                   ///< nullptr: none
+    Action action = nullptr;         ///< nullptr: none
     std::optional<double> reply_timeout_s;
     std::optional<TimepointId> backtrack;
-    bool essential;
+    bool essential = false;
     std::optional<ToneId> tone;
-    Action event;                    ///< announces the row's event; nullptr: none
+    Action event = nullptr;          ///< announces the row's event; nullptr: none
     std::optional<ModuleId> owner{}; ///< that the action may command; none: not said, as in tests. R5
 };
 
 /// Parents stand before their children: one sweep computes all times.
 struct AnchorSpec {
-    const char* name;
+    const char* name = "";
     std::optional<AnchorId> parent;  ///< none: the root, at zero
     MaybeOffset offset_s;
 };
 
 struct ToneSpec {
-    std::uint8_t set;  ///< 0 prime, 1 Second Chance, 2 spare
-    std::int16_t priority;
-    double expires_s;
+    std::uint8_t set = 0;  ///< 0 prime, 1 Second Chance, 2 spare
+    std::int16_t priority = 0;
+    double expires_s = 0.0;
     std::optional<ToneId> supersedes;
     std::optional<ToneId> second_chance;  ///< of a tone of prime's: the one that means the same on the backup. R35
 };

@@ -32,6 +32,14 @@ struct RehearseOptions {
 };
 int rehearse(const RehearseOptions& options);
 
+struct ModulesOptions {
+    SharedOptions shared;
+    std::string scenario = "nominal_auto";
+    std::uint64_t seed = 1;
+};
+/// Prints the flight software's modules, messages, rates and priorities as a document.
+int modules(const ModulesOptions& options);
+
 int dictionary_check(const std::filesystem::path& directory);
 /// Prints the state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory);

@@ -90,6 +90,15 @@ int main(int argc, char** argv) {
     add_shared(*rehearse_command, rehearsing.shared);
     rehearse_command->callback([&] { exit_code = rehearse(rehearsing); });
 
+    ModulesOptions counting;
+    counting.shared = serving.shared;
+    auto* modules_command = app.add_subcommand(
+        "modules", "the flight software's modules, messages, rates and priorities, as a document (Markdown)");
+    modules_command->add_option("--scenario", counting.scenario, "whose landing is counted")->capture_default_str();
+    modules_command->add_option("--seed", counting.seed, "of the errors")->check(whole_number())->capture_default_str();
+    add_shared(*modules_command, counting.shared);
+    modules_command->callback([&] { exit_code = modules(counting); });
+
     auto* dictionary_command = app.add_subcommand("dictionary", "the mission's words")->require_subcommand(1);
     auto checked = serving.shared.dictionary;
     auto* check = dictionary_command->add_subcommand("check", "every rule, every error with file and line");

@@ -50,17 +50,18 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
 } // namespace
 
 Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                     const dictionary::Dictionary& dictionary)
+                     const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner)
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
       landing_(scenario, seed, case_number, event_reports(dictionary)),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
       script_(scenario.commands), firing_packet_(dictionary.packet(firing_packet_name)),
       product_packet_(dictionary.packet(product_packet_name)), decommutator_(dictionary) {
-    if (scenario.test_venue != simulation::TestVenue::performance) return;
-    ThreadedExecutive::Options options;
-    options.measure = true;
-    executive_ = std::make_shared<ThreadedExecutive>(options);
-    landing_.run_prime_by(executive_);
+    if (runner == nullptr && scenario.test_venue == simulation::TestVenue::performance) {
+        ThreadedExecutive::Options options;
+        options.measure = true;
+        runner = executive_ = std::make_shared<ThreadedExecutive>(options);
+    }
+    if (runner != nullptr) landing_.run_prime_by(std::move(runner));
 }
 
 const simulation::CycleReport& Rehearsal::step() {

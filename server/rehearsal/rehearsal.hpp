@@ -35,9 +35,9 @@ struct ToneScore {
 /// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
 class Rehearsal {
   public:
-    /// The dictionary must outlive this.
+    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive.
     Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-              const dictionary::Dictionary& dictionary);
+              const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {});
 
     /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
     const simulation::CycleReport& step();

@@ -3,46 +3,16 @@
 #include "common/time.hpp"
 #include "flight/kernel/deadlines.hpp"
 #include "server/api/json_object.hpp"
+#include "server/venue/flight_names.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <string_view>
-#include <utility>
 
 namespace aeolis::server {
 namespace {
 
 constexpr double cycle_us = seconds_per_tick * 1.0e6;
-
-/// The last word of what the compiler calls its template argument: a message's type, a module.
-constexpr std::string_view argument_in(std::string_view signature) {
-    signature = signature.substr(signature.find(" = ") + 3);
-    signature = signature.substr(0, signature.find_first_of(";]"));
-    return signature.substr(signature.rfind(':') + 1); // all of it where there is none
-}
-template <typename Message>
-constexpr std::string_view type_name() {
-    return argument_in(__PRETTY_FUNCTION__);
-}
-template <flight::ModuleId id>
-constexpr std::string_view module_name() {
-    return argument_in(__PRETTY_FUNCTION__);
-}
-template <std::size_t... I>
-constexpr std::array<std::string_view, sizeof...(I)> message_names(std::index_sequence<I...>) {
-    return {type_name<std::variant_alternative_t<I, flight::Message>>()...};
-}
-template <std::size_t... I>
-constexpr std::array<std::string_view, sizeof...(I)> module_names(std::index_sequence<I...>) {
-    return {module_name<static_cast<flight::ModuleId>(I)>()...};
-}
-
-constexpr auto messages = message_names(std::make_index_sequence<message_type_count>{});
-constexpr auto modules = module_names(std::make_index_sequence<flight::module_count>{});
-
-std::string_view name_of(const TaskTimes& task) {
-    return modules[static_cast<std::size_t>(task.module)];
-}
 
 double worst_together_us(const std::vector<TaskTimes>& tasks) {
     double sum_us = 0.0;
@@ -74,11 +44,11 @@ std::string task_table(const std::vector<TaskTimes>& tasks) {
                                    "times", "least us", "mean", "99.9 %", "worst", "budget", "ratio", "uneven", "stack");
     for (const TaskTimes& task : tasks) {
         const double budget_us = flight::limits_of(task.module).budget_us;
-        text += fmt::format("{:<26} {} {:>8.0f} {:>6.2f} {:>7.1f} {:>7}\n", name_of(task), times_text(task.cycle),
+        text += fmt::format("{:<26} {} {:>8.0f} {:>6.2f} {:>7.1f} {:>7}\n", name_of(task.module), times_text(task.cycle),
                             budget_us, task.cycle.p999_us() / budget_us, unevenness(task), task.stack_used_octets);
         for (std::size_t type = 0; type < task.by_message.size(); ++type)
             if (task.by_message[type].count() > 0)
-                text += fmt::format("  {:<24} {}\n", messages[type], times_text(task.by_message[type]));
+                text += fmt::format("  {:<24} {}\n", message_names[type], times_text(task.by_message[type]));
     }
     const double together_us = worst_together_us(tasks);
     return text + fmt::format("worst of all tasks together {:.0f} us of a cycle's {:.0f} us, ratio {:.2f}\n", together_us,
@@ -90,8 +60,8 @@ std::string task_json(const std::vector<TaskTimes>& tasks) {
         std::vector<std::string> by_message;
         for (std::size_t type = 0; type < task.by_message.size(); ++type)
             if (task.by_message[type].count() > 0)
-                by_message.push_back(times_json("message", messages[type], task.by_message[type]).str());
-        return times_json("task", name_of(task), task.cycle)
+                by_message.push_back(times_json("message", message_names[type], task.by_message[type]).str());
+        return times_json("task", name_of(task.module), task.cycle)
             .number("budget_us", flight::limits_of(task.module).budget_us)
             .number("unevenness", unevenness(task))
             .count("stack_octets", task.stack_used_octets)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flight/kernel/message.hpp"
+#include "server/venue/flight_names.hpp"
 
 #include <array>
 #include <cstdint>
@@ -29,8 +29,6 @@ class Durations {
     std::array<std::uint32_t, bins> counts_{};
     std::uint64_t count_ = 0, sum_ns_ = 0, least_ns_ = UINT64_MAX, worst_ns_ = 0;
 };
-
-inline constexpr std::size_t message_type_count = std::variant_size_v<flight::Message>;
 
 /// Processor time of one task: of all that it did in a cycle, and of each message by its type. R8
 struct TaskTimes {

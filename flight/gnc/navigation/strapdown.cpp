@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace aeolis::flight::gnc {
 
@@ -62,9 +63,9 @@ void Strapdown::coast(double dt_s) {
 
 NavigatedState propagate(const NavigatedState& state, double seconds) {
     NavigatedState now = state;
-    const double steps = std::max(1.0, std::ceil(std::abs(seconds)));
-    const double dt = seconds / steps;
-    for (double i = 0; i < steps; i += 1.0) {
+    const auto steps = static_cast<std::int64_t>(std::max(1.0, std::ceil(std::abs(seconds))));
+    const double dt = seconds / static_cast<double>(steps);
+    for (std::int64_t i = 0; i < steps; ++i) {
         const Vector3 p = now.p_MoB_M, v = now.v_MB_M;
         const Vector3 a1 = free_acceleration(p, v);
         const Vector3 v2 = v + 0.5 * dt * a1, a2 = free_acceleration(p + 0.5 * dt * v, v2);

@@ -1,0 +1,28 @@
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/rehearsal/rehearsal.hpp"
+#include "server/venue/message_flow.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+
+namespace aeolis::server {
+
+int modules(const ModulesOptions& options) {
+    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
+    if (!dictionary) return failed(dictionary.error().message);
+    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
+    if (!scenario) return failed(scenario.error().message);
+    const auto flow = std::make_shared<MessageFlow>();
+    Rehearsal rehearsal{*scenario, options.seed, 0, *dictionary, flow};
+    while (!rehearsal.finished()) {
+        rehearsal.step();
+        rehearsal.take_stages();
+    }
+    if (flow->cycles() == 0)
+        return failed(fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario->test_venue)));
+    fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario->name, options.seed)));
+    return 0;
+}
+
+} // namespace aeolis::server

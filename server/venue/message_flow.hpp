@@ -1,0 +1,46 @@
+#pragma once
+
+#include "flight/kernel/cycle_runner.hpp"
+#include "flight/kernel/executive.hpp"
+#include "server/venue/flight_names.hpp"
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace aeolis::server {
+
+/// Who sends what to whom how often, counted while the deterministic executive runs a landing; and the document of the
+/// flight software that is made of it. R9, R40
+///
+/// Memory   some 100 kB, made with it
+class MessageFlow final : public flight::CycleRunner, private flight::MessageTap {
+  public:
+    void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
+
+    std::uint64_t cycles() const { return cycles_; }
+    /// From a module.
+    std::uint64_t sent(flight::ModuleId from, flight::ModuleId to, std::size_t message_type) const {
+        return counts_[place(static_cast<std::size_t>(from), to, message_type)];
+    }
+    /// With the tick: from the clock and the devices.
+    std::uint64_t interrupts(flight::ModuleId to, std::size_t message_type) const {
+        return counts_[place(outside, to, message_type)];
+    }
+
+    /// Markdown: modules with priority, deadline, budget and what they handle, as the compiler knows it; a diagram of who
+    /// talks to whom; each message with its rate as it was counted. `landing` says which landing that was.
+    std::string document(const std::string& landing) const;
+
+  private:
+    static constexpr std::size_t outside = flight::module_count;
+    static constexpr std::size_t place(std::size_t from, flight::ModuleId to, std::size_t type) {
+        return (from * flight::module_count + static_cast<std::size_t>(to)) * message_type_count + type;
+    }
+    void sent(flight::ModuleId from, flight::ModuleId to, const flight::Message& message) override;
+
+    std::array<std::uint64_t, (flight::module_count + 1) * flight::module_count * message_type_count> counts_{};
+    std::uint64_t cycles_ = 0;
+};
+
+} // namespace aeolis::server
