@@ -18,7 +18,7 @@ void command_nothing(DeviceOutputs& out) {
     out.switches.clear();
     out.telecom.clear();
     out.thrusters_enabled.reset();
-    out.attitude = {};
+    out.thrusters = {};
     out.engines = {};
     out.pay_out_bridle = false;
     out.tone.reset();

@@ -156,7 +156,7 @@ void World::State::obey() {
     for (const flight::PyroId pyro : buses.fired())
         take_pyro(pyro);
     const flight::EngineCommand& engines = buses.engines();
-    vehicle.command(buses.attitude(), buses.devices().thrusters_enabled(), engines, buses.pay_out_bridle(), now_s());
+    vehicle.command(buses.thrusters(), buses.devices().thrusters_enabled(), engines, buses.pay_out_bridle(), now_s());
 
     const auto& throttle = engines.throttle;
     const auto idle = std::count_if(throttle.begin(), throttle.end(), [](double t) { return t < 0.05; });
@@ -386,6 +386,7 @@ World::Inspection World::inspect() const {
             .thrust_N = s.vehicle.engines().thrust_N(),
             .bridle_m = s.vehicle.bridle().payed_out_m(s.now_s()),
             .q_MB = array4(s.vehicle.q_MB()),
+            .rate_B_rps = array3(s.vehicle.body().rate_B_rps),
             .parachute_open = s.vehicle.parachute_open(s.now_s())};
 }
 

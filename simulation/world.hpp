@@ -81,6 +81,7 @@ class World {
         double thrust_N = 0.0;
         double bridle_m = 0.0;
         std::array<double, 4> q_MB{1, 0, 0, 0};
+        std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
         bool uhf_on = false; ///< transmitter on and an antenna selected
         bool parachute_open = false;
     };

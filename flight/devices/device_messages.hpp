@@ -148,20 +148,11 @@ struct DeviceInputs {
 
 // ---- from the computer -----------------------------------------------------------------------------------------
 
-/// Where the vehicle shall point. The mode says which field counts; the vehicle turns at a limited rate (issue A:
-/// a kinematic attitude; with six degrees of freedom these become thruster on-times).
-struct AttitudeCommand {
-    enum class Mode : std::uint8_t {
-        idle,          ///< keep the inertial attitude (before GNC starts: spin-stabilised)
-        entry_bank,    ///< trim attitude in the wind with the lift vector at `bank_rad`
-        suspended,     ///< under the parachute: hangs as it will
-        thrust,        ///< z of B opposes `thrust_direction_M`
-    };
-    Mode mode = Mode::idle;
-    double bank_rad = 0.0;                          ///< positive: lift to the right of the velocity
-    std::array<double, 3> thrust_direction_M{};     ///< unit, direction in which the engines push the vehicle
+/// How long each entry thruster burns in the cycle that begins when this arrives; a driver that is told nothing closes its
+/// valves. flight/devices/effectors.hpp says where they are.
+struct ThrusterCommand {
+    std::array<double, 8> on_s{};      ///< 0 … 1/64 s
 };
-
 struct EngineCommand {
     bool ignited = false;
     std::array<double, 8> throttle{};  ///< of each engine, 0 … 1 of its largest thrust
@@ -191,7 +182,7 @@ struct DeviceOutputs {
     SwitchCommands switches;                                   ///< of power
     SwitchCommands telecom;                                    ///< of the radio
     std::optional<bool> thrusters_enabled;
-    AttitudeCommand attitude;
+    ThrusterCommand thrusters;
     EngineCommand engines;
     bool pay_out_bridle = false;
     std::optional<ToneId> tone;                                ///< what X-band sends during this cycle; none: carrier only
@@ -203,12 +194,13 @@ struct DeviceOutputs {
     bool in_command = false;                                   ///< the bus listens to this computer
     bool wants_restart_record = false;                         ///< starting: with the next tick, please
 
-    /// Back to nothing commanded, for the next cycle; units, attitude and engines keep their last command.
+    /// Back to nothing commanded, for the next cycle; units and engines keep their last command.
     void begin_cycle() {
         pyros.clear();
         switches.clear();
         telecom.clear();
         thrusters_enabled.reset();
+        thrusters = {};
         nvm.clear();
         uhf.clear();
         cross_string.clear();

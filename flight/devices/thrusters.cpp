@@ -1,5 +1,7 @@
 #include "flight/devices/thrusters.hpp"
 
+#include <utility>
+
 namespace aeolis::flight {
 namespace {
 
@@ -7,8 +9,8 @@ constexpr auto device = static_cast<std::uint8_t>(Device::thrusters);
 
 }  // namespace
 
-void Thrusters::on(const PointVehicle& command, Outbox&) {
-    attitude_ = command.attitude;
+void Thrusters::on(const FireThrusters& command, Outbox&) {
+    thrusters_ = command.thrusters;
 }
 
 void Thrusters::on(const EnableThrusters& command, Outbox&) {
@@ -30,7 +32,7 @@ void Thrusters::on(const UnitsSelected& selected, Outbox&) {
 
 void Thrusters::on(const Tick&, Outbox& out) {
     out.bus().units[Device::thrusters] = unit_;
-    out.bus().attitude = attitude_;
+    out.bus().thrusters = std::exchange(thrusters_, {});
     if (enable_) out.bus().thrusters_enabled = enable_;
     enable_.reset();
     out.send(ModuleId::sync, Confirm{ModuleId::thrusters});

@@ -93,7 +93,7 @@ void EdlMain::run_gnc(Sclk now, Outbox& out) {
     gnc_inputs_.engines.reset();
     gnc_inputs_.bridle.reset();
     if (!configuration_.enabled) return;
-    out.send(ModuleId::thrusters, PointVehicle{output_.attitude});
+    out.send(ModuleId::thrusters, FireThrusters{output_.thrusters});
     if (configuration_.engines_primed) out.send(ModuleId::descent_engines, RunEngines{output_.engines});
     if (configuration_.radar_on) {
         const auto& p = output_.p_MoB_M_m;

@@ -1,5 +1,6 @@
 #include "flight/gnc/edl_gnc.hpp"
 
+#include "flight/devices/effectors.hpp"
 #include "flight/gnc/entry/heading_alignment.hpp"
 #include "flight/gnc/entry/range_control.hpp"
 #include "flight/gnc/flyaway/flyaway.hpp"
@@ -135,6 +136,7 @@ void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, O
     decide_on_engines(configuration, in.now, out);
     guide_entry(in.now, configuration, out);
     guide_descent(in.now, configuration, out);
+    steer(configuration, out);
     burn(in, configuration);
     report(out);
 }
@@ -242,6 +244,8 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         if (mode() == Mode::approach && configuration.turning_to_entry) {
             bank_command_rad_ = bank_before_guidance_rad;
             attitude.mode = AttitudeCommand::Mode::entry_bank;
+        } else if (mode() == Mode::approach) {
+            attitude.mode = AttitudeCommand::Mode::detumble;
         }
     } else if (mode() == Mode::wait_for_guidance_start) {
         bank_command_rad_ = bank_before_guidance_rad;
@@ -323,6 +327,31 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
         out.engines.throttle = throttles_for(thrust_N, engines, load_.engine_max_thrust_N, thrust_command_N_);
         out.attitude.thrust_direction_M = to_array(wanted.direction_M);
     }
+}
+
+Inertia EdlGnc::inertia(const Configuration& configuration) const {
+    const auto with = [](double mass_kg, const Gyration& radii) {
+        return Inertia{mass_kg * radii.across_m * radii.across_m, mass_kg * radii.along_z_m * radii.along_z_m};
+    };
+    if (mode() < Mode::free_fall)
+        return with(load_.entry_mass_kg,
+                    configuration.heatshield_gone ? gyration_without_heatshield : gyration_of_entry_vehicle);
+    const double carried_kg = configuration.rover_separated && mode() != Mode::flyaway ? load_.rover_mass_kg : 0.0;
+    return with(mass_kg_ - carried_kg,
+                configuration.rover_separated ? gyration_of_stage : gyration_of_stage_with_rover);
+}
+
+// The engines steer once guidance throttles them; before that, and without them, the thrusters do.
+void EdlGnc::steer(const Configuration& configuration, Output& out) const {
+    const NavigatedState& state = strapdown_.state();
+    const bool in_air = mode() >= Mode::range_control;
+    const AttitudeState attitude{state.p_MoB_M, state.v_MB_M, state.q_MB, strapdown_.rate_B_rps(), in_air};
+    const Vector3 torque_B = control_torque(out.attitude, attitude, inertia(configuration));
+    if (mode() > Mode::free_fall && out.engines.ignited)
+        torque_allocation_.add(torque_B, configuration.sky_crane_started ? 4 : 8, load_.engine_max_thrust_N,
+                               out.engines.throttle);
+    else
+        out.thrusters = thruster_selection_.select(torque_B);
 }
 
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {

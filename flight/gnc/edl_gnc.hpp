@@ -2,6 +2,8 @@
 
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
+#include "flight/gnc/attitude/attitude_control.hpp"
+#include "flight/gnc/attitude/thruster_selection.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/entry/target_geometry.hpp"
 #include "flight/gnc/navigation/force_filter.hpp"
@@ -9,6 +11,7 @@
 #include "flight/gnc/navigation/radar_filter.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
 #include "flight/gnc/powered_descent/divert.hpp"
+#include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/quantities.hpp"
 #include "flight/gnc/sky_crane/rate_control.hpp"
@@ -119,7 +122,8 @@ struct Output {
     Conditions conditions;            ///< of the last trigger in `triggers`
     FixedVector<HeldTrigger, 4> held; ///< near, and not fired in this cycle
     std::uint8_t bank_reversal = 0;   ///< number of the reversal that began in this cycle, 0: none
-    AttitudeCommand attitude;
+    AttitudeCommand attitude;   ///< what guidance wants
+    ThrusterCommand thrusters;  ///< what attitude control makes of it
     EngineCommand engines;
     // Telemetry: the navigated state and what guidance wants. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
@@ -209,6 +213,8 @@ class EdlGnc {
     void guide_entry(Sclk now, const Configuration& configuration, Output& out);
     void guide_descent(Sclk now, const Configuration& configuration, Output& out);
     void push(const Vector3& acceleration_M, int engines, Output& out);
+    void steer(const Configuration& configuration, Output& out) const;
+    Inertia inertia(const Configuration& configuration) const;
     void burn(const DeviceInputs& in, const Configuration& configuration);
     void report(Output& out) const;
     double since(Sclk then) const { return measured_at_ - then; }
@@ -240,6 +246,8 @@ class EdlGnc {
 
     double mass_kg_ = 0.0; ///< on engines
     double thrust_command_N_ = 0.0;
+    ThrusterSelection thruster_selection_;
+    powered_descent::TorqueAllocation torque_allocation_;
     powered_descent::ApproachProfile approach_;
     powered_descent::Divert divert_;
     Vector3 divert_from_M_ = Vector3::Zero();

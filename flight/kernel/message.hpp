@@ -114,8 +114,8 @@ struct SetSwitch {
 struct EnableThrusters {
     bool enabled = false;
 };
-struct PointVehicle {
-    AttitudeCommand attitude;
+struct FireThrusters {
+    ThrusterCommand thrusters;
 };
 struct RunEngines {
     EngineCommand engines;
@@ -205,7 +205,7 @@ struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
 using Message =
     std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
                  EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
-                 SetSwitch, EnableThrusters, PointVehicle, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
+                 SetSwitch, EnableThrusters, FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
                  InhibitEdl, SetParametersCommand,
                  ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
                  EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,

@@ -25,7 +25,7 @@ Buses::Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_nu
 void Buses::take(const flight::DeviceOutputs& out) {
     commanded_ = true;
     addressed_ = out.units;
-    attitude_due_ = out.attitude;
+    thrusters_due_ = out.thrusters;
     engines_due_ = out.engines;
     pay_out_bridle_due_ = out.pay_out_bridle;
     for (const flight::PyroId pyro : out.pyros) {
@@ -69,12 +69,12 @@ void Buses::frame(Sclk now) {
     fired_.clear();
     fetched_.clear();
     radar_was_read_ = engines_were_read_ = false;
+    thrusters_ = {}; // a pulse is told anew each tick or not given
     if (commanded_) {
         run(bus_64_hz_, tick);
         run_cyclic(tick);
         if (bus_8_hz_.frame_begins(tick)) run(bus_8_hz_, tick);
     }
-    if (tick - attitude_tick_ > hold_ticks) attitude_ = {};
     if (tick - engines_tick_ > hold_ticks) engines_ = {};
 }
 
@@ -94,8 +94,7 @@ bool Buses::obeys(Device device) const {
 
 void Buses::run_cyclic(std::int64_t tick) {
     if (bus_64_hz_.exchange() && obeys(Device::thrusters)) {
-        attitude_ = attitude_due_;
-        attitude_tick_ = tick;
+        thrusters_ = thrusters_due_;
     }
     if (bus_64_hz_.exchange() && obeys(Device::descent_engines)) {
         engines_ = engines_due_;

@@ -33,7 +33,7 @@ class Buses {
 
     /// Pyros that fired in the frame of this tick, each for the first time.
     std::span<const flight::PyroId> fired() const { return fired_.span(); }
-    const flight::AttitudeCommand& attitude() const { return attitude_; }
+    const flight::ThrusterCommand& thrusters() const { return thrusters_; }
     const flight::EngineCommand& engines() const { return engines_; }
     bool pay_out_bridle() const { return pay_out_bridle_; }
     const Avionics& devices() const { return devices_; }
@@ -66,16 +66,15 @@ class Buses {
 
     // As commanded in the cycle that ended last.
     flight::UnitSelection addressed_;
-    flight::AttitudeCommand attitude_due_;
+    flight::ThrusterCommand thrusters_due_;
     flight::EngineCommand engines_due_;
     bool pay_out_bridle_due_ = false;
     bool commanded_ = false;
 
     // As the drivers hold it.
-    flight::AttitudeCommand attitude_;
+    flight::ThrusterCommand thrusters_;  ///< of this tick; none where none came
     flight::EngineCommand engines_;
     bool pay_out_bridle_ = false;
-    std::int64_t attitude_tick_ = 0;
     std::int64_t engines_tick_ = 0;
 
     // Of the frames of this tick.

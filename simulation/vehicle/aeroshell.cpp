@@ -129,4 +129,12 @@ double trim_angle_rad(double mach) {
     return degree_rad * (low_deg + at.part * (trim[at.below + 1].angle_deg - low_deg));
 }
 
+double moment_slope(double mach) {
+    constexpr double offset_m = 0.1;
+    const double angle_rad = trim_angle_rad(mach);
+    const AeroCoefficients at_trim = aeroshell_coefficients(mach, angle_rad);
+    const double axial = at_trim.drag * std::cos(angle_rad) - at_trim.lift * std::sin(angle_rad);
+    return axial * offset_m / (aeroshell_diameter_m * std::sin(angle_rad));
+}
+
 } // namespace aeolis::simulation

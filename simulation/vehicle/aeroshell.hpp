@@ -16,6 +16,15 @@ AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad)
 
 inline constexpr double aeroshell_area_m2 = 15.9; // [facts]: 4.5 m across
 
+/// How hard the air turns it back to trim: pitching moment by lean of the wind, C_mα [1/rad] about the centre of mass,
+/// referred to area and diameter. From the balance at trim, C_A · offset = C_mα · D · sin α_trim, with the centre of mass 0.1 m
+/// off the axis [facts] (L): so trim angle and stiffness are one thing.
+double moment_slope(double mach);
+/// Damping of pitch, yaw and roll by rate · D / 2V. Ours: small and positive at every Mach number.
+inline constexpr double pitch_damping = 0.3;
+inline constexpr double roll_damping = 0.03;
+inline constexpr double aeroshell_diameter_m = 4.5; // [facts]
+
 /// Angle at which it flies by itself, from its offset centre of mass, before the balance masses go. [od137]
 double trim_angle_rad(double mach);
 

@@ -1,5 +1,7 @@
 #include "simulation/vehicle/configuration.hpp"
 
+#include "flight/devices/effectors.hpp"
+
 #include <algorithm>
 
 namespace aeolis::simulation {
@@ -20,6 +22,16 @@ double Configuration::total_kg() const {
     kg += cruise_balances * masses_.cruise_balance_each_kg;
     if (cruise_stage) kg += masses_.cruise_stage_kg;
     return kg;
+}
+
+Inertia Configuration::inertia() const {
+    const flight::Gyration& radii = cruise_stage      ? flight::gyration_with_cruise_stage
+                                    : heatshield      ? flight::gyration_of_entry_vehicle
+                                    : backshell       ? flight::gyration_without_heatshield
+                                    : rover_on_stage  ? flight::gyration_of_stage_with_rover
+                                                      : flight::gyration_of_stage;
+    const double across = radii.across_m * radii.across_m, along = radii.along_z_m * radii.along_z_m;
+    return {rigid_kg() * Vector3{across, across, along}};
 }
 
 double Configuration::offset() const {

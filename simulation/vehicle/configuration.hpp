@@ -1,6 +1,7 @@
 #pragma once
 
 #include "simulation/scenario.hpp"
+#include "simulation/vehicle/rigid_body.hpp"
 
 namespace aeolis::simulation {
 
@@ -27,6 +28,10 @@ class Configuration {
     double stage_kg() const;
     /// All that is attached, the rover with it while the bridle holds.
     double total_kg() const;
+    /// The rigid body's own, about its centre of mass: without what hangs on the bridle. Radii of gyration by what is attached
+    /// (flight/devices/effectors.hpp); a jettison's shift of the centre of mass is left out.
+    double rigid_kg() const { return total_kg() - (bridle && !rover_on_stage ? masses_.rover_kg : 0.0); }
+    Inertia inertia() const;
     /// How much of the entry vehicle's offset of the centre of mass is in force, 0 … 1: the cruise balance masses keep
     /// it in until they go, the entry balance masses take it out as they go.
     double offset() const;

@@ -1,6 +1,6 @@
 #include "simulation/vehicle/engines.hpp"
 
-#include "simulation/vectors.hpp"
+#include "flight/devices/effectors.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,7 @@ constexpr double throttle_lag_s = 0.06;
 constexpr double shutdown_lag_s = 0.03;
 constexpr double least_impulse_s = 204.0;
 constexpr double most_impulse_s = 223.0;
+constexpr auto mounted = flight::descent_engines();
 
 } // namespace
 
@@ -37,6 +38,8 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
     const double kept = std::exp(-step_s / (running_ ? throttle_lag_s : shutdown_lag_s));
     double burnt_kg = 0.0;
     thrust_sum_N_ = 0.0;
+    force_B_N_.setZero();
+    torque_B_Nm_.setZero();
     for (std::size_t i = 0; i < thrust_N_.size(); ++i) {
         const double asked_N = running_ ? std::max(least_thrust_N, throttle_[i] * largest_thrust_N) : 0.0;
         const double before_N = thrust_N_[i];
@@ -45,6 +48,9 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
         const double impulse_s = least_impulse_s + (most_impulse_s - least_impulse_s) * thrust_N_[i] / largest_thrust_N;
         burnt_kg += 0.5 * (before_N + thrust_N_[i]) * step_s / (impulse_s * standard_gravity_mps2);
         thrust_sum_N_ += thrust_N_[i];
+        const Vector3 force_B_N = thrust_N_[i] * vector3(mounted[i].direction_B);
+        force_B_N_ += force_B_N;
+        torque_B_Nm_ += vector3(mounted[i].position_B_m).cross(force_B_N);
     }
     return burnt_kg;
 }

@@ -1,12 +1,13 @@
 #pragma once
 
 #include "flight/devices/device_messages.hpp"
+#include "simulation/vectors.hpp"
 
 #include <array>
 
 namespace aeolis::simulation {
 
-/// Eight throttled descent engines. All push along −z of B: their cant is left out.
+/// Eight throttled descent engines, each with its own thrust, mounted as flight/devices/effectors.hpp draws them.
 ///
 /// 31 … 3603 N each, specific impulse 204 s at least thrust to 223 s at most. [facts]
 /// Ours: they light only when the valves have been open for 5 s (priming), 0.15 s after the command; thrust follows the
@@ -24,7 +25,9 @@ class Engines {
     double advance(double now_s, double step_s, double propellant_left_kg);
 
     bool running() const { return running_; }
-    double thrust_N() const { return thrust_sum_N_; }
+    double thrust_N() const { return thrust_sum_N_; } ///< of all, along each one's own direction
+    Vector3 force_B_N() const { return force_B_N_; }
+    Vector3 torque_B_Nm() const { return torque_B_Nm_; }
 
   private:
     bool valves_open_ = false;
@@ -35,6 +38,7 @@ class Engines {
     std::array<double, 8> throttle_{};
     std::array<double, 8> thrust_N_{};
     double thrust_sum_N_ = 0.0;
+    Vector3 force_B_N_ = Vector3::Zero(), torque_B_Nm_ = Vector3::Zero();
 };
 
 } // namespace aeolis::simulation

@@ -2,12 +2,16 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace aeolis::simulation {
 namespace {
 
 constexpr double overshoot = 0.2;          // ours
 constexpr double overshoot_decay_s = 0.25; // ours
+constexpr double swing_rad = 0.087;        // ours, as the two below: 5°
+constexpr double swing_period_s = 7.0;
+constexpr double swing_decay_s = 12.0;
 
 struct Row {
     double mach, factor;
@@ -25,6 +29,12 @@ double parachute_inflation(double since_mortar_s) {
         return (1.0 + overshoot) * part * part;
     }
     return 1.0 + overshoot * std::exp(-(since_mortar_s - first_peak_s) / overshoot_decay_s);
+}
+
+double parachute_swing_rad(double since_line_stretch_s) {
+    if (since_line_stretch_s <= 0.0) return 0.0;
+    return swing_rad * std::exp(-since_line_stretch_s / swing_decay_s) *
+           std::sin(2.0 * std::numbers::pi * since_line_stretch_s / swing_period_s);
 }
 
 double parachute_mach_factor(double mach) {

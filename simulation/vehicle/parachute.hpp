@@ -13,6 +13,14 @@ inline constexpr double first_peak_s = 1.8;
 /// 0 until line stretch, above 1 at the first peak, then 1.
 double parachute_inflation(double since_mortar_s);
 
+/// The bridles' confluence, behind the centre of mass: where the riser pulls. Ours.
+inline constexpr double riser_behind_m = 2.0;
+/// What friction in bridles and risers takes from the vehicle's swing below the confluence (wrist mode). [N m s] Ours.
+inline constexpr double wrist_damping_Nms = 900.0;
+
+/// The parachute swings about the wind by this angle at first, in one plane, and less with time. Ours.
+double parachute_swing_rad(double since_line_stretch_s);
+
 /// Drag area relative to that at terminal speed.
 double parachute_mach_factor(double mach);
 

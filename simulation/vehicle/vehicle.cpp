@@ -27,8 +27,9 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind}),
-      at_(start), attitude_(q_MB, spin_rps, Random{seed, case_number, Stream::swing}), configuration_(scenario.masses) {
-}
+      body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
+      swing_direction_rad_(2.0 * std::numbers::pi * Random{seed, case_number, Stream::swing}.uniform()),
+      configuration_(scenario.masses) {}
 
 void Vehicle::fire(flight::PyroId pyro, double now_s) {
     using flight::PyroId;
@@ -71,10 +72,10 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     }
 }
 
-void Vehicle::command(const flight::AttitudeCommand& attitude, bool thrusters_enabled,
+void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled,
                       const flight::EngineCommand& engines, bool pay_out_bridle, double now_s) {
-    attitude_command_ = attitude;
-    thrusters_enabled_ = thrusters_enabled;
+    // The spin-stabilised cruise stage has its own; those of the entry vehicle lie under it.
+    thrusters_.command(thrusters, thrusters_enabled && !configuration_.cruise_stage, now_s);
     engines_.command(engines, now_s);
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
 }
@@ -83,98 +84,106 @@ bool Vehicle::parachute_open(double now_s) const {
     return configuration_.backshell && mortar_s_ && now_s - *mortar_s_ > line_stretch_s;
 }
 
-Attitude::Surroundings Vehicle::surroundings(double end_s, double step_s) const {
-    Attitude::Surroundings next;
-    next.p_MoB_M = at_.p_MoB_M + step_s * at_.v_MB_M;
-    const Vector3 v_M = at_.v_MB_M + step_s * (free_fall(at_.p_MoB_M, at_.v_MB_M) + specific_force_M_);
-    const double altitude = next.p_MoB_M.norm() - ground_radius_m_;
-    next.v_AB_M = v_M;
-    next.spin_stabilised = configuration_.cruise_stage;
-    next.thrusters = thrusters_enabled_;
-    next.aeroshell = configuration_.backshell;
-    next.parachute_open = parachute_open(end_s);
-    double mach = 30.0;
-    if (altitude < air_ends_m) {
-        const Air air = atmosphere_.at(altitude);
-        next.v_AB_M -= wind_.at(next.p_MoB_M, altitude);
-        next.dynamic_pressure_Pa = 0.5 * air.density_kgm3 * next.v_AB_M.squaredNorm();
-        mach = next.v_AB_M.norm() / air.speed_of_sound_mps;
-    }
-    const double offset = configuration_.offset();
-    next.trim_angle_rad = offset * trim_angle_rad(mach) + (1.0 - offset) * balanced_trim_angle_rad;
-    return next;
-}
-
 void Vehicle::step(double now_s, double step_s) {
-    const Step step = [&] {
-        Step s;
-        s.start_s = now_s;
-        s.length_s = step_s;
-        s.z_start_M = attitude_.z_B_M();
-        s.thrust_start_N = engines_.thrust_N();
-        attitude_.advance(step_s, attitude_command_, surroundings(now_s + step_s, step_s));
-        const double burnt_kg = engines_.advance(now_s, step_s, configuration_.propellant_kg());
-        s.z_end_M = attitude_.z_B_M();
-        s.thrust_end_N = engines_.thrust_N();
-        s.mass_kg = configuration_.total_kg() - 0.5 * burnt_kg;
-        configuration_.burn(burnt_kg);
-        return s;
-    }();
-    at_ = runge_kutta_step(
-        at_, step_s,
-        [&](double fraction, const Vector3& p, const Vector3& v) -> Vector3 {
-            return specific_force(step, fraction, p, v);
-        },
-        &specific_force_M_);
+    Step step;
+    step.start_s = now_s;
+    step.length_s = step_s;
+    step.thrusters = thrusters_.mean(now_s, step_s);
+    step.engines_start_B_N = engines_.force_B_N();
+    step.engines_start_B_Nm = engines_.torque_B_Nm();
+    const double burnt_kg = engines_.advance(now_s, step_s, configuration_.propellant_kg());
+    step.engines_end_B_N = engines_.force_B_N();
+    step.engines_end_B_Nm = engines_.torque_B_Nm();
+    configuration_.burn(0.5 * burnt_kg); // mass in the middle of the step
+    const double mass_kg = moving_kg(now_s);
+    Vector3 force_M;
+    body_ = runge_kutta_step(
+        body_, step_s, mass_kg, configuration_.inertia(),
+        [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
+    specific_force_M_ = force_M / mass_kg;
+    configuration_.burn(0.5 * burnt_kg);
 }
 
-Vector3 Vehicle::specific_force(const Step& step, double fraction, const Vector3& p, const Vector3& v) const {
-    const double now_s = step.start_s + fraction * step.length_s;
-    const Vector3 z_M = step.z_start_M + fraction * (step.z_end_M - step.z_start_M);
-    Vector3 force_N = air_force_N(now_s, z_M, p, v);
-    const double thrust_N = step.thrust_start_N + fraction * (step.thrust_end_N - step.thrust_start_N);
-    if (thrust_N > 0.0) force_N -= thrust_N * z_M;
-
+// In the air, stage and rover fall together; once the rover stands, the stage moves alone.
+double Vehicle::moving_kg(double now_s) const {
     const bool hanging = !configuration_.rover_on_stage && configuration_.bridle;
-    if (!hanging) return force_N / step.mass_kg;
-    const double radius_m = p.norm();
+    if (!hanging || bridle_.load(now_s, altitude_m()) >= 1.0) return configuration_.total_kg();
+    return configuration_.rigid_kg();
+}
+
+Wrench Vehicle::wrench(const Step& step, double fraction, const RigidBody& body) const {
+    const double now_s = step.start_s + fraction * step.length_s;
+    const Vector3 push_B =
+        step.thrusters.force_B + step.engines_start_B_N + fraction * (step.engines_end_B_N - step.engines_start_B_N);
+    Wrench wrench{body.q_MB * push_B, step.thrusters.torque_B + step.engines_start_B_Nm +
+                                          fraction * (step.engines_end_B_Nm - step.engines_start_B_Nm)};
+    add_air(now_s, body, wrench);
+    add_bridle(now_s, body, wrench);
+    return wrench;
+}
+
+void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const {
+    if (configuration_.rover_on_stage || !configuration_.bridle) return;
+    const double radius_m = body.p_MoB_M.norm();
     const double rover_kg = configuration_.rover_kg();
     const double load = bridle_.load(now_s, radius_m - ground_radius_m_);
-    const Vector3 up = p / radius_m;
-    // In the air, stage and rover fall together, and the rover that is let down pulls less than its weight.
-    if (load >= 1.0) return (force_N + rover_kg * bridle_.acceleration_mps2(now_s) * up) / step.mass_kg;
-    // On the ground, soil bears what the bridle no longer does.
-    const double tension_N = load * rover_kg * gravity(p).norm();
-    return (force_N - tension_N * up) / (step.mass_kg - rover_kg);
+    const Vector3 up = body.p_MoB_M / radius_m;
+    // The rover that is let down pulls less than its weight; on the ground, soil bears what the bridle no longer does.
+    if (load >= 1.0)
+        wrench.force_M += rover_kg * bridle_.acceleration_mps2(now_s) * up;
+    else
+        wrench.force_M -= load * rover_kg * gravity(body.p_MoB_M).norm() * up;
 }
 
-Vector3 Vehicle::air_force_N(double now_s, const Vector3& z_M, const Vector3& p, const Vector3& v) const {
-    const double altitude = p.norm() - ground_radius_m_;
-    if (altitude > air_ends_m) return Vector3::Zero();
+void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const {
+    const double altitude = body.p_MoB_M.norm() - ground_radius_m_;
+    if (altitude > air_ends_m) return;
     const Air air = atmosphere_.at(altitude);
-    const Vector3 through_air = v - wind_.at(p, altitude);
+    const Vector3 through_air = body.v_MB_M - wind_.at(body.p_MoB_M, altitude);
     const double speed_mps = through_air.norm();
-    if (speed_mps < 1e-3) return Vector3::Zero();
+    if (speed_mps < 1e-3) return;
     const Vector3 forward = through_air / speed_mps;
     const double pressure_Pa = 0.5 * air.density_kgm3 * speed_mps * speed_mps;
-    if (!configuration_.backshell) return -pressure_Pa * powered_drag_area_m2 * forward;
+    if (!configuration_.backshell) {
+        wrench.force_M -= pressure_Pa * powered_drag_area_m2 * forward;
+        return;
+    }
 
     const double mach = speed_mps / air.speed_of_sound_mps;
-    const double inflation = mortar_s_ ? parachute_inflation(now_s - *mortar_s_) : 0.0;
-    Vector3 force_N = Vector3::Zero();
-    if (inflation > 0.0)
-        force_N -= pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) * forward;
-    // The parachute's drag area is told with the vehicle in its wake: the vehicle's own fades as it opens.
-    if (inflation < 1.0) {
-        const double cosine = std::clamp(z_M.dot(forward), -1.0, 1.0);
-        const AeroCoefficients coefficients = aeroshell_coefficients(mach, std::acos(cosine));
-        const double area_N = pressure_Pa * aeroshell_area_m2 * aeroshell_factor_ * (1.0 - inflation);
-        force_N -= area_N * coefficients.drag * forward;
-        const Vector3 lean = z_M - cosine * forward;
-        const double sine = lean.norm();
-        if (sine > 1e-6) force_N -= (area_N * coefficients.lift / sine) * lean;
+    const double since_mortar_s = mortar_s_ ? now_s - *mortar_s_ : 0.0;
+    const double inflation = mortar_s_ ? parachute_inflation(since_mortar_s) : 0.0;
+    if (inflation > 0.0) {
+        const Horizon local = horizon(body.p_MoB_M);
+        const Vector3 sideways =
+            std::cos(swing_direction_rad_) * local.east + std::sin(swing_direction_rad_) * local.north;
+        const double swing_rad = parachute_swing_rad(since_mortar_s - line_stretch_s);
+        const Vector3 pull_M = -pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
+                               (forward + std::tan(swing_rad) * sideways).normalized();
+        const Vector3 confluence_B{0.0, 0.0, -riser_behind_m};
+        wrench.force_M += pull_M;
+        wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;
     }
-    return force_N;
+    // The parachute's drag area is told with the vehicle in its wake: the vehicle's own fades as it opens.
+    if (inflation >= 1.0) return;
+    const Vector3 z_M = body.q_MB * Vector3::UnitZ();
+    const double cosine = std::clamp(z_M.dot(forward), -1.0, 1.0);
+    const AeroCoefficients coefficients = aeroshell_coefficients(mach, std::acos(cosine));
+    const double area_N = pressure_Pa * aeroshell_area_m2 * aeroshell_factor_ * (1.0 - inflation);
+    wrench.force_M -= area_N * coefficients.drag * forward;
+    const Vector3 lean = z_M - cosine * forward;
+    const double sine = lean.norm();
+    if (sine > 1e-6) wrench.force_M -= (area_N * coefficients.lift / sine) * lean;
+
+    // Turned back to trim, where the wind comes along x as much as the centre of mass is off the axis.
+    const Vector3 wind_B = body.q_MB.conjugate() * forward;
+    const double offset = configuration_.offset();
+    const double trim = offset * std::sin(trim_angle_rad(mach)) + (1.0 - offset) * std::sin(balanced_trim_angle_rad);
+    const double stiffness_Nm = area_N * aeroshell_diameter_m * moment_slope(mach);
+    const double damping_Nms = area_N * aeroshell_diameter_m * aeroshell_diameter_m / (2.0 * speed_mps);
+    const Vector3& w = body.rate_B_rps;
+    wrench.torque_B += Vector3{-stiffness_Nm * wind_B.y() - damping_Nms * pitch_damping * w.x(),
+                               stiffness_Nm * (wind_B.x() - trim) - damping_Nms * pitch_damping * w.y(),
+                               -damping_Nms * roll_damping * w.z()};
 }
 
 Vehicle::Flow Vehicle::flow() const {
@@ -182,16 +191,16 @@ Vehicle::Flow Vehicle::flow() const {
     const double altitude = altitude_m();
     if (altitude > air_ends_m) return flow;
     const Air air = atmosphere_.at(altitude);
-    const Vector3 through_air = at_.v_MB_M - wind_.at(at_.p_MoB_M, altitude);
+    const Vector3 through_air = body_.v_MB_M - wind_.at(body_.p_MoB_M, altitude);
     const double speed_mps = through_air.norm();
     flow.density_kgm3 = air.density_kgm3;
     flow.mach = speed_mps / air.speed_of_sound_mps;
     flow.dynamic_pressure_Pa = 0.5 * air.density_kgm3 * speed_mps * speed_mps;
     if (speed_mps < 1e-3) return flow;
     const Vector3 forward = through_air / speed_mps;
-    const Vector3 z_M = attitude_.z_B_M();
+    const Vector3 z_M = body_.q_MB * Vector3::UnitZ();
     flow.angle_of_attack_rad = std::acos(std::clamp(z_M.dot(forward), -1.0, 1.0));
-    const Vector3 right = forward.cross(at_.p_MoB_M).normalized();
+    const Vector3 right = forward.cross(body_.p_MoB_M).normalized();
     flow.bank_rad = std::atan2(-z_M.dot(right), -z_M.dot(right.cross(forward)));
     return flow;
 }
@@ -202,7 +211,7 @@ std::optional<double> Vehicle::wheels_height_m(double now_s) const {
 }
 
 double Vehicle::rover_descent_mps(double now_s) const {
-    return -at_.v_MB_M.dot(at_.p_MoB_M.normalized()) + bridle_.speed_mps(now_s);
+    return -body_.v_MB_M.dot(body_.p_MoB_M.normalized()) + bridle_.speed_mps(now_s);
 }
 
 } // namespace aeolis::simulation

@@ -5,16 +5,18 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/mars/wind.hpp"
 #include "simulation/scenario.hpp"
-#include "simulation/vehicle/attitude.hpp"
 #include "simulation/vehicle/bridle.hpp"
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
+#include "simulation/vehicle/rigid_body.hpp"
+#include "simulation/vehicle/thrusters.hpp"
 
 #include <optional>
 
 namespace aeolis::simulation {
 
-/// All that moves: a point mass in frame M with an attitude, a configuration, a parachute, engines and a bridle.
+/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines and a
+/// bridle.
 ///
 /// Its point is the descent stage's, before separation the vehicle's. The ground is a sphere of the landing radius:
 /// flat around the site. Time is in seconds since the start of the world.
@@ -26,15 +28,16 @@ class Vehicle {
     /// What a pyro does to it. Firing one twice does nothing.
     void fire(flight::PyroId pyro, double now_s);
     /// What the drivers of thrusters, engines and bridle do from now on.
-    void command(const flight::AttitudeCommand& attitude, bool thrusters_enabled, const flight::EngineCommand& engines,
+    void command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled, const flight::EngineCommand& engines,
                  bool pay_out_bridle, double now_s);
     /// Flies on by at most 5 ms.
     void step(double now_s, double step_s);
 
-    const PointMass& at() const { return at_; }
-    const Quaternion& q_MB() const { return attitude_.q_MB(); }
+    PointMass at() const { return {body_.p_MoB_M, body_.v_MB_M}; }
+    const RigidBody& body() const { return body_; }
+    const Quaternion& q_MB() const { return body_.q_MB; }
     const Vector3& specific_force_M() const { return specific_force_M_; } ///< [m/s²] mean over the last step
-    double altitude_m() const { return at_.p_MoB_M.norm() - ground_radius_m_; }
+    double altitude_m() const { return body_.p_MoB_M.norm() - ground_radius_m_; }
 
     const Configuration& configuration() const { return configuration_; }
     const Engines& engines() const { return engines_; }
@@ -53,16 +56,16 @@ class Vehicle {
     double rover_descent_mps(double now_s) const;
 
   private:
-    /// What a step does not change, and what it changes linearly.
+    /// What pushes by itself over a step, constant or linear over it.
     struct Step {
         double start_s = 0.0, length_s = 0.0;
-        Vector3 z_start_M, z_end_M;
-        double thrust_start_N = 0.0, thrust_end_N = 0.0;
-        double mass_kg = 0.0; ///< in its middle
+        Thrusters::Push thrusters;
+        Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
     };
-    Vector3 specific_force(const Step& step, double fraction, const Vector3& p, const Vector3& v) const;
-    Vector3 air_force_N(double now_s, const Vector3& z_M, const Vector3& p, const Vector3& v) const;
-    Attitude::Surroundings surroundings(double end_s, double step_s) const;
+    double moving_kg(double now_s) const;
+    Wrench wrench(const Step& step, double fraction, const RigidBody& body) const;
+    void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
+    void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
     double ground_radius_m_;
     double parachute_area_m2_; ///< with this case's own drag
@@ -70,15 +73,14 @@ class Vehicle {
     Atmosphere atmosphere_;
     Wind wind_;
 
-    PointMass at_;
+    RigidBody body_;
     Vector3 specific_force_M_ = Vector3::Zero();
-    Attitude attitude_;
+    double swing_direction_rad_; ///< from east, of the parachute's swing
+    Thrusters thrusters_;
     Configuration configuration_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
-    flight::AttitudeCommand attitude_command_;
-    bool thrusters_enabled_ = true;
 };
 
 } // namespace aeolis::simulation

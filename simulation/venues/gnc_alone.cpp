@@ -40,7 +40,7 @@ void GncAlone::cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out)
     }
     timeline_.take(told_, in.now);
     timeline_.act(in.now, out);
-    out.attitude = told_.attitude;
+    out.thrusters = told_.thrusters;
     out.engines = told_.engines;
 }
 

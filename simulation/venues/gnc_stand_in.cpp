@@ -1,5 +1,6 @@
 #include "simulation/venues/gnc_stand_in.hpp"
 
+#include "flight/devices/effectors.hpp"
 #include "simulation/mars/mars.hpp"
 #include "simulation/vectors.hpp"
 
@@ -15,7 +16,7 @@ using flight::gnc::at_least;
 using flight::gnc::at_most;
 using flight::gnc::Mode;
 using flight::gnc::Trigger;
-using Attitude = flight::AttitudeCommand::Mode;
+using Attitude = flight::gnc::AttitudeCommand::Mode;
 
 constexpr double guidance_start_mps2 = 1.96;
 constexpr double heading_alignment_mps = 1100.0;
@@ -70,6 +71,7 @@ const flight::gnc::Output& GncStandIn::cycle(const World& world, const flight::g
     decide_in_air(world, configuration);
     decide_on_engines(world, configuration);
     guide(world, configuration);
+    steer(world, configuration);
     report(world);
     return told_;
 }
@@ -150,6 +152,8 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
         if (mode == Mode::range_control && reversals(truth) > reversals_)
             told_.bank_reversal = static_cast<std::uint8_t>(++reversals_);
     }
+    else if (mode == Mode::approach)
+        told_.attitude.mode = Attitude::detumble;
     if (mode == Mode::parachute_descent) told_.attitude.mode = Attitude::suspended;
     if (mode < Mode::free_fall) return;
 
@@ -173,8 +177,29 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
     const double full_N = load_.engine_max_thrust_N, least_N = load_.engine_min_thrust_N;
     for (std::size_t i = 0; i < told_.engines.throttle.size(); ++i)
         told_.engines.throttle[i] = !configuration.sky_crane_started ? thrust_N / 8 / full_N
-                                    : i < 4                          ? 0.0
+                                    : i % 2 == 1                     ? 0.0
                                                                      : (thrust_N - 4 * least_N) / 4 / full_N;
+}
+
+// Attitude control is GNC's own, as a part of the vehicle's plant: what is replaced is who decides.
+void GncStandIn::steer(const World& world, const flight::gnc::Configuration& configuration) {
+    const World::Inspection seen = world.inspect();
+    const TruthState truth = world.truth();
+    const double mass_kg = seen.mass_kg - (configuration.rover_separated && !configuration.bridle_cut ? load_.rover_mass_kg : 0.0);
+    const flight::Gyration& radii = mode_.state() < Mode::free_fall ? flight::gyration_of_entry_vehicle
+                                    : configuration.rover_separated ? flight::gyration_of_stage
+                                                                    : flight::gyration_of_stage_with_rover;
+    const flight::gnc::Inertia inertia{mass_kg * radii.across_m * radii.across_m,
+                                       mass_kg * radii.along_z_m * radii.along_z_m};
+    const flight::gnc::AttitudeState state{vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps),
+                                           flight::gnc::to_quaternion(seen.q_MB), vector3(seen.rate_B_rps),
+                                           mode_.state() >= Mode::range_control};
+    const Vector3 torque_B = flight::gnc::control_torque(told_.attitude, state, inertia);
+    if (mode_.state() > Mode::free_fall && told_.engines.ignited)
+        torque_allocation_.add(torque_B, configuration.sky_crane_started ? 4 : 8, load_.engine_max_thrust_N,
+                               told_.engines.throttle);
+    else
+        told_.thrusters = thruster_selection_.select(torque_B);
 }
 
 void GncStandIn::report(const World& world) {

@@ -25,6 +25,7 @@ class GncStandIn {
     void decide_in_air(const World& world, const flight::gnc::Configuration& configuration);
     void decide_on_engines(const World& world, const flight::gnc::Configuration& configuration);
     void guide(const World& world, const flight::gnc::Configuration& configuration);
+    void steer(const World& world, const flight::gnc::Configuration& configuration);
     void report(const World& world);
     bool take(flight::GncModeEvent event);
     bool fire(flight::gnc::Trigger trigger, const flight::gnc::Condition& condition);
@@ -35,6 +36,8 @@ class GncStandIn {
     Sclk now_, mode_since_;
     std::array<bool, flight::gnc::trigger_count> fired_{};
     int reversals_ = 0;
+    flight::gnc::ThrusterSelection thruster_selection_;
+    flight::gnc::powered_descent::TorqueAllocation torque_allocation_;
     flight::gnc::Output told_;
 };
 

@@ -43,7 +43,7 @@ class TruthPilot {
         const flight::gnc::Output& told = gnc_.cycle(world, timeline_.configuration());
         timeline_.take(told, in.now);
         timeline_.act(in.now, out_);
-        out_.attitude = told.attitude;
+        out_.thrusters = told.thrusters;
         out_.engines = told.engines;
         world.advance(out_);
         for (const auto& event : world.events())

@@ -1,9 +1,50 @@
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
 
+#include "flight/devices/effectors.hpp"
+
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 namespace aeolis::flight::gnc::powered_descent {
+namespace {
+
+/// Thrust changes by torque: the pseudo-inverse of torques and sum of the engines that run, its columns for the torques.
+template <int n>
+Eigen::Matrix<double, n, 3> changes_by_torque() {
+    constexpr auto engines = descent_engines();
+    Eigen::Matrix<double, 4, n> effect;
+    for (int i = 0; i < n; ++i) {
+        const Effector& engine = engines[static_cast<std::size_t>(n == 4 ? 2 * i : i)];
+        effect.template block<3, 1>(0, i) = to_vector(engine.position_B_m).cross(to_vector(engine.direction_B));
+        effect(3, i) = 1.0;
+    }
+    const Eigen::Matrix4d square = effect * effect.transpose();
+    return (effect.transpose() * square.inverse()).template leftCols<3>();
+}
+
+} // namespace
+
+TorqueAllocation::TorqueAllocation() : of_eight_(changes_by_torque<8>()), of_four_(changes_by_torque<4>()) {}
+
+void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engine_max_thrust_N,
+                           std::array<double, 8>& throttle) const {
+    Eigen::Matrix<double, 8, 1> change_N = Eigen::Matrix<double, 8, 1>::Zero();
+    if (engines == 4)
+        for (int i = 0; i < 4; ++i)
+            change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
+    else
+        change_N = of_eight_ * torque_B_Nm;
+    double part = 1.0;
+    for (std::size_t i = 0; i < throttle.size(); ++i) {
+        const double each_N = throttle[i] * engine_max_thrust_N;
+        const double wanted_N = change_N[static_cast<Eigen::Index>(i)];
+        const double room_N = wanted_N > 0.0 ? engine_used_max_N - each_N : each_N - engine_used_min_N;
+        if (std::abs(wanted_N) > room_N) part = std::min(part, std::max(room_N, 0.0) / std::abs(wanted_N));
+    }
+    for (std::size_t i = 0; i < throttle.size(); ++i)
+        throttle[i] += part * change_N[static_cast<Eigen::Index>(i)] / engine_max_thrust_N;
+}
 
 std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_max_thrust_N, double& given_N) {
     const double each_N = std::clamp(thrust_N / engines, engine_used_min_N, engine_used_max_N);

@@ -7,6 +7,8 @@
 // From a wanted acceleration to a direction of thrust and the throttles of eight engines, or of four.
 //
 //   T = m |a|, direction a/|a| kept within 60° of up;  throttle = T / (n · T_max), within what an engine can give
+//   the torque is spread as T_i = T/n + (E⁺ [torque; 0])_i, E the engines' torques and their sum: of least Σ ΔT², without
+//   changing the total; where an engine would leave its range all ΔT are cut in proportion
 //
 // Frame    a: specific force wanted, in M [m/s²]          Units   N, kg
 // Source   [facts] Vehicle: each engine 400 … 3060 N used; the tilt limit is ours
@@ -28,5 +30,16 @@ Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mas
 
 /// Throttles for a total thrust; the total they give is returned in `given_N`.
 std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_max_thrust_N, double& given_N);
+
+/// Makes throttles that are all alike, of eight engines or of four, turn the vehicle as well. [N m] in B
+class TorqueAllocation {
+  public:
+    TorqueAllocation();
+    void add(const Vector3& torque_B_Nm, int engines, double engine_max_thrust_N, std::array<double, 8>& throttle) const;
+
+  private:
+    Eigen::Matrix<double, 8, 3> of_eight_;
+    Eigen::Matrix<double, 4, 3> of_four_;
+};
 
 } // namespace aeolis::flight::gnc::powered_descent

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "flight/devices/device_messages.hpp"
+#include "simulation/vectors.hpp"
+
+#include <array>
+
+namespace aeolis::simulation {
+
+/// Eight entry thrusters of 302 N [facts], mounted as flight/devices/effectors.hpp draws them. Pulses are rectangular;
+/// ours: a valve opens and closes 4 ms after it is told, and stays open 4 ms at least. Their propellant, about 12 kg of 3153,
+/// is not taken off the mass.
+class Thrusters {
+  public:
+    /// Pulses of the cycle that begins now.
+    void command(const flight::ThrusterCommand& command, bool enabled, double now_s);
+
+    /// Mean over a step, in B.
+    struct Push {
+        Vector3 force_B = Vector3::Zero();
+        Vector3 torque_B = Vector3::Zero();
+    };
+    Push mean(double now_s, double step_s) const;
+
+  private:
+    struct Pulse {
+        double from_s = 0.0, until_s = 0.0;
+    };
+    /// The last pulse may still burn when the next is told.
+    std::array<std::array<Pulse, 2>, 8> pulses_{};
+    double last_until_s_ = 0.0;
+};
+
+} // namespace aeolis::simulation
