@@ -60,11 +60,11 @@ void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
     if (passed_s <= 0.0) return; // a solution was just taken in, as of now: these increments lie before it
     navigated_to_ = now;
     if (imu.empty()) strapdown_.coast(passed_s);
-    const bool in_air = measured_.altitude_m < parameters.air_altitude_max_m;
+    const bool pushed = measured_.altitude_m < parameters.air_altitude_max_m || now <= pulses_felt_until_;
     for (const ImuSample& sample : imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
         smooth_force_B_mps2_ += imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
-        strapdown_.on(sample, in_air || smooth_force_B_mps2_.squaredNorm() > parameters.push_felt_mps2 * parameters.push_felt_mps2);
+        strapdown_.on(sample, pushed || smooth_force_B_mps2_.squaredNorm() > parameters.push_felt_mps2 * parameters.push_felt_mps2);
     }
 }
 
@@ -342,7 +342,7 @@ Inertia EdlGnc::inertia(const Configuration& configuration) const {
 }
 
 // The engines steer once guidance throttles them; before that, and without them, the thrusters do.
-void EdlGnc::steer(const Configuration& configuration, Output& out) const {
+void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const NavigatedState& state = strapdown_.state();
     const bool in_air = mode() >= Mode::range_control;
     const AttitudeState attitude{state.p_MoB_M, state.v_MB_M, state.q_MB, strapdown_.rate_B_rps(), in_air};
@@ -352,6 +352,8 @@ void EdlGnc::steer(const Configuration& configuration, Output& out) const {
                                out.engines.throttle);
     else
         out.thrusters = thruster_selection_.select(torque_B);
+    if (out.thrusters.on_s != ThrusterCommand{}.on_s)
+        pulses_felt_until_ = measured_at_ + parameters.pulse_felt_ticks * seconds_per_tick;
 }
 
 void EdlGnc::burn(const DeviceInputs& in, const Configuration& configuration) {

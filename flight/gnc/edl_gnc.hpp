@@ -177,7 +177,7 @@ class EdlGnc {
     /// What another computer must know to go on: all but our own past for the radar's filter.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(solution_, target_M_, navigating_, navigated_to_, strapdown_, smooth_force_B_mps2_, force_filter_,
+        exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, smooth_force_B_mps2_, force_filter_,
                  radar_filter_, measured_.altitude_m, mode_machine_, mode_since_, fired_, due_for_parachute_,
                  low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_, predicted_range_m_,
                  lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_,
@@ -213,7 +213,7 @@ class EdlGnc {
     void guide_entry(Sclk now, const Configuration& configuration, Output& out);
     void guide_descent(Sclk now, const Configuration& configuration, Output& out);
     void push(const Vector3& acceleration_M, int engines, Output& out);
-    void steer(const Configuration& configuration, Output& out) const;
+    void steer(const Configuration& configuration, Output& out);
     Inertia inertia(const Configuration& configuration) const;
     void burn(const DeviceInputs& in, const Configuration& configuration);
     void report(Output& out) const;
@@ -225,6 +225,7 @@ class EdlGnc {
     bool navigating_ = false;
     std::optional<CruiseAttitude> cruise_attitude_; ///< to be taken at the end of the next cycle's increments
     Sclk navigated_to_;
+    Sclk pulses_felt_until_; ///< of thrusters, in vacuum
     Strapdown strapdown_;
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;

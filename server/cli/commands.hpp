@@ -40,6 +40,13 @@ struct ModulesOptions {
 /// Prints the flight software's modules, messages, rates and priorities as a document.
 int modules(const ModulesOptions& options);
 
+struct EntryReferenceOptions {
+    SharedOptions shared;
+    std::string scenario;
+};
+/// Prints the tables that entry guidance follows in a scenario, as CSV.
+int entry_reference(const EntryReferenceOptions& options);
+
 int dictionary_check(const std::filesystem::path& directory);
 /// Prints the state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory);

@@ -18,7 +18,6 @@ struct Later {
 };
 constexpr std::array later_commands{
     Later{"campaign", "dispersed landings, statistics, ellipse"},
-    Later{"entry", "reference: guidance tables for a scenario"},
     Later{"decode", "any mission's packets by its XTCE"},
     Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
     Later{"export", "recorded data out"},
@@ -89,6 +88,15 @@ int main(int argc, char** argv) {
     rehearse_command->add_flag("--json", rehearsing.json, "print one JSON object");
     add_shared(*rehearse_command, rehearsing.shared);
     rehearse_command->callback([&] { exit_code = rehearse(rehearsing); });
+
+    EntryReferenceOptions referring;
+    referring.shared = serving.shared;
+    auto* entry_command = app.add_subcommand("entry", "entry guidance")->require_subcommand(1);
+    auto* reference = entry_command->add_subcommand(
+        "reference", "the tables that entry guidance follows, flown from the scenario (CSV)");
+    reference->add_option("--scenario", referring.scenario, "a file, or the name of one that ships")->required();
+    add_shared(*reference, referring.shared);
+    reference->callback([&] { exit_code = entry_reference(referring); });
 
     ModulesOptions counting;
     counting.shared = serving.shared;

@@ -39,7 +39,7 @@ TEST_CASE("a module writes the devices that it owns and no other, whatever it is
     messages.emplace_back(SetSwitch{SwitchId::radar, true});
     messages.emplace_back(EnableThrusters{true});
     messages.emplace_back(RunEngines{{.ignited = true, .throttle = {0.5}}});
-    messages.emplace_back(PointVehicle{{.mode = AttitudeCommand::Mode::entry_bank, .bank_rad = 0.1, .thrust_direction_M = {}}});
+    messages.emplace_back(FireThrusters{{.on_s = {0.01}}});
     messages.emplace_back(ToneRequest{tone::touchdown, Sclk{1000.0}});
     messages.emplace_back(ClockTick{Sclk{1000.0}});
     messages.emplace_back(Tick{Sclk{1000.0}});

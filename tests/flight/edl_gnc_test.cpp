@@ -94,7 +94,7 @@ TEST_CASE("before guidance starts the lift is held sideways", "[gnc][R27]") {
     std::uint32_t count = 0;
     gnc.cycle(inputs_at({1000.015625}, count, Vector3::Zero()), configuration, out);
     CHECK(out.mode == Mode::approach);
-    CHECK(out.attitude.mode == AttitudeCommand::Mode::idle);
+    CHECK(out.attitude.mode == AttitudeCommand::Mode::detumble);
     configuration.turning_to_entry = true;
     gnc.cycle(inputs_at({1000.03125}, count, Vector3::Zero()), configuration, out);
     CHECK(out.attitude.mode == AttitudeCommand::Mode::entry_bank);

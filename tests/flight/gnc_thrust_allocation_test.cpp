@@ -1,4 +1,5 @@
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
+#include "flight/devices/effectors.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace aeolis::flight::gnc;
@@ -40,4 +41,36 @@ TEST_CASE("the sidestep gives way before lift does, and tilt stays within 60°",
     const Thrust flat = allocate({1.0, 50.0, 0.0}, up, 2200.0, 8, largest_N);
     CHECK(flat.direction_M.dot(up) >= 0.5 - 1e-9);
     CHECK((allocate(Vector3::Zero(), up, 2200.0, 8, largest_N).direction_M - up).norm() < 1e-12);
+}
+
+TEST_CASE("a torque is spread over eight engines or four without changing their sum, within what each can give",
+          "[gnc][R27]") {
+    using namespace aeolis::flight;
+    constexpr auto mounted = descent_engines();
+    const powered_descent::TorqueAllocation allocation;
+    for (const int engines : {8, 4}) {
+        for (const Vector3& torque : {Vector3{400.0, -250.0, 0.0}, Vector3{0.0, 0.0, 90.0}, Vector3{-30000.0, 0.0, 0.0}}) {
+            double given_N = 0.0;
+            auto throttle = powered_descent::throttles_for(1400.0 * engines, engines, 3603.0, given_N);
+            allocation.add(torque, engines, 3603.0, throttle);
+            double sum_N = 0.0;
+            Vector3 turns = Vector3::Zero();
+            for (std::size_t i = 0; i < throttle.size(); ++i) {
+                const double thrust_N = throttle[i] * 3603.0;
+                if (engines == 4 && i % 2 == 1) {
+                    CHECK(throttle[i] == 0.0);
+                    continue;
+                }
+                CHECK(thrust_N >= powered_descent::engine_used_min_N - 1e-6);
+                CHECK(thrust_N <= powered_descent::engine_used_max_N + 1e-6);
+                sum_N += thrust_N;
+                turns += thrust_N * to_vector(mounted[i].position_B_m).cross(to_vector(mounted[i].direction_B));
+            }
+            CHECK(sum_N == Approx(given_N));
+            if (torque.norm() < 1000.0)
+                CHECK((turns - torque).norm() < 1e-6);
+            else // too much: less of it, about the same axis
+                CHECK(turns.normalized().dot(torque.normalized()) > 0.999);
+        }
+    }
 }

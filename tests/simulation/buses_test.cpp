@@ -197,20 +197,21 @@ TEST_CASE("a device that refuses says so and does nothing; one that is late does
     CHECK((thrusters_after >= 128 + 4 && thrusters_after <= 128 + 6));
 }
 
-TEST_CASE("a driver that hears nothing keeps its last command for two seconds and then goes safe", "[buses][R2]") {
+TEST_CASE("engines that hear nothing keep their last command for two seconds and then go safe; thrusters close at once",
+          "[buses][R2]") {
     Bench bench{without_errors()};
     flight::DeviceOutputs out;
     out.engines.ignited = true;
-    out.attitude.mode = flight::AttitudeCommand::Mode::thrust;
+    out.thrusters.on_s[3] = 0.01;
     bench.cycle(out);
+    CHECK(bench.buses.thrusters().on_s[3] == 0.01);
     bench.buses.leave_alone();
     for (int i = 0; i < 128; ++i)
         bench.frame();
     CHECK(bench.buses.engines().ignited);
-    CHECK(bench.buses.attitude().mode == flight::AttitudeCommand::Mode::thrust);
+    CHECK(bench.buses.thrusters().on_s[3] == 0.0);
     bench.frame();
     CHECK_FALSE(bench.buses.engines().ignited);
-    CHECK(bench.buses.attitude().mode == flight::AttitudeCommand::Mode::idle);
     bench.cycle(out);
     CHECK(bench.buses.engines().ignited);
 }

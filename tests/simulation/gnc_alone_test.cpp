@@ -110,3 +110,21 @@ TEST_CASE("dispersed cases all land, softly and with the parachute in its box", 
 TEST_CASE("two hundred dispersed cases do", "[.long][gnc][R27]") {
     check_landings(200);
 }
+
+TEST_CASE("each change of configuration changes what GNC controls with: none, rates, bank, hanging, thrust", "[gnc][R26]") {
+    using Attitude = AttitudeCommand::Mode;
+    tests::GncVenue venue(without_errors(), 1);
+    std::vector<Attitude> modes{Attitude::idle};
+    bool throttled_before_priming = false, engines_and_thrusters = false;
+    while (venue.running()) {
+        venue.step();
+        const Output& told = venue.told();
+        if (told.attitude.mode != modes.back()) modes.push_back(told.attitude.mode);
+        throttled_before_priming |= !venue.configuration().engines_primed && told.engines.ignited;
+        engines_and_thrusters |= told.mode > Mode::free_fall && told.engines.ignited &&
+                                 told.thrusters.on_s != flight::ThrusterCommand{}.on_s;
+    }
+    CHECK(modes == std::vector{Attitude::idle, Attitude::detumble, Attitude::entry_bank, Attitude::suspended, Attitude::thrust});
+    CHECK_FALSE(throttled_before_priming);
+    CHECK_FALSE(engines_and_thrusters);
+}

@@ -20,6 +20,7 @@ class TruthPilot {
           timeline_(world.solution().entry) {}
 
     simulation::World world;
+    FixedVector<flight::ImuSample, 4> imu; ///< that came with the tick of the last step
     std::map<std::string, simulation::TruthEvent> events;
     std::uint64_t digest = 0xcbf29ce484222325ULL;
 
@@ -33,6 +34,7 @@ class TruthPilot {
     }
     void step() {
         const flight::DeviceInputs& in = world.sense();
+        imu = in.imu;
         for (const auto& sample : in.imu)
             add(sample.delta_v_mps), add(sample.delta_angle_rad);
         for (const auto& beam : in.radar)

@@ -27,7 +27,7 @@ inline flight::Message random_message(std::mt19937& random) {
     if (auto* set = std::get_if<SetSwitch>(&message)) set->on = random() % 2 == 0;
     if (auto* enable = std::get_if<EnableThrusters>(&message)) enable->enabled = random() % 2 == 0;
     if (auto* run = std::get_if<RunEngines>(&message)) run->engines.ignited = random() % 2 == 0;
-    if (auto* point = std::get_if<PointVehicle>(&message)) point->attitude.mode = AttitudeCommand::Mode::thrust;
+    if (auto* pulse = std::get_if<FireThrusters>(&message)) pulse->thrusters.on_s[random() % 8] = 0.01;
     if (auto* part = std::get_if<StatePart>(&message)) {
         part->index = any() % 8;
         part->count = any() % 8;

@@ -26,15 +26,21 @@ ThrusterSelection::ThrusterSelection() {
     forces_by_torque_ = torques.transpose() * square.inverse();
 }
 
-ThrusterCommand ThrusterSelection::select(const Vector3& torque_B_Nm) const {
+ThrusterCommand ThrusterSelection::select(const Vector3& torque_B_Nm) {
+    ThrusterCommand command;
+    if (torque_B_Nm.isZero()) {
+        owed_s_.setZero();
+        return command;
+    }
     const Eigen::Vector4d forces_N = forces_by_torque_ * torque_B_Nm;
     const double full = std::max(forces_N.cwiseAbs().maxCoeff() / thruster_force_N, 1.0);
-    ThrusterCommand command;
+    owed_s_ += forces_N / (full * thruster_force_N) * seconds_per_tick;
     for (std::size_t mount = 0; mount < mounts; ++mount) {
-        const double force_N = forces_N[static_cast<Eigen::Index>(mount)] / full;
-        const double on_s = std::abs(force_N) / thruster_force_N * seconds_per_tick;
-        if (on_s < 0.5 * thruster_least_on_s) continue;
-        command.on_s[2 * mount + (force_N > 0.0 ? 0 : 1)] = std::clamp(on_s, thruster_least_on_s, seconds_per_tick);
+        double& owed_s = owed_s_[static_cast<Eigen::Index>(mount)];
+        if (std::abs(owed_s) < thruster_least_on_s) continue;
+        const double on_s = std::min(std::abs(owed_s), seconds_per_tick);
+        command.on_s[2 * mount + (owed_s > 0.0 ? 0 : 1)] = on_s;
+        owed_s = std::clamp(owed_s - std::copysign(on_s, owed_s), -seconds_per_tick, seconds_per_tick);
     }
     return command;
 }

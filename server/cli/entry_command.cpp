@@ -1,0 +1,24 @@
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "simulation/entry_reference.hpp"
+
+#include <fmt/format.h>
+
+namespace aeolis::server {
+
+int entry_reference(const EntryReferenceOptions& options) {
+    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
+    if (!scenario) return failed(scenario.error().message);
+    const flight::EntryReference reference = simulation::make_entry_reference(*scenario);
+    fmt::print("velocity_mps,range_to_go_m,drag_mps2,altitude_rate_mps,d_range_d_drag_s2,d_range_d_altitude_rate_s,"
+               "d_range_d_lift_to_drag_m,lift_to_drag\n");
+    for (std::uint32_t i = 0; i < reference.row_count; ++i) {
+        const flight::EntryReferenceRow& row = reference.rows[i];
+        fmt::print("{:.3f},{:.1f},{:.5f},{:.4f},{:.2f},{:.3f},{:.1f},{:.5f}\n", row.velocity_mps, row.range_to_go_m,
+                   row.drag_mps2, row.altitude_rate_mps, row.d_range_d_drag_s2, row.d_range_d_altitude_rate_s,
+                   row.d_range_d_lift_to_drag_m, row.lift_to_drag);
+    }
+    return 0;
+}
+
+} // namespace aeolis::server
