@@ -43,7 +43,7 @@ TEST_CASE("the sidestep gives way before lift does, and tilt stays within 60°",
     CHECK((allocate(Vector3::Zero(), up, 2200.0, 8, largest_N).direction_M - up).norm() < 1e-12);
 }
 
-TEST_CASE("a torque is spread over eight engines or four without changing their sum, within what each can give",
+TEST_CASE("a torque is spread over eight engines or four without changing their sum, which gives way at their limits",
           "[gnc][R27]") {
     using namespace aeolis::flight;
     constexpr auto mounted = descent_engines();
@@ -66,11 +66,27 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
                 sum_N += thrust_N;
                 turns += thrust_N * to_vector(mounted[i].position_B_m).cross(to_vector(mounted[i].direction_B));
             }
-            CHECK(sum_N == Approx(given_N));
-            if (torque.norm() < 1000.0)
+            if (torque.norm() < 1000.0) {
+                CHECK(sum_N == Approx(given_N));
                 CHECK((turns - torque).norm() < 1e-6);
-            else // too much: less of it, about the same axis
+            }
+            else { // too much: less of it, about the same axis
                 CHECK(turns.normalized().dot(torque.normalized()) > 0.999);
+            }
         }
     }
+}
+
+TEST_CASE("engines at their limit give way to a torque: attitude comes before thrust", "[gnc][R27]") {
+    const powered_descent::TorqueAllocation allocation;
+    double given_N = 0.0;
+    auto throttle = powered_descent::throttles_for(1.0e6, 8, 3603.0, given_N);
+    allocation.add({1500.0, 0.0, 0.0}, 8, 3603.0, throttle);
+    double sum_N = 0.0, most_N = 0.0;
+    for (const double each : throttle) {
+        sum_N += each * 3603.0;
+        most_N = std::max(most_N, each * 3603.0);
+    }
+    CHECK(most_N == Approx(powered_descent::engine_used_max_N));
+    CHECK(sum_N < given_N - 1000.0);
 }

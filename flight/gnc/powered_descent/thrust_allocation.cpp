@@ -35,15 +35,15 @@ void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engin
             change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
     else
         change_N = of_eight_ * torque_B_Nm;
-    double part = 1.0;
-    for (std::size_t i = 0; i < throttle.size(); ++i) {
-        const double each_N = throttle[i] * engine_max_thrust_N;
-        const double wanted_N = change_N[static_cast<Eigen::Index>(i)];
-        const double room_N = wanted_N > 0.0 ? engine_used_max_N - each_N : each_N - engine_used_min_N;
-        if (std::abs(wanted_N) > room_N) part = std::min(part, std::max(room_N, 0.0) / std::abs(wanted_N));
-    }
-    for (std::size_t i = 0; i < throttle.size(); ++i)
-        throttle[i] += part * change_N[static_cast<Eigen::Index>(i)] / engine_max_thrust_N;
+    // Attitude comes before thrust: without the one the other pushes the wrong way. Where an engine would leave its range, all
+    // are throttled back or up until the torque has room; only a torque beyond the whole range is cut.
+    const double most_N = change_N.maxCoeff(), least_N = change_N.minCoeff();
+    const double part = std::min(1.0, (engine_used_max_N - engine_used_min_N) / std::max(most_N - least_N, 1.0));
+    double each_N = throttle[0] * engine_max_thrust_N;
+    each_N = std::clamp(each_N, engine_used_min_N - part * least_N, engine_used_max_N - part * most_N);
+    const std::size_t stride = engines == 4 ? 2 : 1;
+    for (std::size_t i = 0; i < throttle.size(); i += stride)
+        throttle[i] = (each_N + part * change_N[static_cast<Eigen::Index>(i)]) / engine_max_thrust_N;
 }
 
 std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_max_thrust_N, double& given_N) {
