@@ -1,3 +1,4 @@
+#include "server/rehearsal/rehearsal.hpp"
 #include "simulation/landing.hpp"
 #include "tests/server/running_server.hpp"
 
