@@ -175,6 +175,24 @@ double drag_scale_height_m(const Atmosphere& atmosphere, double altitude_m) {
            std::log(atmosphere.at(altitude_m - dh).density_kgm3 / atmosphere.at(altitude_m + dh).density_kgm3);
 }
 
+/// Where rows stand: they divide evenly what changes along the flight, counted from its end, of velocity, range and the
+/// logarithm of drag a third each. Rows even in velocity alone left 100 km of range and a factor of 17 of drag between the
+/// first two, and guidance saw errors of 30 km that were not there.
+std::vector<double> row_measure(const std::vector<Node>& nodes) {
+    const auto range_m = [&](std::size_t i) { return nodes[i].ground_m; };
+    const auto log_drag = [&](std::size_t i) { return std::log(std::max(nodes[i].drag_mps2, 0.1)); };
+    double all_log_drag = 0.0;
+    for (std::size_t i = 1; i < nodes.size(); ++i)
+        all_log_drag += std::abs(log_drag(i) - log_drag(i - 1));
+    const double all_mps = nodes.front().velocity_mps - nodes.back().velocity_mps;
+    const double all_m = range_m(nodes.size() - 1) - range_m(0);
+    std::vector<double> measure(nodes.size(), 0.0);
+    for (std::size_t i = nodes.size() - 1; i > 0; --i)
+        measure[i - 1] = measure[i] + (nodes[i - 1].velocity_mps - nodes[i].velocity_mps) / all_mps +
+                         (range_m(i) - range_m(i - 1)) / all_m + std::abs(log_drag(i) - log_drag(i - 1)) / all_log_drag;
+    return measure;
+}
+
 } // namespace
 
 double reference_bank_rad(double velocity_mps, double held_rad) {
@@ -231,17 +249,17 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
 
     flight::EntryReference reference;
     if (nodes.size() < 2) return reference;
-    const double slowest = nodes.back().velocity_mps, fastest = nodes.front().velocity_mps;
+    const std::vector<double> measure = row_measure(nodes);
     const auto count = static_cast<std::uint32_t>(reference.rows.size());
     std::size_t i = nodes.size() - 1; // nodes[i] is the slower end of the piece that holds the row's velocity
     for (std::uint32_t row_index = 0; row_index < count; ++row_index) {
-        // Rows stand closer where a second changes velocity little.
-        const double v = slowest + (fastest - slowest) * std::pow(row_index / (count - 1.0), 1.5);
-        while (i > 1 && nodes[i - 1].velocity_mps < v)
+        const double wanted = measure.front() * row_index / (count - 1.0);
+        while (i > 1 && measure[i - 1] < wanted)
             --i;
         const Node& a = nodes[i];
         const Node& b = nodes[i - 1];
-        const double part = std::clamp((v - a.velocity_mps) / (b.velocity_mps - a.velocity_mps), 0.0, 1.0);
+        const double part = std::clamp((wanted - measure[i]) / (measure[i - 1] - measure[i]), 0.0, 1.0);
+        const double v = a.velocity_mps + part * (b.velocity_mps - a.velocity_mps);
         const auto mix = [part](double slow, double fast) { return slow + part * (fast - slow); };
         const double gamma = mix(a.flight_path_rad, b.flight_path_rad);
         const double altitude_m = mix(a.altitude_m, b.altitude_m);
