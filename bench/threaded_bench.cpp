@@ -2,7 +2,7 @@
 // the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter of an
 // hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
 //
-// Goal: no cycle's own processor time, of all tasks together, above 1/64 s.
+// Goal: no cycle's own processor time, summed over all its tasks, above 1/64 s; each task within its budget in 999 of 1000.
 #include "server/scenario/scenario_text.hpp"
 #include "server/venue/task_report.hpp"
 #include "server/venue/threaded_executive.hpp"

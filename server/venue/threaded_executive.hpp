@@ -46,8 +46,7 @@ class ThreadedExecutive final : public flight::CycleRunner {
     int ticks_skipped() const { return ticks_skipped_; }
     /// Empty when tasks run at real-time priorities, else why not, for people.
     const std::string& notice() const { return notice_; }
-    /// Of each task, in order of priority.
-    std::vector<TaskTimes> times() const;
+    MeasuredTimes times() const;
     static constexpr std::size_t stack_octets = 256 * 1024;
 
   private:
@@ -73,6 +72,7 @@ class ThreadedExecutive final : public flight::CycleRunner {
     int running_ = 0;  ///< tasks that have something to run for; under mutex_
     std::optional<CheckFailed> failed_;
     int ticks_skipped_ = 0;
+    Durations all_tasks_;  ///< of each cycle
     std::size_t next_reported_ = 0;
 };
 

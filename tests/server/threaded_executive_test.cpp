@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <set>
 #include <thread>
 
@@ -61,6 +62,18 @@ struct Bench {
     }
 };
 
+/// Takes so much of its thread's processor time.
+void work(double seconds) {
+    const auto spent_s = [] {
+        timespec time{};
+        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+        return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1.0e-9;
+    };
+    const double until_s = spent_s() + seconds;
+    while (spent_s() < until_s) {
+    }
+}
+
 } // namespace
 
 TEST_CASE("both executives fly one landing alike: recorded packets, firings, events and tones, bit for bit; no task uses half its stack",
@@ -78,7 +91,7 @@ TEST_CASE("both executives fly one landing alike: recorded packets, firings, eve
     CHECK(deterministic.tones == threaded.tones);
     CHECK(threaded.landing.counters().overruns == 0);
     CHECK(threaded.landing.counters().mailbox_overflows == 0);
-    for (const TaskTimes& times : executive->times()) {
+    for (const TaskTimes& times : executive->times().tasks) {
         INFO("task " << static_cast<int>(times.module) << " used " << times.stack_used_octets << " octets");
         CHECK(times.stack_used_octets <= ThreadedExecutive::stack_octets / 2);
     }
@@ -166,7 +179,7 @@ TEST_CASE("each task's processor time is measured by message, keeps its budget o
         if (read_primary_header(*packet)->apid == flight::packet::TaskTimes::apid)
             told.insert(static_cast<flight::ModuleId>(read_bits(*packet, tm_data_offset_octets * 8, 8)));
     CHECK(told.size() == flight::module_count);
-    for (const TaskTimes& times : executive->times()) {
+    for (const TaskTimes& times : executive->times().tasks) {
         INFO("task " << static_cast<int>(times.module));
         std::uint64_t handled = 0;
         for (const Durations& of_type : times.by_message)
@@ -176,4 +189,30 @@ TEST_CASE("each task's processor time is measured by message, keeps its budget o
         CHECK(times.cycle.mean_us() <= flight::limits_of(times.module).budget_us);
         CHECK(times.stack_used_octets > 0);
     }
+}
+
+TEST_CASE("a task's time is what it took in a whole cycle, however often it was woken; all tasks' that of one cycle",
+          "[venue][threads][R8]") {
+    const Sclk sync_works_at{1000.0 + 10 * seconds_per_tick}, edl_works_at{1000.0 + 20 * seconds_per_tick};
+    constexpr int rate_group_turns = 6;
+    ThreadedExecutive::Options options;
+    options.measure = true;
+    options.before_mail = [&](flight::ModuleId module, Sclk now) {
+        if (module == flight::ModuleId::sync && now == sync_works_at) work(0.002);
+        if (module == flight::ModuleId::edl && now == edl_works_at) work(0.003);
+        if (module == flight::ModuleId::mfsk && now == edl_works_at) work(0.003);
+    };
+    ThreadedExecutive executive{options};
+    Bench bench;
+    for (int i = 0; i < 40; ++i)
+        bench.cycle(executive);
+    const MeasuredTimes times = executive.times();
+    const auto task = [&](flight::ModuleId id) { return times.tasks[static_cast<std::size_t>(id)].cycle; };
+    CHECK(task(flight::ModuleId::sync).count() == 40);
+    CHECK(task(flight::ModuleId::sync).worst_us() >= (1 + rate_group_turns) * 2000.0); // the tick and each confirmation
+    CHECK(task(flight::ModuleId::edl).worst_us() >= 3000.0);
+    CHECK(task(flight::ModuleId::power).count() == 0);
+    CHECK(times.all_tasks.count() == 40);
+    CHECK(times.all_tasks.worst_us() >= (1 + rate_group_turns) * 2000.0);
+    CHECK(times.all_tasks.worst_us() < (1 + rate_group_turns) * 2000.0 + 6000.0); // never the worst of two cycles together
 }
