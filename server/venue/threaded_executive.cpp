@@ -221,6 +221,7 @@ void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::Device
         if ((awake & flight::bit_of(static_cast<flight::ModuleId>(id))) != 0) tasks_[id]->wake();
 
     wait_until_idle();
+    ticks_not_taken_ += ticks_skipped_;
     collect(state);
     if (options_.measure) report_times(state);
 }
