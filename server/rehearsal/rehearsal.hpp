@@ -80,6 +80,8 @@ class Rehearsal {
   private:
     void send_script();
     void take(const simulation::CycleReport& report);
+    /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
+    void add_to_digest(std::span<const std::uint8_t> recorded);
     void note_firings(std::span<const std::uint8_t> recorded);
     void note_product(std::span<const std::uint8_t> packet);
 

@@ -62,6 +62,7 @@ std::string task_json(const MeasuredTimes& times) {
         return object.number("budget_us", flight::limits_of(task.module).budget_us)
             .number("unevenness", unevenness(task))
             .count("stack_octets", task.stack_used_octets)
+            .count("stack_bound_octets", flight::limits_of(task.module).stack_octets)
             .raw("messages", json_array(by_message, [](const std::string& each) { return each; }))
             .str();
     });
@@ -75,7 +76,8 @@ std::string all_tasks_json(const MeasuredTimes& times) {
 
 bool within_budgets(const MeasuredTimes& times) {
     return times.all_tasks.worst_us() <= cycle_us && std::ranges::all_of(times.tasks, [](const TaskTimes& task) {
-               return task.cycle.p999_us() <= flight::limits_of(task.module).budget_us;
+               const flight::TaskLimits limits = flight::limits_of(task.module);
+               return task.cycle.p999_us() <= limits.budget_us && task.stack_used_octets <= limits.stack_octets;
            });
 }
 
