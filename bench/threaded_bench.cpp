@@ -2,7 +2,7 @@
 // the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter of an
 // hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
 //
-// Goal: no cycle's own processor time, of all tasks together, above 1/64 s.
+// Goal: no cycle's own processor time, summed over all its tasks, above 1/64 s; each task within its budget in 999 of 1000.
 #include "server/scenario/scenario_text.hpp"
 #include "server/venue/task_report.hpp"
 #include "server/venue/threaded_executive.hpp"
@@ -41,22 +41,23 @@ int main() {
     using clock = std::chrono::steady_clock;
     server::Durations lateness;
     const auto began = clock::now();
-    std::uint64_t cycles = 0, skipped = 0;
-    while (landing.outcome() == simulation::Outcome::running && static_cast<double>(cycles) * seconds_per_tick < end_s) {
+    std::uint64_t ticks = 0, skipped = 0;
+    while (landing.outcome() == simulation::Outcome::running && static_cast<double>(ticks) * seconds_per_tick < end_s) {
         if (real_time) {
             const auto due = began + std::chrono::duration_cast<clock::duration>(
-                                         std::chrono::duration<double>{static_cast<double>(cycles) * seconds_per_tick});
+                                         std::chrono::duration<double>{static_cast<double>(ticks) * seconds_per_tick});
             std::this_thread::sleep_until(due);
             lateness.add(static_cast<std::uint64_t>(std::chrono::nanoseconds{clock::now() - due}.count()));
         }
-        landing.step();
-        if (++cycles == 64) landing.uplink(test::do_edl());
-        skipped += static_cast<std::uint64_t>(executive->ticks_skipped());
+        const auto skipped_now = static_cast<std::uint64_t>(landing.step().ticks_skipped);
+        if (ticks < 64 && ticks + 1 + skipped_now >= 64) landing.uplink(test::do_edl());
+        ticks += 1 + skipped_now;
+        skipped += skipped_now;
     }
     const double wall_s = std::chrono::duration<double>{clock::now() - began}.count();
 
-    std::printf("%s%llu cycles in %.1f s\n", server::task_table(executive->times()).c_str(),
-                static_cast<unsigned long long>(cycles), wall_s);
+    std::printf("%s%llu ticks in %.1f s\n", server::task_table(executive->times()).c_str(),
+                static_cast<unsigned long long>(ticks), wall_s);
     std::printf("overruns that sync counted: %llu; ticks that passed in a cycle beyond its own: %llu\n",
                 static_cast<unsigned long long>(landing.counters().overruns), static_cast<unsigned long long>(skipped));
     if (real_time)

@@ -34,8 +34,8 @@ class FixedQueue {
     }
     constexpr void pop() {
         AEOLIS_CHECK(!empty());
-        first_ = (first_ + 1) % N;
-        --size_;
+        // Emptied, it begins anew: a queue that is short most of the time stays in the places that are in the cache.
+        first_ = --size_ == 0 ? 0 : (first_ + 1) % N;
     }
 
   private:

@@ -118,10 +118,11 @@ struct Landing::State {
     std::int64_t now_us() const { return correlation().scet_of(sclk()).microseconds; }
 
     void fly();
+    void fly_tick(bool skipped);
     /// The commands of this cycle that go out on the buses; none: nobody runs them.
-    const flight::DeviceOutputs* run_computers();
+    const flight::DeviceOutputs* run_computers(bool skipped);
     const flight::DeviceOutputs* run_gnc_alone();
-    void radiate(std::int64_t cycle_start_us);
+    void radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     void read_event_reports();
@@ -136,40 +137,50 @@ void Landing::State::tell(LinkTeller& teller, bool up, const char* reason, std::
 }
 
 void Landing::State::fly() {
+    const std::size_t recorded_before = recorder.octets().size();
+    radiated.clear();
+    fly_tick(false);
+    report.ticks_skipped = computers.take_ticks_skipped();
+    for (int tick = 0; tick < report.ticks_skipped && computer_on; ++tick)
+        fly_tick(true);
+    report.recorded = recorder.octets().subspan(recorded_before);
+    report.radiated = radiated.span();
+    read_event_reports();
+}
+
+void Landing::State::fly_tick(bool skipped) {
     const std::int64_t cycle_start_us = now_us();
     uplinks.arrive(cycle_start_us,
                    [&](std::int64_t, const std::vector<std::uint8_t>& packet) { world.receive(packet); });
     world.set_nvm(static_cast<std::uint32_t>(recorder.octets().size()), Recorder::capacity_octets);
     remembered[static_cast<std::size_t>(world.sclk().ticks()) % remembered_ticks] = world.truth();
 
-    const flight::DeviceOutputs* commands = gnc_alone ? run_gnc_alone() : run_computers();
-    radiate(cycle_start_us);
+    const std::size_t radiated_before = radiated.size();
+    const flight::DeviceOutputs* commands = gnc_alone ? run_gnc_alone() : run_computers(skipped);
+    radiate(radiated.span().subspan(radiated_before), cycle_start_us);
     receive_tone(commands != nullptr ? commands->tone : std::nullopt, cycle_start_us);
     if (commands != nullptr)
         world.advance(*commands);
     else
         world.advance_uncommanded();
     report.events.insert(report.events.end(), world.events().begin(), world.events().end());
-    read_event_reports();
 
     const bool landed = world.outcome() == Outcome::touchdown;
     const bool over = world.outcome() != Outcome::running;
     computer_on = !over || (landed && world.sclk() - *world.contact() < scenario.end_after_touchdown_s);
 }
 
-const flight::DeviceOutputs* Landing::State::run_computers() {
+const flight::DeviceOutputs* Landing::State::run_computers(bool skipped) {
     inject_resets();
     if (gnc_stand_in) computers.replace_gnc(gnc_stand_in->cycle(world, computers.gnc_configuration()));
-    computers.step(world.sense());
-
-    const std::size_t recorded_before = recorder.octets().size();
-    radiated.clear();
+    if (skipped)
+        computers.step_without_prime(world.sense());
+    else
+        computers.step(world.sense());
     for (const std::size_t place : {0, 1}) {
         (void)recorder.append(computers.outputs(place).nvm.span());
         radiated.append(computers.outputs(place).uhf.span());
     }
-    report.recorded = recorder.octets().subspan(recorded_before);
-    report.radiated = radiated.span();
     return computers.commands();
 }
 
@@ -180,9 +191,9 @@ const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
     return &gnc_alone_out;
 }
 
-void Landing::State::radiate(std::int64_t cycle_start_us) {
+void Landing::State::radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
-    uhf.offer(radiated.span());
+    uhf.offer(octets);
     uhf_delivered.clear();
     uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()}, uhf_delivered);
     for (UhfLink::Delivered& packet : uhf_delivered) {
@@ -257,6 +268,7 @@ Landing::~Landing() = default;
 
 const CycleReport& Landing::step() {
     State& s = *state_;
+    s.report.ticks_skipped = 0;
     s.report.recorded = {};
     s.report.radiated = {};
     s.report.packets.clear();

@@ -86,6 +86,7 @@ struct TouchdownReport {
 
 /// What happened in one 64 Hz cycle. The vectors live until the next step; they keep their capacity.
 struct CycleReport {
+    int ticks_skipped = 0;                  ///< that went by in it beyond its own; nil but for a venue's real-time clock
     std::span<const std::uint8_t> recorded; ///< whole packets appended to NVM in this cycle
     std::span<const std::uint8_t> radiated; ///< whole packets given to the UHF transmitter
     std::vector<ReceivedPacket> packets;    ///< that reach Earth by the end of this cycle
@@ -119,7 +120,7 @@ class Landing {
     Landing& operator=(Landing&&) noexcept;
     ~Landing();
 
-    /// One cycle of 1/64 s. After the outcome is known and the last packet has arrived, finished() is true.
+    /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known and the last packet has arrived, finished() is true.
     const CycleReport& step();
 
     /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.

@@ -11,6 +11,9 @@ namespace {
 
 constexpr ParameterDefaults parameters{};
 
+/// Ours: a late turn under the real-time clock is some ticks apart, never a second.
+constexpr double tick_apart_max_s = 1.0;
+
 void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
@@ -24,6 +27,12 @@ EdlMain::EdlMain(const Load& load)
 // ---- the cycle -------------------------------------------------------------------------------------------------
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
+    // GNC would fly to the tick's time, however far that is.
+    if (!(std::abs(tick.now - out.now()) <= tick_apart_max_s)) {
+        out.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(ModuleId::edl),
+                                          .message_type = static_cast<std::uint8_t>(Message{tick}.index())});
+        return out.send(ModuleId::sync, Confirm{ModuleId::edl});
+    }
     if (activity_ != Activity::flies) return out.send(ModuleId::sync, Confirm{ModuleId::edl});
     const bool after_restart = cycle_count_++ == 0 && load_.resets > 0 && load_.role == Role::prime;
     if (after_restart) out.event(evr::COMPUTER_STARTED{.reset_count = reset_count()});
@@ -190,6 +199,7 @@ bool EdlMain::too_late(Sclk now) const {
 void EdlMain::on(const ParametersUpdate& update, Outbox& out) {
     // Once GNC navigates by itself, a solution from Earth is older than what it knows.
     if (configuration_.enabled) return answer(out, update.tag, CommandRefusal::wrong_phase);
+    if (!possible(update.parameters, out.now())) return answer(out, update.tag, CommandRefusal::bad_argument);
     ++revision_;
     parameters_ = update.parameters;
     gnc_.set_solution(solution_of(*parameters_), out.now());

@@ -1,23 +1,11 @@
 #include "flight/edl_bg/edl_bg.hpp"
 
-#include <cmath>
+#include "flight/edl/solution.hpp"
 
 namespace aeolis::flight {
 namespace {
 
 constexpr ParameterDefaults parameters{};
-
-double norm(double x, double y, double z) {
-    return std::sqrt(x * x + y * y + z * z);
-}
-
-// Each argument is inside its own range already; these are what only several together show.
-bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
-    const double radius_m = norm(p.position_x_m, p.position_y_m, p.position_z_m);
-    return radius_m >= parameters.solution_radius_min_m && radius_m <= parameters.solution_radius_max_m &&
-           norm(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps) <= parameters.solution_speed_max_mps && p.entry_sclk > now.seconds &&
-           p.epoch_sclk <= p.entry_sclk;
-}
 
 }  // namespace
 

@@ -14,6 +14,9 @@ class CycleRunner {
   public:
     virtual ~CycleRunner() = default;
     virtual void cycle(ComputerState& state, const DeviceInputs& in, DeviceOutputs& out) = 0;
+
+    /// Ticks of the clock that passed in cycles since the last call, beyond one a cycle: the world has gone on meanwhile.
+    virtual int take_ticks_skipped() { return 0; }
 };
 
 }  // namespace aeolis::flight

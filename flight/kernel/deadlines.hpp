@@ -7,34 +7,36 @@
 // Priorities follow deadlines: who must be done sooner runs first. R8
 namespace aeolis::flight {
 
-/// When a module must have handled what came with a tick, and how much processor time that may take.
+/// When a module must have handled what came with a tick, and how much processor time and stack that may take.
 struct TaskLimits {
     double deadline_s = 0.0;   ///< after the tick
     double budget_us = 0.0;    ///< of processor time in one cycle
+    std::size_t stack_octets = 0;  ///< that it may have used, of all it has done so far
 };
 
 /// Ours. The rate group shares the cycle of 1/64 s, sync's order giving the deadlines within it; who only feeds it or
-/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower.
+/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower. A stack is about twice what a landing uses.
 constexpr TaskLimits limits_of(ModuleId id) {
     constexpr double tick_s = seconds_per_tick;
+    constexpr std::size_t kilo = 1024;
     switch (id) {
-    case ModuleId::sync: return {0.001, 100.0};
-    case ModuleId::radar: return {0.002, 200.0};
-    case ModuleId::imu: return {0.003, 200.0};
-    case ModuleId::edl: return {0.010, 5000.0};
-    case ModuleId::pyro: return {0.011, 200.0};
-    case ModuleId::descent_engines: return {0.012, 200.0};
-    case ModuleId::thrusters: return {0.013, 200.0};
-    case ModuleId::power: return {tick_s, 200.0};
-    case ModuleId::telecom: return {tick_s, 200.0};
-    case ModuleId::units: return {tick_s, 200.0};
-    case ModuleId::cruise_attitude: return {tick_s, 200.0};
-    case ModuleId::system_fault_protection: return {tick_s, 200.0};
-    case ModuleId::cross_string: return {tick_s, 500.0};
-    case ModuleId::command_dispatcher: return {tick_s, 500.0};
-    case ModuleId::edl_bg: return {1.0, 1000.0};
-    case ModuleId::mfsk: return {1.0, 500.0};
-    case ModuleId::edl_comm: return {1.0, 2000.0};
+    case ModuleId::sync: return {0.001, 200.0, 20 * kilo};
+    case ModuleId::radar: return {0.002, 200.0, 16 * kilo};
+    case ModuleId::imu: return {0.003, 200.0, 16 * kilo};
+    case ModuleId::edl: return {0.010, 5000.0, 28 * kilo};
+    case ModuleId::pyro: return {0.011, 200.0, 16 * kilo};
+    case ModuleId::descent_engines: return {0.012, 200.0, 16 * kilo};
+    case ModuleId::thrusters: return {0.013, 200.0, 16 * kilo};
+    case ModuleId::power: return {tick_s, 200.0, 16 * kilo};
+    case ModuleId::telecom: return {tick_s, 200.0, 16 * kilo};
+    case ModuleId::units: return {tick_s, 200.0, 16 * kilo};
+    case ModuleId::cruise_attitude: return {tick_s, 200.0, 16 * kilo};
+    case ModuleId::system_fault_protection: return {tick_s, 200.0, 16 * kilo};
+    case ModuleId::cross_string: return {tick_s, 500.0, 16 * kilo};
+    case ModuleId::command_dispatcher: return {tick_s, 500.0, 16 * kilo};
+    case ModuleId::edl_bg: return {1.0, 1000.0, 20 * kilo};
+    case ModuleId::mfsk: return {1.0, 500.0, 16 * kilo};
+    case ModuleId::edl_comm: return {1.0, 2000.0, 16 * kilo};
     }
     return {};
 }

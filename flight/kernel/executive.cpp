@@ -6,14 +6,36 @@
 #include <bit>
 
 namespace aeolis::flight {
+namespace {
+
+void put(Message& place, const Message& message) {
+    copy_content(place, message);
+}
+/// What comes with the tick is written where it is read, and is a message only there.
+template <typename Content>
+void put(Message& place, const Content& content) {
+    place.emplace<Content>(content);
+}
+
+}  // namespace
+
+template <typename Content>
+void Executive::deliver(ModuleId to, const Content& content) {
+    if (!is_loaded(state_.load.role, to)) return;
+    if (Message* const place = state_.mailboxes[static_cast<std::size_t>(to)].try_grow())
+        put(*place, content);
+    else
+        ++state_.mailbox_overflows;
+    if (wakes(to, content)) state_.ready |= bit_of(to);
+}
 
 void Executive::cycle(const DeviceInputs& in, DeviceOutputs& out) {
     state_.now = in.now;
     out.begin_cycle();
-    for (const Envelope& envelope : state_.next_cycle) deliver(envelope);
+    for (const Envelope& envelope : state_.next_cycle) deliver(envelope.to, envelope.message);
     state_.next_cycle.clear();
     state_.sync.set_executive_counts(state_.mailbox_overflows, state_.unexpected_messages);
-    post_interrupts(in, [&](ModuleId to, const Message& message) { deliver({ModuleId::sync, to, message}); });
+    post_interrupts(in, [&](ModuleId to, const auto& content) { deliver(to, content); });
 
     // The lowest bit is the module of highest priority; its messages may wake one of higher priority yet.
     while (state_.ready != 0) run(static_cast<ModuleId>(std::countr_zero(state_.ready)), out);
@@ -32,22 +54,12 @@ void Executive::run(ModuleId id, DeviceOutputs& out) {
     });
 }
 
-void Executive::deliver(const Envelope& envelope) {
-    const ModuleId to = envelope.to;
-    if (!is_loaded(state_.load.role, to)) return;
-    if (Message* const place = state_.mailboxes[static_cast<std::size_t>(to)].try_grow())
-        copy_content(*place, envelope.message);
-    else
-        ++state_.mailbox_overflows;
-    if (wakes(to, envelope.message)) state_.ready |= bit_of(to);
-}
-
 void Executive::distribute(ModuleId from) {
     state_.mailbox_overflows += state_.outbox.dropped();
     for (const Envelope& envelope : state_.outbox.sent()) {
         if (tap_ != nullptr) tap_->sent(from, envelope.to, envelope.message);
         if (in_rate_group(from)) {
-            deliver(envelope);
+            deliver(envelope.to, envelope.message);
         } else if (Envelope* const place = state_.next_cycle.try_grow()) {
             place->from = envelope.from;
             place->to = envelope.to;

@@ -25,7 +25,8 @@ class Executive {
 
   private:
     void run(ModuleId id, DeviceOutputs& out);
-    void deliver(const Envelope& envelope);
+    template <typename Content>
+    void deliver(ModuleId to, const Content& content);
     void distribute(ModuleId from);
 
     ComputerState& state_;

@@ -1,6 +1,7 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/rehearsal/rehearsal.hpp"
+#include "server/scenario/script_check.hpp"
 #include "server/venue/message_flow.hpp"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@ int modules(const ModulesOptions& options) {
     if (!dictionary) return failed(dictionary.error().message);
     const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
     if (!scenario) return failed(scenario.error().message);
+    if (const auto script = check_script(*scenario, *dictionary); !script) return failed(options.scenario + ": " + script.error().message);
     const auto flow = std::make_shared<MessageFlow>();
     Rehearsal rehearsal{*scenario, options.seed, 0, *dictionary, flow};
     while (!rehearsal.finished()) {
@@ -21,6 +23,9 @@ int modules(const ModulesOptions& options) {
     }
     if (flow->cycles() == 0)
         return failed(fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario->test_venue)));
+    if (rehearsal.outcome() != "touchdown")
+        return failed(fmt::format("{}: the landing that is counted ended as {} {}", options.scenario, rehearsal.outcome(),
+                                  rehearsal.outcome_reason()));
     fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario->name, options.seed)));
     return 0;
 }

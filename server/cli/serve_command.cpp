@@ -31,9 +31,12 @@ std::optional<Listen> listen_of(const std::string& text) {
 
 std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
     if (!scenario) return "Open it in a browser and start a rehearsal.";
-    const auto* const waits_for =
-        scenario->commands.empty() ? "waits for \"set edl parameters\" and \"do edl\"" : "sends its own commands";
-    return fmt::format("Open it in a browser: the rehearsal '{}' has begun and {}.", scenario->name, waits_for);
+    const auto* const waits_for = scenario->test_venue == simulation::TestVenue::gnc_alone
+                                      ? "needs no commands: GNC flies alone, without a computer"
+                                  : scenario->commands.empty() ? "waits for \"set edl parameters\" and \"do edl\""
+                                                               : "sends its own commands";
+    return fmt::format("Open it in a browser: the rehearsal '{}' has begun in the test venue {} and {}.", scenario->name,
+                       name_of(scenario->test_venue), waits_for);
 }
 
 } // namespace

@@ -78,7 +78,8 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
         .count("overruns", landing.counters().overruns)
         .number("wall_s", wall_s)
         .number("real_time_factor", real_time_factor(rehearsal, wall_s));
-    if (const auto tasks = rehearsal.task_times(); !tasks.empty()) report.raw("tasks", task_json(tasks));
+    if (const auto times = rehearsal.task_times())
+        report.raw("tasks", task_json(*times)).raw("all_tasks", all_tasks_json(*times));
     return report.str();
 }
 
@@ -110,7 +111,7 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",
                         rehearsal.digest(), rehearsal.cycles(), landing.counters().overruns, wall_s,
                         real_time_factor(rehearsal, wall_s));
-    if (const auto tasks = rehearsal.task_times(); !tasks.empty()) text += '\n' + task_table(tasks);
+    if (const auto times = rehearsal.task_times()) text += '\n' + task_table(*times);
     return text;
 }
 

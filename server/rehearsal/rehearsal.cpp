@@ -1,5 +1,6 @@
 #include "server/rehearsal/rehearsal.hpp"
 
+#include "generated/dictionary_flight.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/packet_stream.hpp"
@@ -102,13 +103,19 @@ void Rehearsal::send_script() {
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
+    if (scenario_.test_venue == simulation::TestVenue::gnc_alone) {
+        v1::CommandReply refusal;
+        refusal.set_request(request.request());
+        refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));
+        return refusal;
+    }
     const auto submitted = gateway_.submit(request, landing_.ert_now(), stages_);
     if (!submitted.packet.empty()) landing_.uplink(submitted.packet);
     return submitted.reply;
 }
 
 void Rehearsal::take(const simulation::CycleReport& report) {
-    digest_.add(report.recorded);
+    add_to_digest(report.recorded);
     note_firings(report.recorded);
     for (const auto& packet : report.packets) {
         const bool realtime = packet.link == simulation::LinkId::uhf_live;
@@ -127,6 +134,21 @@ void Rehearsal::take(const simulation::CycleReport& report) {
             ++tones_.missed;
     }
     events_.insert(events_.end(), report.events.begin(), report.events.end());
+}
+
+void Rehearsal::add_to_digest(std::span<const std::uint8_t> recorded) {
+    if (scenario_.test_venue == simulation::TestVenue::gnc_alone) {
+        const auto position = landing_.truth().p_MoB_M_m;
+        const auto octets = std::as_bytes(std::span{position});
+        digest_.add({reinterpret_cast<const std::uint8_t*>(octets.data()), octets.size()});
+    }
+    if (scenario_.test_venue != simulation::TestVenue::performance) return digest_.add(recorded);
+    telemetry::PacketStream packets{recorded};
+    while (const auto packet = packets.next()) {
+        const auto header = read_primary_header(*packet);
+        if (header && header->apid == flight::packet::TaskTimes::apid) continue;
+        digest_.add(*packet);
+    }
 }
 
 void Rehearsal::note_firings(std::span<const std::uint8_t> recorded) {

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -71,12 +72,16 @@ class Rehearsal {
     telemetry::Proof proof() const;
     /// Data products as ground put them together from what came, real time or recording.
     const telemetry::ProductAssembler& products() const { return products_; }
-    /// In the test venue "performance": what each task of the prime computer took. Else empty.
-    std::vector<TaskTimes> task_times() const { return executive_ ? executive_->times() : std::vector<TaskTimes>{}; }
+    /// In the test venue "performance": what the tasks of the prime computer took. Else none.
+    std::optional<MeasuredTimes> task_times() const {
+        return executive_ ? std::optional{executive_->times()} : std::nullopt;
+    }
 
   private:
     void send_script();
     void take(const simulation::CycleReport& report);
+    /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
+    void add_to_digest(std::span<const std::uint8_t> recorded);
     void note_firings(std::span<const std::uint8_t> recorded);
     void note_product(std::span<const std::uint8_t> packet);
 

@@ -30,12 +30,19 @@ class Durations {
     std::uint64_t count_ = 0, sum_ns_ = 0, least_ns_ = UINT64_MAX, worst_ns_ = 0;
 };
 
-/// Processor time of one task: of all that it did in a cycle, and of each message by its type. R8
+/// Processor time of one task: of all that it did in a cycle, over the cycles in which it ran, however often it was woken
+/// in one; and of each message by its type. R8
 struct TaskTimes {
     flight::ModuleId module{};
     Durations cycle;
     std::array<Durations, message_type_count> by_message;
     std::size_t stack_used_octets = 0;  ///< deepest, from a painted stack
+};
+
+/// What a threaded executive has measured.
+struct MeasuredTimes {
+    std::vector<TaskTimes> tasks;  ///< in order of priority
+    Durations all_tasks;           ///< of all of them together, in each cycle
 };
 
 /// R8: messages of one task should cost about the same. The largest mean over message types against their mean.

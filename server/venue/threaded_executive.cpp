@@ -13,6 +13,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -69,6 +70,12 @@ class ThreadedExecutive::Task {
         wake_.notify_one();
     }
     FixedVector<flight::Envelope, 128>& later() { return later_; }
+    /// What it took in the cycle that is over; none when it did not run in it.
+    std::optional<std::uint64_t> take_cycle_ns() {
+        const auto spent_ns = std::exchange(cycle_ns_, std::nullopt);
+        if (spent_ns) times_.cycle.add(*spent_ns);
+        return spent_ns;
+    }
     TaskTimes times() const {
         TaskTimes times = times_;
         const std::uint8_t* untouched = std::find_if(stack_, stack_ + stack_octets, [](auto o) { return o != paint; });
@@ -134,7 +141,7 @@ class ThreadedExecutive::Task {
             const std::lock_guard lock{house_.mutex_};
             if (!house_.failed_) house_.failed_ = bug;
         }
-        if (house_.options_.measure) times_.cycle.add(thread_cpu_ns() - began_ns);
+        if (house_.options_.measure) cycle_ns_ = cycle_ns_.value_or(0) + thread_cpu_ns() - began_ns;
     }
 
     std::optional<flight::Message> next() {
@@ -174,6 +181,7 @@ class ThreadedExecutive::Task {
     // Of the task's own thread; read by others only while it is idle.
     flight::Outbox outbox_;
     FixedVector<flight::Envelope, 128> later_;
+    std::optional<std::uint64_t> cycle_ns_;  // so far in this cycle
     TaskTimes times_;
 };
 
@@ -213,6 +221,7 @@ void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::Device
         if ((awake & flight::bit_of(static_cast<flight::ModuleId>(id))) != 0) tasks_[id]->wake();
 
     wait_until_idle();
+    ticks_not_taken_ += ticks_skipped_;
     collect(state);
     if (options_.measure) report_times(state);
 }
@@ -241,6 +250,12 @@ void ThreadedExecutive::wait_until_idle() {
 void ThreadedExecutive::collect(flight::ComputerState& state) {
     state.mailbox_overflows += overflows_.exchange(0);
     state.unexpected_messages += unexpected_.exchange(0);
+    if (options_.measure) {
+        std::uint64_t together_ns = 0;
+        for (auto& one : tasks_)
+            together_ns += one->take_cycle_ns().value_or(0);
+        all_tasks_.add(together_ns);
+    }
     if (failed_) {
         for (auto& one : tasks_)
             one->later().clear(); // mailboxes go with the computer's state
@@ -277,12 +292,12 @@ void ThreadedExecutive::report_times(flight::ComputerState& state) {
         (void)state.next_cycle.try_push_back(envelope);
 }
 
-std::vector<TaskTimes> ThreadedExecutive::times() const {
-    std::vector<TaskTimes> all;
-    all.reserve(tasks_.size());
+MeasuredTimes ThreadedExecutive::times() const {
+    MeasuredTimes measured{{}, all_tasks_};
+    measured.tasks.reserve(tasks_.size());
     for (const auto& one : tasks_)
-        all.push_back(one->times());
-    return all;
+        measured.tasks.push_back(one->times());
+    return measured;
 }
 
 } // namespace aeolis::server

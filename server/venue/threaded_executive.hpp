@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace aeolis::server {
@@ -21,7 +22,7 @@ namespace aeolis::server {
 /// In       one tick's inputs, by cycle()                 Out   the same bits as the deterministic executive gives
 /// Clock    virtual: cycle() returns when every task is idle, however long that took. Real: a cycle that is not done
 ///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
-///          running, reports the overrun and skips that cycle; ticks_skipped() says how many, SCLK goes on
+///          running, reports the overrun and skips that cycle; take_ticks_skipped() says how many, SCLK goes on
 /// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
 /// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the state that failed
 class ThreadedExecutive final : public flight::CycleRunner {
@@ -42,12 +43,11 @@ class ThreadedExecutive final : public flight::CycleRunner {
 
     void cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) override;
 
-    /// Ticks that passed during the last cycle beyond its own; nil on a virtual clock.
-    int ticks_skipped() const { return ticks_skipped_; }
+    /// Nil on a virtual clock.
+    int take_ticks_skipped() override { return std::exchange(ticks_not_taken_, 0); }
     /// Empty when tasks run at real-time priorities, else why not, for people.
     const std::string& notice() const { return notice_; }
-    /// Of each task, in order of priority.
-    std::vector<TaskTimes> times() const;
+    MeasuredTimes times() const;
     static constexpr std::size_t stack_octets = 256 * 1024;
 
   private:
@@ -72,7 +72,9 @@ class ThreadedExecutive final : public flight::CycleRunner {
     std::condition_variable idle_;
     int running_ = 0;  ///< tasks that have something to run for; under mutex_
     std::optional<CheckFailed> failed_;
-    int ticks_skipped_ = 0;
+    int ticks_skipped_ = 0;    ///< in the cycle that runs
+    int ticks_not_taken_ = 0;  ///< in cycles before, not told yet
+    Durations all_tasks_;  ///< of each cycle
     std::size_t next_reported_ = 0;
 };
 

@@ -18,6 +18,14 @@ Computers::Computers(const flight::Load& load, Sclk start)
                  flight::Computer{load_of(load, flight::String::b), start}} {}
 
 void Computers::step(flight::DeviceInputs& in) {
+    step(in, true);
+}
+
+void Computers::step_without_prime(flight::DeviceInputs& in) {
+    step(in, false);
+}
+
+void Computers::step(flight::DeviceInputs& in, bool with_prime) {
     const std::size_t listening = commander_ == nobody ? prime() : commander_;
     const std::size_t other = 1 - listening;
 
@@ -38,9 +46,16 @@ void Computers::step(flight::DeviceInputs& in) {
     };
     complete(listening, in);
     complete(other, beside_);
-    const auto runner_of = [&](std::size_t place) { return place == prime() ? runner_.get() : nullptr; };
-    computers_[listening].step(in, out_[listening], runner_of(listening));
-    computers_[other].step(beside_, out_[other], runner_of(other));
+    const auto cycle = [&](std::size_t place, const flight::DeviceInputs& inputs) {
+        if (place != prime())
+            computers_[place].step(inputs, out_[place]);
+        else if (with_prime)
+            computers_[place].step(inputs, out_[place], runner_.get());
+        else
+            out_[place].begin_cycle();
+    };
+    cycle(listening, in);
+    cycle(other, beside_);
 
     for (const flight::DeviceOutputs& out : out_)
         if (!out.restart_record.empty()) restart_record_ = out.restart_record;

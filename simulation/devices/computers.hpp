@@ -25,6 +25,10 @@ class Computers {
 
     /// One cycle of both. `in` is completed with what only the computers give each other.
     void step(flight::DeviceInputs& in);
+    /// Ticks that passed in that cycle beyond its own, because prime's executive took so long by a clock that does not wait.
+    int take_ticks_skipped() { return runner_ ? runner_->take_ticks_skipped() : 0; }
+    /// Such a tick: the other computer has its cycle; of prime there are the commands that hold, what came for it is lost.
+    void step_without_prime(flight::DeviceInputs& in);
 
     /// The test venue "all but GNC": both computers take what stands in for GNC as their own.
     const flight::gnc::Configuration& gnc_configuration();
@@ -45,6 +49,7 @@ class Computers {
     static constexpr std::size_t nobody = 2;
 
     std::size_t prime() const { return prime_is_b_ ? 1 : 0; }
+    void step(flight::DeviceInputs& in, bool with_prime);
     void choose_commander();
 
     std::array<flight::Computer, 2> computers_;

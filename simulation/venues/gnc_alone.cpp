@@ -3,9 +3,8 @@
 #include "flight/gnc/mars.hpp"
 
 namespace aeolis::simulation {
-namespace {
 
-flight::gnc::Solution solution_for(const NavigationSolution& from) {
+flight::gnc::Solution solution_of(const NavigationSolution& from) {
     flight::gnc::Solution solution;
     solution.epoch = from.epoch;
     solution.p_MoB_M_m = from.p_MoB_M_m;
@@ -20,11 +19,9 @@ flight::gnc::Solution solution_for(const NavigationSolution& from) {
     return solution;
 }
 
-} // namespace
-
 GncAlone::GncAlone(const flight::Load& load, const NavigationSolution& solution, Sclk now)
     : gnc_(load), timeline_(solution.entry) {
-    gnc_.set_solution(solution_for(solution), now);
+    gnc_.set_solution(solution_of(solution), now);
 }
 
 void GncAlone::cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out) {

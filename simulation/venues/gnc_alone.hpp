@@ -7,6 +7,9 @@
 
 namespace aeolis::simulation {
 
+/// As GNC takes it: angles in radians. What ground's navigators do not bring keeps GNC's own value.
+flight::gnc::Solution solution_of(const NavigationSolution& from);
+
 /// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as they fly, and a few lines in place
 /// of the timeline. Nothing of executive, telemetry, commands or radio takes part. R36
 ///

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string_view>
+#include <vector>
 
 namespace aeolis::simulation {
 
 /// A few lines in place of the timeline, for venues that fly without it: what the vehicle needs to land, at the times of
-/// [facts] Timeline, with nothing that waits, fails or is told.
+/// timeline.csv, with nothing that waits, fails or is told.
 ///
 /// In       GNC's triggers, which start anchors          Out   the configuration that GNC flies, commands to devices
 /// Rate     64 Hz: act() before GNC and after it         Memory   none beyond itself; a value
@@ -20,6 +22,13 @@ class VenueTimeline {
 
     void act(Sclk now, flight::DeviceOutputs& out);
     void take(const flight::gnc::Output& told, Sclk now);
+
+    struct Line {
+        std::string_view timepoint; ///< of timeline.csv, whose place it takes
+        std::optional<flight::gnc::Trigger> after; ///< none: entry
+        double offset_s = 0.0;
+    };
+    static std::vector<Line> lines();
 
     const flight::gnc::Configuration& configuration() const { return configuration_; }
 

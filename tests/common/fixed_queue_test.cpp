@@ -17,6 +17,17 @@ TEST_CASE("a fixed queue is first in, first out, round and round", "[common][R7]
     CHECK_THROWS_AS(queue.front(), CheckFailed);
 }
 
+TEST_CASE("a fixed queue that is never empty goes round all the same", "[common][R7]") {
+    FixedQueue<int, 3> queue;
+    REQUIRE(queue.try_push(0));
+    for (int i = 1; i < 100; ++i) {
+        REQUIRE(queue.try_push(i));
+        CHECK(queue.front() == i - 1);
+        queue.pop();
+        CHECK(queue.size() == 1);
+    }
+}
+
 TEST_CASE("a full fixed queue refuses and keeps what it has", "[common][R7]") {
     FixedQueue<int, 2> queue;
     CHECK(queue.try_push(1));

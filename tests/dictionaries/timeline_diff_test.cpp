@@ -38,7 +38,7 @@ const RowChange& change_of(const SheetDiff& sheet, std::string_view name) {
     return *found;
 }
 
-/// The sheet as a spreadsheet program saves it: its own choice of quotes, line ends and mark in front.
+/// The sheet written again, with another choice of quotes, line ends and mark in front, as programs differ in them.
 std::string saved(const std::string& text, bool quote_all, bool carriage_returns, bool byte_order_mark) {
     std::vector<Finding> all;
     Findings findings{"", all};
@@ -134,7 +134,7 @@ TEST_CASE("the comparison the other way round swaps added and removed", "[timeli
     CHECK(forward.sheets[0].rows[0].before == back.sheets[0].rows[0].after);
 }
 
-TEST_CASE("the sheets come back from a spreadsheet program with every row unchanged, however it quotes and ends lines",
+TEST_CASE("sheets written again with other quotes, other line ends and a mark in front are the same timeline",
           "[timeline][R20]") {
     const tests::MissionCopy before;
     const Dictionary original = loaded(before);
@@ -150,7 +150,7 @@ TEST_CASE("the sheets come back from a spreadsheet program with every row unchan
             }
 }
 
-TEST_CASE("the shipped sheets are byte for byte what a spreadsheet program with fewest quotes writes back",
+TEST_CASE("the shipped sheets quote only the cells that need it, and end lines with one octet",
           "[timeline][R20]") {
     const tests::MissionCopy mission;
     for (const char* file : {"timeline.csv", "anchors.csv", "constraints.csv"}) {

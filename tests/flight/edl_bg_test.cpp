@@ -1,5 +1,6 @@
 #include "flight/edl_bg/edl_bg.hpp"
 
+#include "flight/edl/solution.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
@@ -43,6 +44,20 @@ TEST_CASE("parameters that cannot be true are refused: under the ground, entry i
     CHECK(f.recorder.sent<ParametersUpdate>().empty());
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
     f.handle(SetParametersCommand{{}, parameters()}, 2000.0);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+}
+
+TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle", "[edl_bg][R23]") {
+    Fixture f;
+    auto old = parameters();
+    old.entry_sclk = old.epoch_sclk + 2.0 * solution_age_max_s;
+    f.handle(SetParametersCommand{{}, old}, old.epoch_sclk + solution_age_max_s);
+    CHECK(f.recorder.sent<ParametersUpdate>().size() == 1);
+    f.handle(SetParametersCommand{{}, old}, old.epoch_sclk + solution_age_max_s + 1.0 / 64);
+    CHECK(f.recorder.sent<ParametersUpdate>().empty());
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    old.epoch_sclk = old.entry_sclk = 4.0e9;
+    f.handle(SetParametersCommand{{}, old}, 1000.0);
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 

@@ -56,6 +56,29 @@ TEST_CASE("do edl before parameters is refused and not remembered", "[edl][R23]"
     CHECK(f.edl.timeline().begun());
 }
 
+TEST_CASE("a turn of another time is reported and confirmed, and nothing is flown to it", "[edl][R4]") {
+    Fixture f;
+    f.set_parameters(entry_s - 1190);
+    f.handle(Tick{Sclk{entry_s - 1189}}, entry_s - 1189);
+    CHECK(f.recorder.events<evr::UNEXPECTED_MESSAGE>() == 0);
+    for (const double other_s : {entry_s + 4.0e9, 0.0, entry_s - 1186}) {
+        f.handle(Tick{Sclk{other_s}}, entry_s - 1188);
+        CHECK(f.recorder.events<evr::UNEXPECTED_MESSAGE>() == 1);
+        CHECK(f.recorder.sent<Confirm>().size() == 1);
+        CHECK(f.recorder.sent<PointVehicle>().empty());
+    }
+}
+
+TEST_CASE("parameters that cannot be flown are refused by who flies them, too", "[edl][R23]") {
+    Fixture f;
+    auto impossible = parameters();
+    impossible.epoch_sclk = 0.0;
+    f.handle(ParametersUpdate{{}, impossible}, entry_s - 1190);
+    REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
+    CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
+    CHECK(f.do_edl(entry_s - 1189) == CommandRefusal::no_parameters);
+}
+
 TEST_CASE("do edl is possible in late cruise only", "[edl][R23]") {
     Fixture f;
     f.set_parameters(entry_s - 40'000);

@@ -1,13 +1,18 @@
 // Any message to any module of a computer at any time, any uplink, anything from any device: the computer counts and
 // reports what it does not expect, refuses what it cannot do, and goes on. A failed check is a bug here, though in
-// flight it would only be a reset.
+// flight it would only be a reset. The first octet chooses where it begins: a computer that was just started, or one in
+// the middle of a landing that is flown before the fuzzing begins.
+#include "dictionaries/dictionary.hpp"
 #include "flight/computer.hpp"
 #include "flight/kernel/dispatch.hpp"
 #include "flight/kernel/executive.hpp"
-#include "tests/fuzz/any_message.hpp"
+#include "tests/support/any_message.hpp"
+#include "tests/support/flown_computers.hpp"
 
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <vector>
 
 namespace {
 
@@ -18,18 +23,45 @@ constexpr int steps_max = 200; // of one input, so that none is slow
 
 /// What is needed once and costs time to make.
 struct Computers {
-    ComputerState prime{load_of(Role::prime), Sclk{1000.0}};
-    ComputerState backup{load_of(Role::second_chance), Sclk{1000.0}};
-    ComputerState state{prime}; // the one under test
+    std::vector<std::unique_ptr<const ComputerState>> starts;
+    std::unique_ptr<ComputerState> state;  // the one under test
     DeviceOutputs out;
 
-    static Load load_of(Role role) {
-        Load load;
-        load.role = role;
-        load.string = role == Role::prime ? String::a : String::b;
-        return load;
+    Computers() {
+        for (const Role role : {Role::prime, Role::second_chance}) {
+            Load load;
+            load.role = role;
+            load.string = role == Role::prime ? String::a : String::b;
+            starts.push_back(std::make_unique<const ComputerState>(load, Sclk{1000.0}));
+        }
+        using test::FlownComputers;
+        const auto keep = [&](Computer& computer) {
+            starts.push_back(std::make_unique<const ComputerState>(computer.state()));
+        };
+        const auto flown = std::make_unique<FlownComputers>();
+        const auto phase = [](FlownComputers& now) -> const gnc::Configuration& { return now.prime().gnc_configuration(); };
+        keep(flown->prime());  // pre-EDL
+        keep(flown->backup());
+        flown->fly_until([](FlownComputers& now) { return now.world().truth().e_s >= 100.0; });
+        keep(flown->prime());  // range control
+        flown->fly_until([&](FlownComputers& now) { return phase(now).heatshield_gone; });
+        keep(flown->prime());  // on the parachute
+        {
+            const auto without_prime = std::make_unique<FlownComputers>(*flown);
+            without_prime->silence_prime();
+            without_prime->fly_until([](FlownComputers& now) { return now.backup_in_control(); });
+            keep(without_prime->backup());  // Second Chance flies
+        }
+        flown->fly_until([&](FlownComputers& now) { return phase(now).sky_crane_started; });
+        keep(flown->prime());  // sky crane
+        state = std::make_unique<ComputerState>(*starts.front());
     }
 };
+
+Computers& computers() {
+    static Computers made;
+    return made;
+}
 
 bool expects(ComputerState& state, ModuleId id, const Message& message) {
     return with_module(state, id, [&](auto& module) {
@@ -48,29 +80,65 @@ std::uint64_t still_waiting(ComputerState& state) {
     return count;
 }
 
-void fill_inputs(fuzz::Source& from, DeviceInputs& in) {
-    fuzz::fill_each(from, in.imu, in.cruise_attitude, in.radar, in.pyro_replies, in.switch_replies, in.engines,
+void fill_inputs(test::Source& from, DeviceInputs& in) {
+    test::fill_each(from, in.imu, in.cruise_attitude, in.radar, in.pyro_replies, in.switch_replies, in.engines,
                     in.thrusters, in.bridle, in.system_fault, in.nvm_used_octets, in.nvm_capacity_octets);
 }
 
-void add_uplink(fuzz::Source& from, DeviceInputs& in) {
+const dictionary::Dictionary& mission() {
+    static const auto loaded = dictionary::load(AEOLIS_SOURCE_DIR "/dictionaries/msl");
+    if (!loaded.dictionary) std::abort();
+    return *loaded.dictionary;
+}
+
+/// A telecommand with a good CRC: one of the dictionary's with as many octets as it has, or any.
+std::vector<std::uint8_t> telecommand(test::Source& from) {
+    const auto choice = from.take<std::uint8_t>();
+    Opcode opcode;
+    std::size_t octets = 0;
+    if (choice < mission().commands.size()) {
+        opcode = mission().commands[choice].opcode;
+        octets = tc_overhead_octets + mission().commands[choice].argument_octets;
+    } else {
+        opcode = Opcode{from.take<std::uint16_t>()};
+        octets = tc_overhead_octets + from.take<std::uint8_t>();
+    }
+    std::vector<std::uint8_t> packet(octets);
+    for (std::size_t i = tc_arguments_offset_octets; i + packet_crc_octets < octets; ++i)
+        packet[i] = from.take<std::uint8_t>();
+    seal_tc_packet(packet, Apid{1}, from.take<std::uint8_t>(), opcode);
+    return packet;
+}
+
+std::vector<std::uint8_t> octets_as_they_are(test::Source& from) {
+    std::vector<std::uint8_t> octets(from.take<std::uint8_t>() * 2U);
+    for (std::uint8_t& octet : octets)
+        octet = from.take<std::uint8_t>();
+    return octets;
+}
+
+void add_uplink(test::Source& from, DeviceInputs& in) {
+    const auto octets = from.take<std::uint8_t>() % 4 == 0 ? octets_as_they_are(from) : telecommand(from);
     UplinkPacket uplink;
-    uplink.size = static_cast<std::uint16_t>(from.take<std::uint8_t>() * 2U);
-    for (std::size_t i = 0; i < uplink.size; ++i)
-        uplink.octets[i] = from.take<std::uint8_t>();
+    uplink.size = static_cast<std::uint16_t>(octets.size());
+    std::ranges::copy(octets, uplink.octets.begin());
     static_cast<void>(in.uplink.try_push_back(uplink));
 }
 
 } // namespace
 
+// Before the fuzzer's own clock begins.
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+    static_cast<void>(computers());
+    return 0;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    static const auto computers = std::make_unique<Computers>();
-    fuzz::Source from{{data, size}};
-    ComputerState& state = computers->state;
-    const bool backup = from.take<std::uint8_t>() % 2 != 0;
-    state = backup ? computers->backup : computers->prime;
-    std::uint64_t unexpected = 0;
-    std::int64_t tick = 64000;
+    test::Source from{{data, size}};
+    ComputerState& state = *computers().state;
+    state = *computers().starts[from.take<std::uint8_t>() % computers().starts.size()];
+    std::uint64_t unexpected = state.unexpected_messages;
+    std::int64_t tick = state.now.ticks();
     for (int step = 0; step < steps_max && !from.empty(); ++step) {
         const auto what = from.take<std::uint8_t>();
         if (what % 4 == 0) {
@@ -80,11 +148,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             in.nvm_capacity_octets = 1U << 30U;
             if (what & 4U) fill_inputs(from, in);
             if (what & 8U) add_uplink(from, in);
-            Executive{state}.cycle(in, computers->out); // a CheckFailed is not caught: it ends the fuzzer
+            Executive{state}.cycle(in, computers().out); // a CheckFailed is not caught: it ends the fuzzer
             continue;
         }
         const auto to = static_cast<ModuleId>(from.take<std::uint8_t>() % module_count);
-        const Message message = fuzz::message_of(what % std::variant_size_v<Message>, from);
+        const Message message = test::message_of(what % std::variant_size_v<Message>, from);
         if (!is_loaded(state.load.role, to)) continue;
         if (!state.mailboxes[static_cast<std::size_t>(to)].try_push(message)) continue;
         if (wakes(to, message)) state.ready |= bit_of(to);

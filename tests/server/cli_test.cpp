@@ -1,3 +1,4 @@
+#include "server/api/json.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <google/protobuf/struct.pb.h>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -102,4 +104,23 @@ TEST_CASE("the program proves the shipped timeline, and shows what two versions 
     std::filesystem::remove_all(other);
     CHECK(changed.code == 1);
     CHECK_THAT(changed.text, Catch::Contains("desired_offset_s: -800 -> -790"));
+}
+
+// Times count for the program as it is built to be used, not for one that sanitizers watch.
+TEST_CASE("in the venue performance a whole landing keeps every budget of time and stack", "[.long][cli][R8][R36][R37]") {
+    if (program() == nullptr) return;
+    const auto ended = run(program(), "rehearse --scenario performance --seed 1 --json");
+    INFO(ended.text);
+    REQUIRE(ended.code == 0);
+    google::protobuf::Struct report;
+    REQUIRE(aeolis::server::from_json(ended.text, report));
+    CHECK(report.fields().at("outcome").string_value() == "touchdown");
+    const auto& together = report.fields().at("all_tasks").struct_value().fields();
+    CHECK(together.at("worst_us").number_value() <= together.at("cycle_us").number_value());
+    for (const auto& value : report.fields().at("tasks").list_value().values()) {
+        const auto& task = value.struct_value().fields();
+        INFO(task.at("task").string_value());
+        CHECK(task.at("p999_us").number_value() <= task.at("budget_us").number_value());
+        CHECK(task.at("stack_octets").number_value() <= task.at("stack_bound_octets").number_value());
+    }
 }

@@ -33,8 +33,10 @@ TEST_CASE("who talks to whom is counted as it is sent, and the document says it 
     CHECK(flow->sent(ModuleId::mfsk, ModuleId::edl, type_named("Tick")) == 0);
 
     const std::string text = flow->document("a landing");
-    CHECK_THAT(text, Catch::Contains("| 1 | `sync` | yes | 1.0 ms | 100 us | ClockTick, "));
-    CHECK_THAT(text, Catch::Contains("| `command_dispatcher` | `edl` | DoEdlCommand | 1 |"));
+    CHECK_THAT(text, Catch::Contains("| 1 | `sync` | yes | 1.0 ms | 200 us | ClockTick, "));
+    CHECK_THAT(text, Catch::Contains("| `command_dispatcher` | `edl` | DoEdlCommand | 1 | 1 | 1.0 |"));
+    CHECK_THAT(text, Catch::Contains("| `sync` | `edl` | Tick | 3840 | 60 | 64.0 |"));
+    CHECK_THAT(text, Catch::Contains("    command_dispatcher -.-> edl\n"));
     CHECK_THAT(text, Catch::Contains("    sync --> edl\n"));
 }
 

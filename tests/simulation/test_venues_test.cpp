@@ -1,3 +1,7 @@
+#include "commands/encoder.hpp"
+#include "common/space_packet.hpp"
+#include "flight/edl/solution.hpp"
+#include "server/gateway/command_gateway.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/venues/gnc_alone.hpp"
 #include "simulation/venues/gnc_stand_in.hpp"
@@ -5,9 +9,13 @@
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/recorded_events.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
 
+#include <algorithm>
+#include <array>
 #include <set>
+#include <utility>
 
 using namespace aeolis;
 using namespace aeolis::simulation;
@@ -59,21 +67,35 @@ TEST_CASE("in the venue all but GNC the whole timeline fires around a stand-in t
 }
 
 TEST_CASE("venues are dispersed alike: another case is another landing, the same one the same bits", "[venue][R36][invariant1]") {
-    const auto touchdown = [](TestVenue venue, std::uint64_t case_number) {
-        Landing landing{in_venue(venue, 620.0), 3, case_number};
+    struct Flown {
+        double longitude_deg = 0.0;
+        std::array<double, 3> started_M_m{};
+        bool operator==(const Flown&) const = default;
+    };
+    const auto fly = [](TestVenue venue, std::uint64_t case_number) {
+        Landing landing{in_venue(venue, 900.0), 3, case_number};
+        Flown flown;
+        flown.started_M_m = landing.truth().p_MoB_M_m;
         if (venue == TestVenue::all_but_gnc) {
             landing.uplink(test::set_parameters(landing.solution()));
-            landing.step();
+            for (int tick = 0; tick < 64; ++tick)
+                landing.step();
             landing.uplink(test::do_edl());
         }
         while (landing.outcome() == Outcome::running)
             landing.step();
+        INFO(landing.outcome_reason());
         REQUIRE(landing.outcome() == Outcome::touchdown);
-        return landing.touchdown()->longitude_deg;
+        flown.longitude_deg = landing.touchdown()->longitude_deg;
+        return flown;
     };
-    const double first = touchdown(TestVenue::gnc_alone, 1);
-    CHECK(touchdown(TestVenue::gnc_alone, 1) == first);
-    CHECK(touchdown(TestVenue::gnc_alone, 2) != first);
+    const Flown gnc = fly(TestVenue::gnc_alone, 1), all_but_gnc = fly(TestVenue::all_but_gnc, 1);
+    CHECK(fly(TestVenue::gnc_alone, 1) == gnc);
+    CHECK(fly(TestVenue::all_but_gnc, 1) == all_but_gnc);
+    // The same case is the same vehicle whoever flies it.
+    CHECK(gnc.started_M_m == all_but_gnc.started_M_m);
+    CHECK(fly(TestVenue::gnc_alone, 2).longitude_deg != gnc.longitude_deg);
+    CHECK(fly(TestVenue::all_but_gnc, 2).longitude_deg != all_but_gnc.longitude_deg);
 }
 
 TEST_CASE("a fork of a landing in a venue of its own goes on alike", "[venue][R36][invariant2]") {
@@ -99,22 +121,103 @@ TEST_CASE("who takes no commands is given none: a scenario that tries is refused
     CHECK_THAT(impossible_values(scenario)[0], Catch::StartsWith("commands: in the test venue gnc_alone"));
 }
 
-TEST_CASE("the lines in place of the timeline happen once each, in order, and wait for their trigger", "[venue][R36]") {
+TEST_CASE("the lines in place of the timeline stand where the shipped timeline has them", "[venue][R36]") {
+    const auto& dictionary = tests::shipped_dictionary();
+    using flight::gnc::Trigger;
+    const auto anchor_of = [](std::optional<Trigger> after) -> std::string {
+        if (!after) return "entry";
+        switch (*after) {
+        case Trigger::guidance_start: return "guidance_start";
+        case Trigger::sufr_start: return "sufr_start";
+        case Trigger::parachute: return "parachute";
+        case Trigger::heatshield: return "heatshield";
+        case Trigger::engine_priming: return "priming";
+        case Trigger::backshell: return "backshell";
+        case Trigger::sky_crane: return "sky_crane";
+        case Trigger::rover_separation: return "rover_separation";
+        case Trigger::touchdown: return "touchdown";
+        default: return "no anchor";
+        }
+    };
+    for (const VenueTimeline::Line& line : VenueTimeline::lines()) {
+        INFO(line.timepoint);
+        const auto named = std::ranges::find(dictionary.timeline, line.timepoint, &dictionary::TimelineRow::name);
+        REQUIRE(named != dictionary.timeline.end());
+        // A row without an anchor counts from the row before it.
+        double offset_s = *named->desired_offset_s;
+        auto row = named;
+        while (!row->anchor) {
+            REQUIRE(row != dictionary.timeline.begin());
+            --row;
+            offset_s += *row->desired_offset_s;
+        }
+        const auto anchor = std::ranges::find(dictionary.anchors, *row->anchor, &dictionary::AnchorRow::id);
+        REQUIRE(anchor != dictionary.anchors.end());
+        CHECK(anchor->name == anchor_of(line.after));
+        CHECK(offset_s == line.offset_s);
+    }
+}
+
+TEST_CASE("GNC alone navigates from what a computer makes of the shipped command with the same solution", "[venue][R36]") {
+    const Landing landing{in_venue(TestVenue::gnc_alone, 620.0), 5};
+    const auto* command = tests::shipped_dictionary().command("EDL_SET_PARAMETERS");
+    REQUIRE(command != nullptr);
+    // Arguments that the solution does not bring keep the dictionary's initial values.
+    const auto packet = commands::encode(*command, server::solution_arguments(landing.solution()), 0);
+    REQUIRE(packet);
+    const auto commanded = flight::command::EDL_SET_PARAMETERS::decode(read_tc_packet(*packet)->arguments);
+    REQUIRE(commanded);
+    auto expected = flight::solution_of(*commanded);
+    auto alone = solution_of(landing.solution());
+    CHECK(alone.epoch == expected.epoch);
+    CHECK(alone.p_MoB_M_m == expected.p_MoB_M_m);
+    CHECK(alone.v_MB_M_mps == expected.v_MB_M_mps);
+    CHECK(alone.entry == expected.entry);
+    CHECK(alone.target_latitude_rad == Approx(expected.target_latitude_rad));
+    CHECK(alone.target_longitude_rad == Approx(expected.target_longitude_rad));
+    CHECK(alone.target_radius_m == expected.target_radius_m);
+    // These are four octets wide in the command.
+    CHECK(alone.parachute_speed_mps == Approx(expected.parachute_speed_mps));
+    CHECK(alone.parachute_altitude_min_m == Approx(expected.parachute_altitude_min_m));
+    CHECK(alone.heatshield_speed_mps == Approx(expected.heatshield_speed_mps));
+    CHECK(alone.backshell_altitude_m == Approx(expected.backshell_altitude_m));
+    CHECK(alone.backshell_descent_rate_mps == Approx(expected.backshell_descent_rate_mps));
+}
+
+TEST_CASE("each line in place of the timeline happens once, at its time, and waits for its trigger", "[venue][R36]") {
     VenueTimeline timeline{Sclk{1000.0}};
     flight::DeviceOutputs out;
-    timeline.act(Sclk{1000.0 - 700.0}, out);
-    CHECK(out.switches.empty());
-    timeline.act(Sclk{1000.0 - 300.0}, out);
+    const auto at = [&](double e_s) {
+        out.begin_cycle();
+        timeline.act(Sclk{1000.0 + e_s}, out);
+    };
+    at(-700.0);
+    CHECK(out.pyros.empty());
+    for (const auto& [e_s, pyro] : {std::pair{-608.0, flight::PyroId::cruise_cable_cutter},
+                                    std::pair{-600.046875, flight::PyroId::cruise_stage_separation},
+                                    std::pair{-489.0, flight::PyroId::cruise_balance_1},
+                                    std::pair{-488.0, flight::PyroId::cruise_balance_2}}) {
+        INFO(e_s);
+        at(e_s - seconds_per_tick);
+        CHECK(out.pyros.empty());
+        at(e_s);
+        REQUIRE(out.pyros.size() == 1);
+        CHECK(out.pyros[0] == pyro);
+    }
+    at(-300.0 - seconds_per_tick);
+    CHECK_FALSE(timeline.configuration().guidance_armed);
+    at(-300.0);
     CHECK(timeline.configuration().guidance_armed);
-    CHECK(out.pyros.size() == 4); // cables, cruise stage, two balance masses
-    out.begin_cycle();
-    timeline.act(Sclk{1100.0}, out);
+    at(100.0);
     CHECK(out.pyros.empty());
     CHECK_FALSE(timeline.configuration().parachute_out);
     flight::gnc::Output told;
     told.triggers.push_back(flight::gnc::Trigger::parachute);
     timeline.take(told, Sclk{1100.0});
-    timeline.act(Sclk{1100.0}, out);
+    at(100.0);
     CHECK(timeline.configuration().parachute_out);
-    CHECK(out.pyros.size() == 1);
+    REQUIRE(out.pyros.size() == 1);
+    CHECK(out.pyros[0] == flight::PyroId::parachute_mortar);
+    at(100.0 + seconds_per_tick);
+    CHECK(out.pyros.empty());
 }

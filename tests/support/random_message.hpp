@@ -1,26 +1,27 @@
 #pragma once
 
-#include "flight/kernel/message.hpp"
+#include "tests/support/any_message.hpp"
 
-#include <cstring>
+#include <array>
 #include <random>
 
 namespace aeolis::test {
 
-/// A message of the type that stands at `Index` of the variant, all of its numbers random: any octets are a number, but
-/// for truth values and for what says that an optional is there, which stay as they are made.
-template <std::size_t Index = 0>
-flight::Message message_of_type(std::size_t type) {
-    if constexpr (Index < std::variant_size_v<flight::Message>) {
-        if (type == Index) return std::variant_alternative_t<Index, flight::Message>{};
-        return message_of_type<Index + 1>(type);
-    } else {
-        return flight::ClockTick{};
-    }
+/// A message of the type that stands at `type` of the variant, every field of it random.
+inline flight::Message random_message_of(std::size_t type, std::mt19937& random) {
+    std::array<std::uint8_t, 2 * sizeof(flight::Message)> octets{};
+    for (std::uint8_t& octet : octets) octet = static_cast<std::uint8_t>(random());
+    Source from{octets};
+    return message_of(type, from);
 }
 
+/// A message of any type: half of them random throughout, the others as a module may well send them, so that their
+/// content is not refused at once.
 inline flight::Message random_message(std::mt19937& random) {
-    flight::Message message = message_of_type(random() % std::variant_size_v<flight::Message>);
+    const std::size_t type = random() % std::variant_size_v<flight::Message>;
+    if (random() % 2 == 0) return random_message_of(type, random);
+    Source nothing{{}};
+    flight::Message message = message_of(type, nothing);
     const auto any = [&] { return static_cast<std::uint8_t>(random()); };
     using namespace flight;
     if (auto* fire = std::get_if<FirePyro>(&message)) fire->pyro = static_cast<PyroId>(random() % pyro_count);

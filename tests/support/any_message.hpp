@@ -2,17 +2,18 @@
 
 #include "flight/kernel/message.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
 
-// Values of any type of message from a fuzzer's octets. What a type is made of is taken from the type itself; a field
+// Values of any type of message from given octets, a fuzzer's or random ones. What a type is made of is taken from the type itself; a field
 // that is added to a message is filled too.
-namespace aeolis::fuzz {
+namespace aeolis::test {
 
-/// The fuzzer's octets, then zeros.
+/// The octets given, then zeros.
 class Source {
   public:
     explicit Source(std::span<const std::uint8_t> octets) : rest_(octets) {}
@@ -138,4 +139,4 @@ flight::Message message_of(std::size_t index, Source& from) {
     return content;
 }
 
-} // namespace aeolis::fuzz
+} // namespace aeolis::test
