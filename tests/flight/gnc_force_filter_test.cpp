@@ -16,7 +16,7 @@ TEST_CASE("drag and lift of a steady force come out as they are", "[gnc][R27]") 
 TEST_CASE("a step of drag is two thirds there after one time constant", "[gnc][R27]") {
     ForceFilter filter;
     for (int i = 0; i < 32; ++i)
-        filter.on({-1.0, 0.0, 0.0}, Vector3::UnitX(), 1.0 / 64);
+        filter.on({-1.0, 0.0, 0.0}, Vector3::UnitX(), ForceFilter::drag_time_s / 32);
     CHECK(filter.drag_mps2() == Approx(1.0 - std::exp(-1.0)).epsilon(0.02));
 }
 
