@@ -34,6 +34,9 @@ class Attitude {
 
     Attitude(const Quaternion& q_MB, double spin_rps, Random random);
 
+    /// It will swing under the parachute as `other` would.
+    void swing_as(const Attitude& other) { swing_direction_rad_ = other.swing_direction_rad_; }
+
     void advance(double step_s, const flight::AttitudeCommand& command, const Surroundings& next);
 
     const Quaternion& q_MB() const { return q_MB_; }

@@ -30,6 +30,16 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       at_(start), attitude_(q_MB, spin_rps, Random{seed, case_number, Stream::swing}), configuration_(scenario.masses) {
 }
 
+void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
+    const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
+    parachute_area_m2_ = drawn.parachute_area_m2_;
+    aeroshell_factor_ = drawn.aeroshell_factor_;
+    atmosphere_ = drawn.atmosphere_;
+    wind_ = drawn.wind_;
+    at_ = drawn.at_;
+    attitude_.swing_as(drawn.attitude_);
+}
+
 void Vehicle::fire(flight::PyroId pyro, double now_s) {
     using flight::PyroId;
     switch (pyro) {
