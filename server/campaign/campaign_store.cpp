@@ -8,7 +8,6 @@ namespace {
 
 using archive::sqlite::Database;
 using archive::sqlite::Mode;
-using archive::sqlite::Statement;
 using archive::sqlite::Transaction;
 
 constexpr std::int64_t schema_version = 1;

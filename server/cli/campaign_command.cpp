@@ -19,16 +19,19 @@
 namespace aeolis::server {
 namespace {
 
-std::atomic<bool> stop_asked{false};
+std::atomic<bool>& stop_asked() {
+    static std::atomic<bool> asked{false};
+    return asked;
+}
 static_assert(std::atomic<bool>::is_always_lock_free); // a signal sets it
 
 /// Ctrl-C ends the campaign after the cases that are flying; the second time it ends the program.
 void stop_at_interrupt() {
     std::signal(SIGINT, [](int) {
-        stop_asked = true;
+        stop_asked() = true;
         std::signal(SIGINT, SIG_DFL);
     });
-    std::signal(SIGTERM, [](int) { stop_asked = true; });
+    std::signal(SIGTERM, [](int) { stop_asked() = true; });
 }
 
 /// A bar on a terminal, else nothing.
@@ -63,7 +66,7 @@ Result<campaign::Call> flown(const CampaignOptions& options, const simulation::S
     stop_at_interrupt();
     ProgressBar bar;
     const auto progress = campaign::run_campaign(
-        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); }, stop_asked,
+        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); }, stop_asked(),
         [&](const campaign::Progress& so_far) { bar.draw(so_far); });
     if (!progress) return progress.error();
     return campaign::Call{*progress, jobs_of(options), options.scenario, file.string()};
