@@ -137,8 +137,8 @@ std::string campaign_json(const Summary& summary, const Call& call) {
 }
 
 std::string campaign_table(const Summary& summary, const Call& call) {
-    std::string text = fmt::format("{} (seed {}): {} of {} cases\n\n", summary.scenario, summary.seed, summary.kept,
-                                   summary.cases);
+    std::string text =
+        fmt::format("{} (seed {}): {} of {} cases\n\n", summary.scenario, summary.seed, summary.kept, summary.cases);
     for (const auto& [outcome, count] : summary.outcomes)
         text += fmt::format("{:<34}{:>10}{:>10}\n", outcome, count, percent(count, summary.kept));
     text += '\n' + event_rows(summary) + '\n' + heading("touchdown");
@@ -166,15 +166,14 @@ std::string campaign_table(const Summary& summary, const Call& call) {
                             margin->number);
     text += summary.failed == 0 ? "no case failed\n" : fmt::format("\n{} failed\n", summary.failed);
     text += failure_rows(summary, call);
-    text += fmt::format("{} cases flown now in {:.1f} s, {} jobs, {:.2f} cases/s; results in {}\n",
-                        call.progress.flown, call.progress.wall_s, call.jobs, call.progress.rate_per_s(), call.results);
+    text += fmt::format("{} cases flown now in {:.1f} s, {} jobs, {:.2f} cases/s; results in {}\n", call.progress.flown,
+                        call.progress.wall_s, call.jobs, call.progress.rate_per_s(), call.results);
     return text;
 }
 
 std::string progress_line(const Progress& progress) {
     constexpr std::size_t width = 30;
-    const double part =
-        progress.of == 0 ? 1.0 : static_cast<double>(progress.done) / static_cast<double>(progress.of);
+    const double part = progress.of == 0 ? 1.0 : static_cast<double>(progress.done) / static_cast<double>(progress.of);
     const auto filled = std::min(width, static_cast<std::size_t>(part * static_cast<double>(width)));
     std::string bar(filled, '=');
     if (filled < width) bar += '>';

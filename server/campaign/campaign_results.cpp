@@ -117,13 +117,14 @@ Result<void> CampaignResults::read_outcomes(Summary& into) {
 Result<void> CampaignResults::read_events(Summary& into) {
     auto names = database_.prepare("SELECT name FROM moments GROUP BY name ORDER BY avg(e_s)");
     if (!names) return names.error();
-    const auto read =
-        each_row(*names, [&](const Statement& row) { into.events.push_back({std::string{row.text(0)}, {}, {}, {}}); });
+    const auto read = each_row(*names, [&](const Statement& row) {
+        into.events.push_back({std::string{row.text(0)}, {}, {}, {}});
+    });
     if (!read) return read;
     for (EventSpread& event : into.events)
-        for (const auto& [column, spread_of] : {std::pair{"e_s", &EventSpread::e_s},
-                                                std::pair{"altitude_m", &EventSpread::altitude_m},
-                                                std::pair{"speed_mps", &EventSpread::speed_mps}}) {
+        for (const auto& [column, spread_of] :
+             {std::pair{"e_s", &EventSpread::e_s}, std::pair{"altitude_m", &EventSpread::altitude_m},
+              std::pair{"speed_mps", &EventSpread::speed_mps}}) {
             const auto found = spread(column, moments, event.name);
             if (!found) return found.error();
             event.*spread_of = *found;
@@ -137,16 +138,14 @@ Result<void> CampaignResults::read_spreads(Summary& into) {
         const char* source;
         Spread* into;
     };
-    for (const Wanted& wanted : {Wanted{"vertical_mps", landed, &into.vertical_mps},
-                                 Wanted{"horizontal_mps", landed, &into.horizontal_mps},
-                                 Wanted{"miss_m", landed, &into.miss_m},
-                                 Wanted{"latitude_deg", landed, &into.latitude_deg},
-                                 Wanted{"longitude_deg", landed, &into.longitude_deg},
-                                 Wanted{"propellant_kg", landed, &into.propellant_kg},
-                                 Wanted{"parachute_mach", all, &into.parachute_mach},
-                                 Wanted{"parachute_pressure_Pa", all, &into.parachute_pressure_Pa},
-                                 Wanted{"peak_deceleration_mps2", all, &into.peak_deceleration_mps2},
-                                 Wanted{"least_margin_s", all, &into.least_margin_s}}) {
+    for (const Wanted& wanted :
+         {Wanted{"vertical_mps", landed, &into.vertical_mps}, Wanted{"horizontal_mps", landed, &into.horizontal_mps},
+          Wanted{"miss_m", landed, &into.miss_m}, Wanted{"latitude_deg", landed, &into.latitude_deg},
+          Wanted{"longitude_deg", landed, &into.longitude_deg}, Wanted{"propellant_kg", landed, &into.propellant_kg},
+          Wanted{"parachute_mach", all, &into.parachute_mach},
+          Wanted{"parachute_pressure_Pa", all, &into.parachute_pressure_Pa},
+          Wanted{"peak_deceleration_mps2", all, &into.peak_deceleration_mps2},
+          Wanted{"least_margin_s", all, &into.least_margin_s}}) {
         const auto found = spread(wanted.column, wanted.source);
         if (!found) return found.error();
         *wanted.into = *found;

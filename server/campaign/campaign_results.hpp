@@ -42,8 +42,8 @@ struct LeastMargin {
 struct Summary {
     std::string scenario;
     std::uint64_t seed = 0;
-    std::uint64_t cases = 0; ///< asked for
-    std::uint64_t kept = 0;  ///< that the file holds of them
+    std::uint64_t cases = 0;                                     ///< asked for
+    std::uint64_t kept = 0;                                      ///< that the file holds of them
     std::vector<std::pair<std::string, std::uint64_t>> outcomes; ///< most frequent first
     std::vector<EventSpread> events;                             ///< in the order of their mean time
     Spread vertical_mps, horizontal_mps, miss_m, latitude_deg, longitude_deg;

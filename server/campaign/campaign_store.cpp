@@ -152,7 +152,8 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
             add_case_.bind(13, result.parachute->mach).bind(14, result.parachute->dynamic_pressure_Pa);
         add_case_.bind_null(16).bind_null(17);
         if (result.least_margin)
-            add_case_.bind(16, result.least_margin->margin_s).bind(17, std::string_view{result.least_margin->timepoint});
+            add_case_.bind(16, result.least_margin->margin_s)
+                .bind(17, std::string_view{result.least_margin->timepoint});
         if (const auto added = add_case_.run(); !added) return added.error();
         std::int64_t place = 0;
         for (const CaseEvent& event : result.events) {

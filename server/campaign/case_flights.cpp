@@ -54,8 +54,8 @@ void CaseFlights::Flight::step() {
 
 std::unique_ptr<CaseFlights::Flight> CaseFlights::begun(std::uint64_t case_number) const {
     if (!common_)
-        return std::make_unique<Flight>(Flight{ScriptedLanding{scenario_, seed_, case_number, dictionary_},
-                                               RecordedFirings{dictionary_}, {}, 0});
+        return std::make_unique<Flight>(
+            Flight{ScriptedLanding{scenario_, seed_, case_number, dictionary_}, RecordedFirings{dictionary_}, {}, 0});
     auto flight = std::make_unique<Flight>(*common_);
     flight->landing.take_case(case_number);
     return flight;

@@ -47,11 +47,12 @@ Ticks ticks_of(const Axis& axis, int wanted) {
 }
 
 std::string svg_begin(double width, double height, std::string_view title, std::string_view subtitle) {
-    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
-                       "<style>{2}</style>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n"
-                       "<text class=\"title\" x=\"24\" y=\"34\">{3}</text>\n"
-                       "<text class=\"subtitle\" x=\"24\" y=\"56\">{4}</text>\n",
-                       width, height, style, escaped(title), escaped(subtitle));
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">\n"
+        "<style>{2}</style>\n<rect width=\"{0}\" height=\"{1}\" fill=\"#ffffff\"/>\n"
+        "<text class=\"title\" x=\"24\" y=\"34\">{3}</text>\n"
+        "<text class=\"subtitle\" x=\"24\" y=\"56\">{4}</text>\n",
+        width, height, style, escaped(title), escaped(subtitle));
 }
 
 std::string svg_end() {

@@ -23,7 +23,8 @@ Ticks ticks_of(const Axis& axis, int wanted);
 std::string svg_begin(double width, double height, std::string_view title, std::string_view subtitle);
 std::string svg_end();
 
-/// A frame with two axes at a place of the picture. Each function gives SVG text; what lies outside the frame is cut off.
+/// A frame with two axes at a place of the picture. Each function gives SVG text; what lies outside the frame is cut
+/// off.
 class Chart {
   public:
     struct Place {

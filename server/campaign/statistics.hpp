@@ -20,9 +20,9 @@ class Moments {
 
 /// An ellipse about a mean, east and north.
 struct Ellipse {
-    double east_m = 0.0, north_m = 0.0;          ///< of its centre
-    double major_m = 0.0, minor_m = 0.0;         ///< full axes
-    double azimuth_deg = 0.0;                    ///< of the major axis, from north to east, 0 … 180
+    double east_m = 0.0, north_m = 0.0;  ///< of its centre
+    double major_m = 0.0, minor_m = 0.0; ///< full axes
+    double azimuth_deg = 0.0;            ///< of the major axis, from north to east, 0 … 180
 };
 
 /// Points in a plane as they come, and the ellipse that holds `0.99` of a Gaussian with their mean and covariance: its

@@ -66,8 +66,8 @@ Result<campaign::Call> flown(const CampaignOptions& options, const simulation::S
     stop_at_interrupt();
     ProgressBar bar;
     const auto progress = campaign::run_campaign(
-        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); }, stop_asked(),
-        [&](const campaign::Progress& so_far) { bar.draw(so_far); });
+        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); },
+        stop_asked(), [&](const campaign::Progress& so_far) { bar.draw(so_far); });
     if (!progress) return progress.error();
     return campaign::Call{*progress, jobs_of(options), options.scenario, file.string()};
 }

@@ -247,13 +247,12 @@ TEST_CASE("a campaign that is asked to stop keeps what is flown and can go on", 
         auto store = CampaignStore::open(folder / "a.db", identity);
         REQUIRE(store);
         std::atomic<bool> stop{false};
-        const auto progress = run_campaign(
-            *store, 1000, 2,
-            [&](std::uint64_t number) {
-                if (number == 20) stop = true;
-                return made_up(number);
-            },
-            stop, {});
+        const auto progress = run_campaign(*store, 1000, 2,
+                                           [&](std::uint64_t number) {
+                                               if (number == 20) stop = true;
+                                               return made_up(number);
+                                           },
+                                           stop, {});
         REQUIRE(progress);
         CHECK(progress->flown >= 19);
         CHECK(progress->flown < 40);
@@ -336,8 +335,8 @@ TEST_CASE("kill -9 loses nothing that was committed and repeats nothing", "[camp
     if (program() == nullptr) return;
     const test::TemporaryFolder folder;
     const auto file = folder / "killed.db", out = folder / "out";
-    std::vector<std::string> arguments{"--scenario", light_scenario(folder), "--cases",   "12",         "--jobs",
-                                       "1",          "--json",               "--results", file.string()};
+    std::vector<std::string> arguments{"--scenario", light_scenario(folder), "--cases", "12", "--jobs", "1", "--json",
+                                       "--results",  file.string()};
     const pid_t child = start(program(), arguments, out);
     std::int64_t seen = 0;
     for (int i = 0; i < 3000 && seen < 1; ++i) {
@@ -442,7 +441,8 @@ TEST_CASE("plots hold a dot a case and stay within their frames", "[campaign]") 
     const auto summary = results->summary();
     REQUIRE(summary);
     REQUIRE(write_plots(*results, *summary, folder / "plots"));
-    for (const auto& [name, dots] : {std::pair{"touchdown", 80}, std::pair{"parachute", 80}, std::pair{"touchdown_speed", 0}}) {
+    for (const auto& [name, dots] :
+         {std::pair{"touchdown", 80}, std::pair{"parachute", 80}, std::pair{"touchdown_speed", 0}}) {
         std::ifstream stream{folder / "plots" / (std::string{name} + ".svg")};
         const std::string text{std::istreambuf_iterator<char>{stream}, {}};
         INFO(name);
