@@ -94,6 +94,10 @@ void Computer::replace_gnc(const gnc::Output& told) {
     state_->edl.replace_gnc(told);
 }
 
+void Computer::shift_navigation(const NavigationShift& by) {
+    state_->edl.shift_navigation(by);
+}
+
 Computer::Counters Computer::counters() const {
     return {state_->sync.cycles(), state_->sync.overruns(), state_->mailbox_overflows, state_->unexpected_messages,
             state_->load.resets};

@@ -46,6 +46,9 @@ class Computer {
     const gnc::Configuration& gnc_configuration() const;
     void replace_gnc(const gnc::Output& told);
 
+    /// A case of a campaign begins: what this computer's navigation believes is moved.
+    void shift_navigation(const NavigationShift& by);
+
     /// What it holds, for faults that are put in from outside (flight/computer_state.hpp).
     ComputerState& state() { return *state_; }
 

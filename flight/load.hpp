@@ -55,4 +55,13 @@ struct Load {
     EntryReference entry_reference;
 };
 
+/// How much what navigation believes is moved: a case of a campaign begins, as if it had been so all along. Put in from
+/// outside; nothing on board asks for it.
+struct NavigationShift {
+    std::array<double, 3> p_MoB_M_m{};
+    std::array<double, 3> v_MB_M_mps{};
+    std::array<double, 4> q_BB{1, 0, 0, 0};       ///< after the attitude, in B
+    std::array<double, 3> accelerometer_bias_mps2{};  ///< in B: what it would have learnt of it in vacuum
+};
+
 }  // namespace aeolis::flight

@@ -38,8 +38,12 @@ Quaternion cruise_attitude(double before_entry_s) {
 }
 
 InitialState initial_state(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number) {
+    return state_before_entry(scenario, to_tick(scenario.start_before_entry_s), seed, case_number);
+}
+
+InitialState state_before_entry(const Scenario& scenario, double before_entry_s, std::uint64_t seed,
+                                std::uint64_t case_number) {
     const PointMass entry = delivered(scenario, Random{seed, case_number, Stream::delivery});
-    const double before_entry_s = to_tick(scenario.start_before_entry_s);
 
     InitialState initial;
     initial.start = scenario.entry_sclk - before_entry_s;

@@ -20,6 +20,9 @@ struct InitialState {
     Sclk start;
 };
 InitialState initial_state(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
+/// The same at another moment than the start, a multiple of 1/64 s.
+InitialState state_before_entry(const Scenario& scenario, double before_entry_s, std::uint64_t seed,
+                                std::uint64_t case_number);
 
 /// Attitude in late cruise: z of B away from Earth, as the antenna of a spinning spacecraft needs it; it gives the
 /// published angle to the velocity within a degree.

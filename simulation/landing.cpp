@@ -71,6 +71,24 @@ struct LinkTeller {
 
 } // namespace
 
+const char* name_of(Outcome outcome) {
+    switch (outcome) {
+    case Outcome::running:
+        return "running";
+    case Outcome::touchdown:
+        return "touchdown";
+    case Outcome::impact:
+        return "impact";
+    case Outcome::lost:
+        return "lost";
+    case Outcome::not_commanded:
+        return "not_commanded";
+    case Outcome::timeout:
+        return "timeout";
+    }
+    return "running";
+}
+
 struct Landing::State {
     Scenario scenario;
     std::vector<EventReportName> reports;
@@ -96,18 +114,28 @@ struct Landing::State {
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
     bool computer_on = true;
+    std::uint64_t seed, case_number;
+    bool dispersed;
+    std::optional<ParachuteReport> parachute;
     CycleReport report;
 
-    State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number, std::vector<EventReportName> names)
-        : scenario(s), reports(std::move(names)), world(s, seed, case_number), computers(load_for(s), world.sclk()),
-          uhf(s.radio, Random{seed, case_number, Stream::uhf}),
-          x_band(s.radio, Random{seed, case_number, Stream::x_band}), relay(s.radio.relay_rate_bps),
-          light_time_us(microseconds(s.radio.light_time_s)) {
+    State(const Scenario& s, std::uint64_t seed_in, std::uint64_t case_number_in, std::vector<EventReportName> names)
+        : scenario(s), reports(std::move(names)), world(s, seed_in, case_number_in),
+          computers(load_for(s), world.sclk()), uhf(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::uhf}),
+          x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
+          relay(s.radio.relay_rate_bps),
+          light_time_us(microseconds(s.radio.light_time_s)), seed(seed_in), case_number(case_number_in),
+          dispersed(!disperses_later(s)) {
         computer_on = world.outcome() == Outcome::running;
         if (s.test_venue == TestVenue::gnc_alone) gnc_alone.emplace(load_for(s), world.solution(), world.sclk());
         if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load_for(s));
     }
 
+    static std::uint64_t links_case(const Scenario& s, std::uint64_t case_number) {
+        return disperses_later(s) ? 0 : case_number;
+    }
+
+    void disperse();
     void inject_resets() {
         for (const ComputerReset& reset : scenario.computer_resets)
             if (scenario.entry_sclk - world.sclk() == reset.before_entry_s) computers.reset_prime(world.sclk());
@@ -125,6 +153,7 @@ struct Landing::State {
     void radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
+    void note_parachute();
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us);
     bool relaying() const;
@@ -134,6 +163,14 @@ struct Landing::State {
 void Landing::State::tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us) {
     const Ert ert{at_us + light_time_us};
     if (auto change = teller.change(up, reason, ert)) links.send(ert.microseconds, std::move(*change));
+}
+
+void Landing::State::disperse() {
+    if (dispersed || world.sclk() < scenario.entry_sclk - *scenario.disperse_before_entry_s) return;
+    dispersed = true;
+    const flight::NavigationShift shift = world.disperse(seed, case_number);
+    computers.shift_navigation(shift);
+    if (gnc_alone) gnc_alone->shift_navigation(shift);
 }
 
 void Landing::State::fly() {
@@ -149,6 +186,7 @@ void Landing::State::fly() {
 }
 
 void Landing::State::fly_tick(bool skipped) {
+    disperse();
     const std::int64_t cycle_start_us = now_us();
     uplinks.arrive(cycle_start_us,
                    [&](std::int64_t, const std::vector<std::uint8_t>& packet) { world.receive(packet); });
@@ -164,6 +202,7 @@ void Landing::State::fly_tick(bool skipped) {
     else
         world.advance_uncommanded();
     report.events.insert(report.events.end(), world.events().begin(), world.events().end());
+    note_parachute();
 
     const bool landed = world.outcome() == Outcome::touchdown;
     const bool over = world.outcome() != Outcome::running;
@@ -231,6 +270,14 @@ void Landing::State::relay_recording(std::int64_t cycle_start_us) {
     tell(relay_told, !complete, complete ? "recording complete" : "nominal", cycle_start_us);
 }
 
+void Landing::State::note_parachute() {
+    const bool deployed = std::ranges::any_of(
+        world.events(), [](const TruthEvent& event) { return event.name == "parachute_deploy"; });
+    if (!deployed || parachute) return;
+    const World::Inspection seen = world.inspect();
+    parachute = {seen.mach, seen.dynamic_pressure_Pa};
+}
+
 void Landing::State::read_event_reports() {
     if (reports.empty()) return;
     std::span<const std::uint8_t> recorded = report.recorded;
@@ -290,6 +337,14 @@ const CycleReport& Landing::step() {
     return s.report;
 }
 
+bool Landing::dispersed() const {
+    return state_->dispersed;
+}
+void Landing::take_case(std::uint64_t case_number) {
+    AEOLIS_CHECK(!state_->dispersed);
+    state_->case_number = case_number;
+}
+
 void Landing::uplink(std::span<const std::uint8_t> packet) {
     State& s = *state_;
     s.uplinks.send(s.now_us() + s.light_time_us, {packet.begin(), packet.end()});
@@ -341,6 +396,12 @@ std::optional<TouchdownReport> Landing::touchdown() const {
 }
 double Landing::peak_deceleration_mps2() const {
     return state_->world.peak_deceleration_mps2();
+}
+std::optional<ParachuteReport> Landing::parachute() const {
+    return state_->parachute;
+}
+double Landing::propellant_kg() const {
+    return state_->world.inspect().propellant_kg;
 }
 flight::Computer::Counters Landing::counters() const {
     return state_->computers.counters();

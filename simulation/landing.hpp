@@ -79,6 +79,8 @@ struct TruthState {
 };
 
 enum class Outcome : std::uint8_t { running, touchdown, impact, lost, not_commanded, timeout };
+/// "running", "touchdown", …
+const char* name_of(Outcome outcome);
 
 struct TouchdownReport {
     double vertical_mps = 0.0, horizontal_mps = 0.0, miss_m = 0.0, latitude_deg = 0.0, longitude_deg = 0.0;
@@ -108,10 +110,16 @@ struct EventReportName {
     std::string name; ///< as in decided_on_board
 };
 
+/// The air that the parachute opened into.
+struct ParachuteReport {
+    double mach = 0.0, dynamic_pressure_Pa = 0.0;
+};
+
 class Landing {
   public:
     /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the events
-    /// decided on board are missing from the truth's.
+    /// decided on board are missing from the truth's. When the scenario has its dispersions drawn later than at the
+    /// start, up to that tick nothing depends on the case: not the links' fortune either, which is case 0's throughout.
     Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0,
             std::vector<EventReportName> reports = {});
     Landing(const Landing&);
@@ -122,6 +130,11 @@ class Landing {
 
     /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known and the last packet has arrived, finished() is true.
     const CycleReport& step();
+
+    /// Whether the dispersions were drawn: from the start, or since the tick at which the scenario has them drawn.
+    bool dispersed() const;
+    /// It will be this case's flight. Only while it has not been dispersed.
+    void take_case(std::uint64_t case_number);
 
     /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
     void uplink(std::span<const std::uint8_t> packet);
@@ -144,6 +157,8 @@ class Landing {
     bool finished() const; ///< outcome known, links empty, recording down
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
+    std::optional<ParachuteReport> parachute() const; ///< at deployment
+    double propellant_kg() const;                     ///< left in the vehicle's tanks
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
     double relay_progress() const;                   ///< 0 … 1 of the recording that has come down

@@ -100,6 +100,16 @@ void check_density_scale(const std::vector<DensityScale>& scales, std::vector<st
     }
 }
 
+void check_dispersion_moment(const Scenario& scenario, std::vector<std::string>& found) {
+    if (!scenario.disperse_before_entry_s) return;
+    const double before_entry_s = *scenario.disperse_before_entry_s;
+    const std::string field = "disperse_before_entry_s: " + number(before_entry_s);
+    if (!(before_entry_s >= 0.0 && before_entry_s <= scenario.start_before_entry_s))
+        found.push_back(field + " is not between the start and entry");
+    else if (!is_multiple_of_tick(before_entry_s))
+        found.push_back(field + " is not a multiple of 1/64 s");
+}
+
 void check_commands(const Scenario& scenario, std::vector<std::string>& found) {
     for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
         const ScriptedCommand& command = scenario.commands[i];
@@ -198,6 +208,15 @@ const char* name_of(TestVenue venue) {
     return "flight_software";
 }
 
+bool disperses_later(const Scenario& scenario) {
+    return scenario.disperse_before_entry_s && *scenario.disperse_before_entry_s < scenario.start_before_entry_s;
+}
+
+Scenario undispersed(Scenario scenario) {
+    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    return scenario;
+}
+
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
     // Not within, rather than outside: a value that is no number is neither.
@@ -217,6 +236,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
                         " is above the speed at which the blackout starts");
     check_masses(scenario.masses, found);
     check_density_scale(scenario.density_scale, found);
+    check_dispersion_moment(scenario, found);
     check_commands(scenario, found);
     check_system_faults(scenario, found);
     check_device_faults(scenario, found);

@@ -126,6 +126,8 @@ struct Scenario {
     double start_before_entry_s = 1200.0;
     double end_after_touchdown_s = 30.0;
     double timeout_after_entry_s = 900.0;
+    /// When the dispersions are drawn; none: at the start. Until then everything flies as if there were none.
+    std::optional<double> disperse_before_entry_s;
     EntryState entry;
     Target target;
     Masses masses;
@@ -146,6 +148,11 @@ struct Scenario {
     std::vector<ComputerReset> computer_resets;
     double bus_message_error_fraction = 1.0e-4; ///< of the messages on the buses, each time they are sent. Ours
 };
+
+/// Whether the dispersions are drawn later than at the start: all cases then have the flight up to there in common.
+bool disperses_later(const Scenario& scenario);
+/// The same with every seeded error of `dispersions` switched off.
+Scenario undispersed(Scenario scenario);
 
 /// Empty when the scenario is possible; else "entry.speed_mps: -3 is outside 1000 … 20000", one line a field.
 std::vector<std::string> impossible_values(const Scenario& scenario);

@@ -258,7 +258,10 @@ void World::State::watch() {
 }
 
 World::World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)
-    : state_(std::make_unique<State>(scenario, seed, case_number)) {}
+    : state_(disperses_later(scenario) ? std::make_unique<State>(undispersed(scenario), seed, 0)
+                                       : std::make_unique<State>(scenario, seed, case_number)) {
+    state_->scenario.dispersions = scenario.dispersions;
+}
 World::World(const World& other) : state_(std::make_unique<State>(*other.state_)) {}
 World& World::operator=(const World& other) {
     if (this != &other) state_ = std::make_unique<State>(*other.state_);
@@ -267,6 +270,35 @@ World& World::operator=(const World& other) {
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
+
+flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_number) {
+    State& s = *state_;
+    const double before_entry_s = s.scenario.entry_sclk - s.sclk();
+    const PointMass nominal = state_before_entry(undispersed(s.scenario), before_entry_s, seed, 0).truth;
+    const InitialState drawn = state_before_entry(s.scenario, before_entry_s, seed, case_number);
+    const auto shift = [](const PointMass& to, const PointMass& from) {
+        return PointMass{to.p_MoB_M - from.p_MoB_M, to.v_MB_M - from.v_MB_M};
+    };
+    // What the flight up to here has done beside falling freely is kept.
+    const PointMass flown = shift(s.vehicle.at(), nominal);
+    const PointMass believed{vector3(drawn.solution.p_MoB_M_m), vector3(drawn.solution.v_MB_M_mps)};
+    const PointMass learnt = shift(believed, nominal);
+    s.vehicle.disperse(s.scenario, {drawn.truth.p_MoB_M + flown.p_MoB_M, drawn.truth.v_MB_M + flown.v_MB_M}, seed,
+                       case_number);
+    s.initial.solution = drawn.solution;
+    s.initial.solution.p_MoB_M_m = array3(believed.p_MoB_M + flown.p_MoB_M);
+    s.initial.solution.v_MB_M_mps = array3(believed.v_MB_M + flown.v_MB_M);
+
+    const Dispersions& errors = s.scenario.dispersions;
+    s.imus[0].disperse(errors, {seed, case_number, Stream::imu});
+    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b});
+    s.radars[0] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar}};
+    s.radars[1] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar_b}};
+    s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
+    s.buses.disperse(seed, case_number);
+    return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
+            array3(s.imus[static_cast<std::size_t>(s.imu_unit)].accelerometer_bias_mps2())};
+}
 
 flight::DeviceInputs& World::sense() {
     State& s = *state_;

@@ -2,6 +2,7 @@
 
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
+#include "flight/load.hpp"
 #include "simulation/buses/bus.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/scenario.hpp"
@@ -32,13 +33,20 @@ namespace aeolis::simulation {
 /// Copying a world is a fork: two copies fed the same outputs stay bit-identical.
 class World {
   public:
-    /// `case_number` selects an independent draw of all dispersions under the same seed.
+    /// `case_number` selects an independent draw of all dispersions under the same seed. When the scenario has them
+    /// drawn later, whoever flies this calls disperse() then; until that nothing of the case shows.
     World(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0);
     World(const World&);
     World& operator=(const World&);
     World(World&&) noexcept;
     World& operator=(World&&) noexcept;
     ~World();
+
+    /// Draws all dispersions now, for a scenario in which they are drawn later than at the start. The truth moves by
+    /// the delivery error and ground's solution with it and by the knowledge error, so that at entry both are spread as
+    /// if they had been drawn at the start. Returns how much the navigation on board must move to know what ground
+    /// knows, and of its instruments what it would have learnt.
+    flight::NavigationShift disperse(std::uint64_t seed, std::uint64_t case_number);
 
     /// What reaches the computer with the tick that is now. Once for each tick; valid until the next call.
     /// The vehicle's computers add what they tell each other.

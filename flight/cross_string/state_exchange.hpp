@@ -70,10 +70,11 @@ class StateExchange {
             ok_ = false;
             return;
         }
+        // -fno-builtin would make each of these a call; some hundred a cycle.
         if constexpr (writing)
-            std::memcpy(octets_.data() + at_, &value, sizeof value);
+            __builtin_memcpy(octets_.data() + at_, &value, sizeof value);
         else
-            std::memcpy(&value, octets_.data() + at_, sizeof value);
+            __builtin_memcpy(&value, octets_.data() + at_, sizeof value);
         at_ += sizeof value;
     }
 

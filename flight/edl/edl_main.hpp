@@ -53,6 +53,8 @@ class EdlMain {
     void replace_gnc(const gnc::Output& told) { instead_of_gnc_ = told; }
     const gnc::Configuration& configuration() const { return configuration_; }
 
+    void shift_navigation(const NavigationShift& by) { gnc_.shift_navigation(by); }
+
     /// Whether this computer leaves the landing to the other one.
     bool stands_by() const { return activity_ != Activity::flies; }
 

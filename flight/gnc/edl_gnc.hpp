@@ -171,6 +171,9 @@ class EdlGnc {
     /// Exactly once in each 64 Hz cycle.
     void cycle(const DeviceInputs& in, const Configuration& configuration, Output& out);
 
+    /// What it believes, moved from outside (a case of a campaign).
+    void shift_navigation(const NavigationShift& by) { strapdown_.shift(by); }
+
     /// Navigation alone, over a cycle that another computer may have missed.
     void catch_up(std::span<const ImuSample> imu, Sclk now) { navigate(imu, now); }
 

@@ -32,6 +32,18 @@ struct RehearseOptions {
 };
 int rehearse(const RehearseOptions& options);
 
+struct CampaignOptions {
+    SharedOptions shared;
+    std::string scenario;
+    std::uint64_t cases = 0, seed = 1;
+    unsigned jobs = 0;                            ///< 0: one a processor
+    std::optional<std::filesystem::path> results; ///< else run-data/campaign-SCENARIO-SEED.db
+    std::optional<std::filesystem::path> plots;   ///< a directory
+    bool json = false;
+};
+/// 0 when all cases are flown and each ended in touchdown.
+int run_campaign(const CampaignOptions& options);
+
 struct ModulesOptions {
     SharedOptions shared;
     std::string scenario = "nominal_auto";

@@ -17,12 +17,14 @@ struct Later {
     const char* text;
 };
 constexpr std::array later_commands{
-    Later{"campaign", "dispersed landings, statistics, ellipse"},
     Later{"decode", "any mission's packets by its XTCE"},
     Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
     Later{"export", "recorded data out"},
     Later{"archive", "verify, rebuild, prune, vacuum, backup"},
 };
+
+constexpr std::uint64_t campaign_cases_max = 10'000'000; // ours: a month on many processors
+constexpr unsigned campaign_jobs_max = 256;              // ours: each holds a landing
 
 void add_shared(CLI::App& command, SharedOptions& shared) {
     command.add_option("--dictionary", shared.dictionary, "the mission's words")->capture_default_str();
@@ -97,6 +99,29 @@ int main(int argc, char** argv) {
     reference->add_option("--scenario", referring.scenario, "a file, or the name of one that ships")->required();
     add_shared(*reference, referring.shared);
     reference->callback([&] { exit_code = entry_reference(referring); });
+    CampaignOptions dispersing;
+    dispersing.shared = serving.shared;
+    auto* campaign_command = app.add_subcommand(
+        "campaign", "dispersed landings and what they come to; goes on where an earlier call ended; 1 when a case did "
+                    "not end in touchdown");
+    campaign_command->add_option("--scenario", dispersing.scenario, "a file, or the name of one that ships")
+        ->required();
+    campaign_command->add_option("--cases", dispersing.cases, "cases 1 … N, each what rehearse --case flies")
+        ->required()
+        ->check(whole_number())
+        ->check(CLI::Range(std::uint64_t{1}, campaign_cases_max));
+    campaign_command->add_option("--seed", dispersing.seed, "of the errors")
+        ->check(whole_number())
+        ->capture_default_str();
+    campaign_command->add_option("--jobs", dispersing.jobs, "cases at a time; left out: one a processor")
+        ->check(whole_number())
+        ->check(CLI::Range(1U, campaign_jobs_max));
+    campaign_command->add_option("--results", dispersing.results,
+                                 "the SQLite file of the cases; left out: run-data/campaign-SCENARIO-SEED.db");
+    campaign_command->add_option("--plots", dispersing.plots, "write pictures (SVG) into this directory");
+    campaign_command->add_flag("--json", dispersing.json, "print one JSON object");
+    add_shared(*campaign_command, dispersing.shared);
+    campaign_command->callback([&] { exit_code = run_campaign(dispersing); });
 
     ModulesOptions counting;
     counting.shared = serving.shared;

@@ -37,6 +37,9 @@ class CommandGateway {
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                    std::vector<commands::NamedValue> solution);
 
+    /// Ground has another navigation solution from here on.
+    void renew_solution(std::vector<commands::NamedValue> solution) { solution_ = std::move(solution); }
+
     struct Submitted {
         v1::CommandReply reply;
         std::vector<std::uint8_t> packet; ///< to radiate now; empty when refused

@@ -3,8 +3,9 @@
 #include "aeolis/v1/run.pb.h"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
-#include "server/gateway/command_gateway.hpp"
 #include "server/rehearsal/digest.hpp"
+#include "server/rehearsal/recorded_firings.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
 #include "telemetry/product_assembler.hpp"
@@ -17,13 +18,6 @@
 #include <vector>
 
 namespace aeolis::server {
-
-/// A timepoint as the recording tells it.
-struct RecordedFiring {
-    std::string name;
-    double fired_sclk = 0.0;
-    std::string verdict;
-};
 
 struct ToneScore {
     std::uint64_t sent = 0, decoded = 0, wrong = 0, missed = 0;
@@ -46,11 +40,11 @@ class Rehearsal {
     v1::CommandReply submit(const v1::CommandRequest& request);
 
     /// Stages since the last call; their `seq` is not given yet.
-    std::vector<archive::StageRecord> take_stages();
+    std::vector<archive::StageRecord> take_stages() { return flight_.take_stages(); }
     /// Reasons for which commands of the scenario's own script were refused.
-    const std::vector<std::string>& script_refusals() const { return script_refusals_; }
+    const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
-    bool finished() const { return !broken_.empty() || landing_.finished(); }
+    bool finished() const { return !broken_.empty() || landing().finished(); }
     std::string outcome() const; ///< running, touchdown, impact, lost, not_commanded, timeout
     std::string outcome_reason() const;
     std::string digest() const { return digest_.text(); }
@@ -59,14 +53,14 @@ class Rehearsal {
     v1::Clocks clocks() const;
 
     const simulation::Scenario& scenario() const { return scenario_; }
-    const simulation::Landing& landing() const { return landing_; }
-    const CommandGateway& gateway() const { return gateway_; }
+    const simulation::Landing& landing() const { return flight_.landing(); }
+    const CommandGateway& gateway() const { return flight_.gateway(); }
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 
     // ---- the score ---------------------------------------------------------------------------------------------
     const std::vector<simulation::TruthEvent>& events() const { return events_; }
-    const std::vector<RecordedFiring>& firings() const { return firings_; }
+    const std::vector<RecordedFiring>& firings() const { return firings_.all(); }
     const ToneScore& tones() const { return tones_; }
     /// Real time against the recording: as it came down; when none comes (no touchdown), as it lies in NVM.
     telemetry::Proof proof() const;
@@ -78,32 +72,25 @@ class Rehearsal {
     }
 
   private:
-    void send_script();
     void take(const simulation::CycleReport& report);
     /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
-    void note_firings(std::span<const std::uint8_t> recorded);
     void note_product(std::span<const std::uint8_t> packet);
 
     simulation::Scenario scenario_;
     const dictionary::Dictionary& dictionary_;
     std::uint64_t seed_ = 0, case_number_ = 0;
-    simulation::Landing landing_;
+    ScriptedLanding flight_;
     std::shared_ptr<ThreadedExecutive> executive_; ///< of the venue "performance"
-    CommandGateway gateway_;
-    std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
-    std::vector<archive::StageRecord> stages_;
-    std::vector<std::string> script_refusals_;
     Digest digest_;
     std::uint64_t cycles_ = 0;
     std::string broken_; ///< the condition that failed in the simulation
 
-    const dictionary::Packet* firing_packet_ = nullptr;
     const dictionary::Packet* product_packet_ = nullptr;
     telemetry::Decommutator decommutator_;
     telemetry::Decoded decoded_;
     std::vector<simulation::TruthEvent> events_;
-    std::vector<RecordedFiring> firings_;
+    RecordedFirings firings_;
     ToneScore tones_;
     telemetry::UnitRegister units_;
     telemetry::ProductAssembler products_;

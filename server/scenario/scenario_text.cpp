@@ -230,6 +230,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (!is_multiple_of_tick(scenario.entry_sclk.seconds))
         return Error{fmt::format("entry_sclk: {} is not a multiple of 1/64 s", scenario.entry_sclk.seconds)};
     read(message, scenario_fields, scenario);
+    if (message.has_disperse_before_entry_s()) scenario.disperse_before_entry_s = message.disperse_before_entry_s();
     read(message.entry(), entry_fields, scenario.entry);
     read(message.target(), target_fields, scenario.target);
     read(message.masses(), mass_fields, scenario.masses);
@@ -278,6 +279,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     message.set_entry_scet(utc_text(scenario.entry_scet));
     message.set_entry_sclk(scenario.entry_sclk.seconds);
     write(scenario, scenario_fields, message);
+    message.set_disperse_before_entry_s(scenario.disperse_before_entry_s.value_or(scenario.start_before_entry_s));
     write(scenario.entry, entry_fields, *message.mutable_entry());
     write(scenario.target, target_fields, *message.mutable_target());
     write(scenario.masses, mass_fields, *message.mutable_masses());

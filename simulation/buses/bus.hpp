@@ -71,6 +71,9 @@ class Bus {
         return false;
     }
 
+    /// Another fortune from here on.
+    void disperse(Random random) { random_ = random; }
+
     struct Counters {
         std::uint64_t messages = 0;
         std::uint64_t repeated = 0; ///< garbled once

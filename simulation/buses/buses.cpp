@@ -22,6 +22,13 @@ Buses::Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_nu
       faults_(scenario.device_faults, scenario.entry_sclk), devices_(Random{seed, case_number, Stream::devices}),
       imu_link_(seed, case_number, Stream::imu_link) {}
 
+void Buses::disperse(std::uint64_t seed, std::uint64_t case_number) {
+    bus_64_hz_.disperse({seed, case_number, Stream::bus_64_hz});
+    bus_8_hz_.disperse({seed, case_number, Stream::bus_8_hz});
+    devices_.disperse({seed, case_number, Stream::devices});
+    imu_link_ = {seed, case_number, Stream::imu_link};
+}
+
 void Buses::take(const flight::DeviceOutputs& out) {
     commanded_ = true;
     addressed_ = out.units;

@@ -24,6 +24,9 @@ class Buses {
   public:
     Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);
 
+    /// A case of a campaign begins: errors and jitter are drawn anew, what is under way stays.
+    void disperse(std::uint64_t seed, std::uint64_t case_number);
+
     /// What the computer commands in this cycle.
     void take(const flight::DeviceOutputs& out);
     /// No computer runs the buses in this cycle: no frame begins with the next tick.

@@ -16,6 +16,9 @@ class Avionics {
   public:
     explicit Avionics(Random random) : random_(random) {}
 
+    /// Other jitter from here on.
+    void disperse(Random random) { random_ = random; }
+
     bool on(flight::SwitchId id, flight::Unit unit = flight::Unit::a) const {
         return on_[static_cast<std::size_t>(id)][static_cast<std::size_t>(unit)];
     }

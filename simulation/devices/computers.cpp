@@ -72,6 +72,11 @@ void Computers::replace_gnc(const flight::gnc::Output& told) {
         computer.replace_gnc(told);
 }
 
+void Computers::shift_navigation(const flight::NavigationShift& by) {
+    for (flight::Computer& computer : computers_)
+        computer.shift_navigation(by);
+}
+
 void Computers::choose_commander() {
     const std::size_t backup = 1 - prime();
     commander_ = out_[backup].in_command ? backup : out_[prime()].in_command ? prime() : nobody;

@@ -34,6 +34,9 @@ class Computers {
     const flight::gnc::Configuration& gnc_configuration();
     void replace_gnc(const flight::gnc::Output& told);
 
+    /// A case of a campaign begins: what both computers believe is moved.
+    void shift_navigation(const flight::NavigationShift& by);
+
     /// The commands of this cycle that go out on the buses; none when neither computer is in command.
     const flight::DeviceOutputs* commands() const { return commander_ == nobody ? nullptr : &out_[commander_]; }
     /// What the computer at `place` (0: A, 1: B) put out in this cycle.

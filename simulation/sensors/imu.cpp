@@ -20,6 +20,13 @@ Imu::Imu(const Dispersions& dispersions, Random random)
       velocity_noise_mps_(dispersions.imu_bias_mps2 * velocity_noise_by_bias_s),
       angle_noise_rad_(dispersions.gyro_bias_rps * angle_noise_by_bias_s), noise_(random) {}
 
+void Imu::disperse(const Dispersions& dispersions, Random random) {
+    Imu other{dispersions, random};
+    other.delta_v_mps_ = delta_v_mps_;
+    other.turned_ = turned_;
+    *this = other;
+}
+
 void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_start, const Quaternion& q_MB_end,
                     double step_s) {
     Quaternion middle{q_MB_start.coeffs() + (q_MB_start.dot(q_MB_end) < 0.0 ? -1.0 : 1.0) * q_MB_end.coeffs()};

@@ -16,6 +16,10 @@ class Imu {
   public:
     Imu(const Dispersions& dispersions, Random random);
 
+    /// Other errors from here on; what it has integrated of a reading stays.
+    void disperse(const Dispersions& dispersions, Random random);
+    const Vector3& accelerometer_bias_mps2() const { return accelerometer_bias_mps2_; }
+
     /// Adds what happened in a step: mean specific force in M with the attitude in its middle, and attitudes at its
     /// ends.
     void integrate(const Vector3& specific_force_M_mps2, const Quaternion& q_MB_start, const Quaternion& q_MB_end,

@@ -19,6 +19,8 @@ class StarScanner {
         return {array4(measured)};
     }
 
+    const Quaternion& error() const { return error_; }
+
   private:
     Quaternion error_;
 };

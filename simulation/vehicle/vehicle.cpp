@@ -31,6 +31,17 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       swing_direction_rad_(2.0 * std::numbers::pi * Random{seed, case_number, Stream::swing}.uniform()),
       configuration_(scenario.masses) {}
 
+void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
+    const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
+    parachute_area_m2_ = drawn.parachute_area_m2_;
+    aeroshell_factor_ = drawn.aeroshell_factor_;
+    atmosphere_ = drawn.atmosphere_;
+    wind_ = drawn.wind_;
+    body_.p_MoB_M = at.p_MoB_M;
+    body_.v_MB_M = at.v_MB_M;
+    swing_direction_rad_ = drawn.swing_direction_rad_;
+}
+
 void Vehicle::fire(flight::PyroId pyro, double now_s) {
     using flight::PyroId;
     switch (pyro) {

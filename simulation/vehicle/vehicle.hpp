@@ -25,6 +25,9 @@ class Vehicle {
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
             std::uint64_t case_number);
 
+    /// A case of a campaign begins: drag, parachute, air and wind are drawn anew, and it is where it truly is.
+    void disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number);
+
     /// What a pyro does to it. Firing one twice does nothing.
     void fire(flight::PyroId pyro, double now_s);
     /// What the drivers of thrusters, engines and bridle do from now on.

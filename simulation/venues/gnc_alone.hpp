@@ -21,6 +21,8 @@ class GncAlone {
 
     void cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out);
 
+    void shift_navigation(const flight::NavigationShift& by) { gnc_.shift_navigation(by); }
+
     const flight::gnc::Output& told() const { return told_; }
     const flight::gnc::Configuration& configuration() const { return timeline_.configuration(); }
     const flight::gnc::EdlGnc& gnc() const { return gnc_; }

@@ -65,7 +65,7 @@ TEST_CASE("a turn of another time is reported and confirmed, and nothing is flow
         f.handle(Tick{Sclk{other_s}}, entry_s - 1188);
         CHECK(f.recorder.events<evr::UNEXPECTED_MESSAGE>() == 1);
         CHECK(f.recorder.sent<Confirm>().size() == 1);
-        CHECK(f.recorder.sent<PointVehicle>().empty());
+        CHECK(f.recorder.sent<FireThrusters>().empty());
     }
 }
 

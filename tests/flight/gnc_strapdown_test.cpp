@@ -101,3 +101,15 @@ TEST_CASE("free fall keeps energy and the spin's angular momentum over an hour",
     const NavigatedState back = propagate(later, -3600.0);
     CHECK((back.p_MoB_M - state.p_MoB_M).norm() < 1.0);
 }
+
+TEST_CASE("what navigation believes is moved as a whole: place, velocity, attitude, learnt bias", "[gnc][campaign]") {
+    Strapdown strapdown;
+    const NavigatedState before = over_gale();
+    strapdown.start(before);
+    const double half_rad = 0.5e-3;
+    strapdown.shift({{1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, {std::cos(half_rad), std::sin(half_rad), 0.0, 0.0}, {1e-3, 0, 0}});
+    CHECK((strapdown.state().p_MoB_M - before.p_MoB_M - Vector3(1.0, 2.0, 3.0)).norm() < 1e-9);
+    CHECK((strapdown.state().v_MB_M - Vector3(0.1, 0.2, 0.3)).norm() < 1e-12);
+    CHECK(strapdown.state().q_MB.angularDistance(before.q_MB) == Approx(2.0 * half_rad));
+    CHECK(strapdown.bias_B_mps2().x() == 1e-3);
+}

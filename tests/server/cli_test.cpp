@@ -46,7 +46,7 @@ const char* program() {
 
 TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
     if (program() == nullptr) return;
-    const std::array<std::pair<const char*, const char*>, 10> table{{
+    const std::array<std::pair<const char*, const char*>, 12> table{{
         {"frob", "there is no command 'frob'"},
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
@@ -54,6 +54,8 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"tones --help", "comes with a later issue"},
         {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
         {"rehearse", "--scenario"},
+        {"campaign --scenario campaign", "--cases"},
+        {"campaign --scenario campaign --cases 0", "--cases: Value 0 not in range"},
         {"serve --pace 0.5", "neither 0 nor within 1 … 1000: 0.5"},
         {"serve --listen nowhere", "ADDRESS:PORT is wanted"},
         {"dictionary check /nope", "/nope"},
@@ -69,9 +71,11 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
 
 TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli]") {
     if (program() == nullptr) return;
-    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 3>{{
+    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 5>{{
              {"rehearse --scenario no_such", "no_such"},
              {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
+             {"campaign --scenario campaign --cases 2 --results /dev/null", "/dev/null"},
+             {"campaign --scenario performance --cases 2", "performance: test_venue: "},
              {"serve --listen 192.0.2.1:0 --archive /dev/null", "only loopback"},
          }}) {
         const auto ended = run(program(), arguments);

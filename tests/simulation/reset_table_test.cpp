@@ -100,18 +100,6 @@ class Resets {
     std::vector<TimepointId> fired_;
 };
 
-const char* name_of(Outcome outcome) {
-    switch (outcome) {
-    case Outcome::touchdown: return "touchdown";
-    case Outcome::impact: return "impact";
-    case Outcome::lost: return "lost";
-    case Outcome::not_commanded: return "not commanded";
-    case Outcome::timeout: return "timeout";
-    case Outcome::running: break;
-    }
-    return "running";
-}
-
 void check(const Reset& reset) {
     INFO("reset " << reset.name << ": expected " << name_of(expected(reset.at).outcome) << ", flown " << name_of(reset.outcome));
     CHECK(reset.outcome == expected(reset.at).outcome);

@@ -21,6 +21,12 @@ Quaternion small_rotation(const Vector3& angle) {
 
 } // namespace
 
+void Strapdown::shift(const NavigationShift& by) {
+    correct(to_vector(by.p_MoB_M_m), to_vector(by.v_MB_M_mps));
+    state_.q_MB = (state_.q_MB * to_quaternion(by.q_BB)).normalized();
+    bias_B_mps2_ += to_vector(by.accelerometer_bias_mps2);
+}
+
 void Strapdown::step(const Vector3& delta_angle_B, const Vector3& delta_v_B) {
     constexpr double dt = imu_period_s;
     // Over the step the frame turns by Δθ; half of it is there on average when Δv is felt.

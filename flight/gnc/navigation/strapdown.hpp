@@ -2,6 +2,7 @@
 
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/vector.hpp"
+#include "flight/load.hpp"
 #include "generated/dictionary_flight.hpp"
 
 #include <cstdint>
@@ -36,6 +37,7 @@ class Strapdown {
         state_.p_MoB_M += dp_M;
         state_.v_MB_M += dv_M;
     }
+    void shift(const NavigationShift& by);
 
     /// One increment. With `force_felt` false the specific force is taken as nil (in vacuum, where what the
     /// accelerometers tell is their bias), and the bias is learnt from it.

@@ -1,0 +1,58 @@
+// What a case of a campaign costs beside its dynamics: one thread, the same cases, the same stretch of flight.
+//
+//   case       copied at the moment of dispersion, flown to its end by all of the flight software: as `aeolis campaign`
+//   dynamics   the world alone over that stretch, flown by what stands in for the flight software in tests/simulation
+//   goal       a case at 0.4 of the rate of its dynamics; 8001 cases in 30 minutes on 2 processors
+#include "server/campaign/case_flights.hpp"
+#include "server/scenario/scenario_text.hpp"
+#include "tests/simulation/truth_pilot.hpp"
+
+#include <cstdio>
+#include <ctime>
+
+namespace {
+
+using namespace aeolis;
+
+constexpr std::uint64_t cases = 24;
+constexpr double rate_goal = 0.4;
+constexpr double case_goal_s = 30.0 * 60.0 * 2.0 / 8001.0;
+
+/// Processor time: what else the machine does does not count.
+double now_s() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+} // namespace
+
+int main() {
+    const auto scenario = server::scenario_from_file(AEOLIS_SOURCE_DIR "/simulation/scenarios/campaign.textproto");
+    const auto loaded = dictionary::load(AEOLIS_SOURCE_DIR "/dictionaries/msl");
+    if (!scenario || !loaded.dictionary) return 1;
+    const server::campaign::CaseFlights flights{*scenario, 1, *loaded.dictionary};
+    tests::TruthPilot trunk{*scenario, 1};
+    trunk.run_until(-*scenario->disperse_before_entry_s);
+
+    // In turn, so that a processor that slows down slows both alike.
+    double case_s = 0.0, dynamics_s = 0.0;
+    std::uint64_t landed = 0;
+    for (std::uint64_t number = 1; number <= cases; ++number) {
+        const double began_s = now_s();
+        landed += flights.fly(number).outcome == "touchdown" ? 1 : 0;
+        const double flown_s = now_s();
+        tests::TruthPilot pilot{trunk};
+        (void)pilot.world.disperse(1, number);
+        pilot.run();
+        case_s += flown_s - began_s;
+        dynamics_s += now_s() - flown_s;
+    }
+    const auto each = static_cast<double>(cases);
+    const double ratio = dynamics_s / case_s;
+    std::printf("%llu cases, %llu landed\n", static_cast<unsigned long long>(cases),
+                static_cast<unsigned long long>(landed));
+    std::printf("a case %.3f s, its dynamics alone %.3f s: rate %.2f of theirs, goal %.2f, ratio %.2f\n", case_s / each,
+                dynamics_s / each, ratio, rate_goal, ratio / rate_goal);
+    std::printf("8001 cases on 2 processors: %.1f min, goal 30 min, ratio %.2f\n", 8001.0 * case_s / each / 2.0 / 60.0,
+                case_s / each / case_goal_s);
+    return ratio >= rate_goal && case_s / each <= case_goal_s ? 0 : 1;
+}

@@ -1,0 +1,111 @@
+#include "server/campaign/campaign.hpp"
+
+#include "common/check.hpp"
+#include "server/rehearsal/bounded_queue.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+namespace aeolis::server::campaign {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto keep_at_most = std::chrono::milliseconds{500}; // not yet durable
+constexpr auto tell_every = std::chrono::milliseconds{100};
+constexpr std::size_t waiting_per_job = 2; // so that no thread waits for the one that writes
+
+CaseResult flown(const std::function<CaseResult(std::uint64_t)>& fly, std::uint64_t number) {
+    CaseResult lost;
+    lost.number = number;
+    lost.outcome = simulation::name_of(simulation::Outcome::lost);
+    try {
+        return fly(number);
+    } catch (const CheckFailed& bug) {
+        lost.reason = text_of_bug(bug);
+    } catch (const std::exception& error) {
+        lost.reason = error.what();
+    }
+    return lost;
+}
+
+/// Threads that fly the numbers they are given. Whoever owns it closes `wanted` and takes what is `done` to its end.
+class Pilots {
+  public:
+    Pilots(unsigned jobs, const std::function<CaseResult(std::uint64_t)>& fly, const std::atomic<bool>& stop)
+        : wanted(jobs * waiting_per_job), done(jobs * waiting_per_job), flying_(jobs) {
+        for (unsigned i = 0; i < jobs; ++i)
+            threads_.emplace_back([this, &fly, &stop] {
+                while (const auto number = wanted.pop())
+                    if (stop || !done.push(flown(fly, *number))) break;
+                if (--flying_ == 0) done.close();
+            });
+    }
+    Pilots(const Pilots&) = delete;
+    Pilots& operator=(const Pilots&) = delete;
+    ~Pilots() {
+        wanted.close();
+        done.close();
+        for (auto& thread : threads_)
+            thread.join();
+    }
+
+    BoundedQueue<std::uint64_t> wanted;
+    BoundedQueue<CaseResult> done;
+
+  private:
+    std::atomic<unsigned> flying_;
+    std::vector<std::thread> threads_;
+};
+
+} // namespace
+
+Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigned jobs,
+                              const std::function<CaseResult(std::uint64_t)>& fly, const std::atomic<bool>& stop,
+                              const std::function<void(const Progress&)>& tell) {
+    const auto began = Clock::now();
+    Progress progress;
+    progress.of = cases;
+    std::vector<CaseResult> pending;
+    auto pending_since = began;
+    auto told = began;
+    std::uint64_t next = 1;
+    Pilots pilots{jobs, fly, stop};
+
+    const auto keep = [&]() -> Result<void> {
+        const auto kept = store.add(pending);
+        pending.clear();
+        return kept;
+    };
+    for (;;) {
+        while (next <= cases && !stop) {
+            const auto had = store.has(next);
+            if (!had) return had.error();
+            if (!*had && !pilots.wanted.try_push(next)) break;
+            if (*had) ++progress.done;
+            ++next;
+        }
+        if (next > cases || stop) pilots.wanted.close();
+        auto result = pilots.done.pop_until(Clock::now() + tell_every);
+        const auto now = Clock::now();
+        const bool over = !result && pilots.done.closed();
+        if (result) {
+            if (pending.empty()) pending_since = now;
+            pending.push_back(std::move(*result));
+            ++progress.done;
+            ++progress.flown;
+        }
+        if (!pending.empty() && (over || now - pending_since >= keep_at_most))
+            if (const auto kept = keep(); !kept) return kept.error();
+        progress.wall_s = std::chrono::duration<double>{now - began}.count();
+        if (tell && (over || now - told >= tell_every)) {
+            told = now;
+            tell(progress);
+        }
+        if (over) return progress;
+    }
+}
+
+} // namespace aeolis::server::campaign

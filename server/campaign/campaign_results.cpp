@@ -1,0 +1,184 @@
+#include "server/campaign/campaign_results.hpp"
+
+#include <fmt/format.h>
+
+namespace aeolis::server::campaign {
+namespace {
+
+using archive::sqlite::Database;
+using archive::sqlite::Mode;
+using archive::sqlite::Statement;
+
+constexpr const char* all = "flown";
+constexpr const char* landed = "flown WHERE outcome = 'touchdown'";
+constexpr const char* moments = "moments WHERE name = ?";
+
+/// Hands over each row; ends at the first error.
+Result<void> each_row(Statement& statement, const std::function<void(const Statement&)>& take) {
+    for (;;) {
+        const auto row = statement.step();
+        if (!row) return row.error();
+        if (!*row) return {};
+        take(statement);
+    }
+}
+
+} // namespace
+
+double Summary::touchdown_fraction() const {
+    return kept == 0 ? 0.0 : static_cast<double>(kept - failed) / static_cast<double>(kept);
+}
+
+Result<CampaignResults> CampaignResults::open(const std::filesystem::path& file, std::uint64_t cases) {
+    // Not read only: the last to close a WAL folds it into the file, and that takes the right to write.
+    auto database = Database::open(file.string(), Mode::read_write_create);
+    if (!database) return database.error();
+    const auto views = fmt::format("CREATE TEMP VIEW flown AS SELECT * FROM cases WHERE number <= {0};"
+                                   "CREATE TEMP VIEW moments AS SELECT * FROM events WHERE case_number <= {0};",
+                                   cases);
+    if (const auto made = database->execute(views.c_str()); !made) return made.error();
+    return CampaignResults{std::move(*database), cases};
+}
+
+Result<Spread> CampaignResults::spread(const char* column, const char* source, const std::string& name) {
+    const bool has_where = std::string_view{source}.find(" WHERE ") != std::string_view::npos;
+    const auto of = fmt::format("FROM {} {} {} IS NOT NULL", source, has_where ? "AND" : "WHERE", column);
+    auto count = database_.prepare(fmt::format("SELECT count(*) {}", of).c_str());
+    if (!count) return count.error();
+    auto values = database_.prepare(fmt::format("SELECT {0} {1} ORDER BY {0}", column, of).c_str());
+    if (!values) return values.error();
+    if (!name.empty()) {
+        count->bind(1, std::string_view{name});
+        values->bind(1, std::string_view{name});
+    }
+    if (const auto row = count->step(); !row) return row.error();
+    Spread spread;
+    spread.count = static_cast<std::uint64_t>(count->integer(0));
+    Moments moments_of;
+    Percentile p1{0.01, spread.count}, p50{0.5, spread.count}, p99{0.99, spread.count};
+    const auto read = each_row(*values, [&](const Statement& row) {
+        const double value = row.real(0);
+        if (moments_of.count() == 0) spread.least = value;
+        spread.most = value;
+        moments_of.add(value);
+        p1.add(value);
+        p50.add(value);
+        p99.add(value);
+    });
+    if (!read) return read.error();
+    spread.p1 = p1.value();
+    spread.p50 = p50.value();
+    spread.p99 = p99.value();
+    spread.mean = moments_of.mean();
+    spread.sigma = moments_of.deviation();
+    return spread;
+}
+
+Result<Summary> CampaignResults::summary() {
+    Summary summary;
+    summary.cases = cases_;
+    auto campaign = database_.prepare("SELECT scenario, seed FROM campaign");
+    if (!campaign) return campaign.error();
+    if (const auto row = campaign->step(); !row) return row.error();
+    summary.scenario = campaign->text(0);
+    summary.seed = static_cast<std::uint64_t>(campaign->integer(1));
+    campaign->reset();
+
+    if (const auto read = read_outcomes(summary); !read) return read.error();
+    if (const auto read = read_events(summary); !read) return read.error();
+    if (const auto read = read_spreads(summary); !read) return read.error();
+    if (const auto read = read_margin(summary); !read) return read.error();
+    PlaneMoments plane;
+    if (const auto read = each_touchdown_m([&](Point at) { plane.add(at.x, at.y); }); !read) return read.error();
+    summary.ellipse = plane.ellipse_99();
+    return summary;
+}
+
+Result<void> CampaignResults::read_outcomes(Summary& into) {
+    auto outcomes = database_.prepare("SELECT outcome, count(*) AS n FROM flown GROUP BY outcome ORDER BY n DESC");
+    if (!outcomes) return outcomes.error();
+    const auto counted = each_row(*outcomes, [&](const Statement& row) {
+        const auto count = static_cast<std::uint64_t>(row.integer(1));
+        into.outcomes.emplace_back(row.text(0), count);
+        into.kept += count;
+        if (row.text(0) != "touchdown") into.failed += count;
+    });
+    if (!counted) return counted;
+    auto failures = database_.prepare("SELECT number, outcome, reason, end_cycle FROM flown"
+                                      " WHERE outcome <> 'touchdown' ORDER BY number LIMIT ?");
+    if (!failures) return failures.error();
+    failures->bind(1, static_cast<std::int64_t>(Summary::failures_max));
+    return each_row(*failures, [&](const Statement& row) {
+        into.failures.push_back({static_cast<std::uint64_t>(row.integer(0)), std::string{row.text(1)},
+                                 std::string{row.text(2)}, static_cast<std::uint64_t>(row.integer(3))});
+    });
+}
+
+Result<void> CampaignResults::read_events(Summary& into) {
+    auto names = database_.prepare("SELECT name FROM moments GROUP BY name ORDER BY avg(e_s)");
+    if (!names) return names.error();
+    const auto read = each_row(*names, [&](const Statement& row) {
+        into.events.push_back({std::string{row.text(0)}, {}, {}, {}});
+    });
+    if (!read) return read;
+    for (EventSpread& event : into.events)
+        for (const auto& [column, spread_of] :
+             {std::pair{"e_s", &EventSpread::e_s}, std::pair{"altitude_m", &EventSpread::altitude_m},
+              std::pair{"speed_mps", &EventSpread::speed_mps}}) {
+            const auto found = spread(column, moments, event.name);
+            if (!found) return found.error();
+            event.*spread_of = *found;
+        }
+    return {};
+}
+
+Result<void> CampaignResults::read_spreads(Summary& into) {
+    struct Wanted {
+        const char* column;
+        const char* source;
+        Spread* into;
+    };
+    for (const Wanted& wanted :
+         {Wanted{"vertical_mps", landed, &into.vertical_mps}, Wanted{"horizontal_mps", landed, &into.horizontal_mps},
+          Wanted{"miss_m", landed, &into.miss_m}, Wanted{"latitude_deg", landed, &into.latitude_deg},
+          Wanted{"longitude_deg", landed, &into.longitude_deg}, Wanted{"propellant_kg", landed, &into.propellant_kg},
+          Wanted{"parachute_mach", all, &into.parachute_mach},
+          Wanted{"parachute_pressure_Pa", all, &into.parachute_pressure_Pa},
+          Wanted{"peak_deceleration_mps2", all, &into.peak_deceleration_mps2},
+          Wanted{"least_margin_s", all, &into.least_margin_s}}) {
+        const auto found = spread(wanted.column, wanted.source);
+        if (!found) return found.error();
+        *wanted.into = *found;
+    }
+    return {};
+}
+
+Result<void> CampaignResults::read_margin(Summary& into) {
+    auto least = database_.prepare("SELECT least_margin_s, least_margin_timepoint, number FROM flown"
+                                   " WHERE least_margin_s IS NOT NULL ORDER BY least_margin_s, number LIMIT 1");
+    if (!least) return least.error();
+    return each_row(*least, [&](const Statement& row) {
+        into.least_margin =
+            LeastMargin{row.real(0), std::string{row.text(1)}, static_cast<std::uint64_t>(row.integer(2))};
+    });
+}
+
+Result<void> CampaignResults::each(const char* sql, const std::function<void(Point)>& take) {
+    auto points = database_.prepare(sql);
+    if (!points) return points.error();
+    return each_row(*points, [&](const Statement& row) { take({row.real(0), row.real(1)}); });
+}
+
+Result<void> CampaignResults::each_touchdown_m(const std::function<void(Point)>& take) {
+    return each("SELECT east_m, north_m FROM flown WHERE outcome = 'touchdown' ORDER BY number", take);
+}
+Result<void> CampaignResults::each_parachute(const std::function<void(Point)>& take) {
+    return each("SELECT parachute_mach, parachute_pressure_Pa FROM flown WHERE parachute_mach IS NOT NULL"
+                " ORDER BY number",
+                take);
+}
+Result<void> CampaignResults::each_touchdown_speed_mps(const std::function<void(Point)>& take) {
+    return each("SELECT vertical_mps, horizontal_mps FROM flown WHERE outcome = 'touchdown' ORDER BY number", take);
+}
+
+} // namespace aeolis::server::campaign

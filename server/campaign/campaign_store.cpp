@@ -1,0 +1,172 @@
+#include "server/campaign/campaign_store.hpp"
+
+#include <fmt/format.h>
+#include <sstream>
+
+namespace aeolis::server::campaign {
+namespace {
+
+using archive::sqlite::Database;
+using archive::sqlite::Mode;
+using archive::sqlite::Transaction;
+
+constexpr std::int64_t schema_version = 1;
+constexpr std::int64_t application_id = 0x4165436d; // "AeCm"
+
+const char* const pragmas = "PRAGMA journal_mode = WAL;"
+                            "PRAGMA synchronous = FULL;";
+
+const char* const schema =
+    "CREATE TABLE campaign (schema_version INTEGER NOT NULL, scenario TEXT NOT NULL, scenario_text TEXT NOT NULL,"
+    " seed INTEGER NOT NULL, dictionary TEXT NOT NULL, program TEXT NOT NULL) STRICT;"
+    "CREATE TABLE cases (number INTEGER PRIMARY KEY, outcome TEXT NOT NULL, reason TEXT NOT NULL,"
+    " end_cycle INTEGER NOT NULL, vertical_mps REAL, horizontal_mps REAL, miss_m REAL, latitude_deg REAL,"
+    " longitude_deg REAL, east_m REAL, north_m REAL, peak_deceleration_mps2 REAL, parachute_mach REAL,"
+    " parachute_pressure_Pa REAL, propellant_kg REAL, least_margin_s REAL, least_margin_timepoint TEXT) STRICT;"
+    "CREATE TABLE events (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
+    " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL,"
+    " PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
+    "CREATE INDEX events_by_name ON events (name);";
+
+/// The first line in which two texts differ, both versions.
+std::string difference(const std::string& before, const std::string& now) {
+    std::istringstream left{before}, right{now};
+    for (std::string a, b;;) {
+        const bool more_left = static_cast<bool>(std::getline(left, a));
+        const bool more_right = static_cast<bool>(std::getline(right, b));
+        if (!more_left) a = "nothing";
+        if (!more_right) b = "nothing";
+        if (a != b || !(more_left && more_right)) return fmt::format("'{}' there, '{}' here", a, b);
+    }
+}
+
+} // namespace
+
+Result<CampaignStore> CampaignStore::open(const std::filesystem::path& file, const Identity& identity) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
+        return Error{file.string() + ": is a directory, not a campaign's results"};
+    if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), ignored);
+    auto lock = archive::WriterLock::take(file);
+    if (!lock) return lock.error();
+    auto database = Database::open(file.string(), Mode::read_write_create);
+    if (!database) return database.error();
+    CampaignStore store{std::move(*lock), std::move(*database)};
+    // Before anything is written into a file that may be somebody else's.
+    const auto id = store.database_.integer_of("PRAGMA application_id");
+    if (!id) return id.error();
+    const auto tables = store.database_.integer_of("SELECT count(*) FROM sqlite_schema");
+    if (!tables) return tables.error();
+    if (*tables != 0 && *id != application_id)
+        return Error{file.string() + ": campaign: the file holds something else than a campaign's results"};
+    if (const auto set = store.database_.execute(pragmas); !set) return set.error();
+    if (const auto known = *tables == 0 ? store.make(identity) : store.check(identity); !known) return known.error();
+    if (const auto prepared = store.prepare(); !prepared) return prepared.error();
+    return store;
+}
+
+Result<void> CampaignStore::make(const Identity& identity) {
+    auto transaction = Transaction::begin_write(database_);
+    if (!transaction) return transaction.error();
+    if (const auto made = database_.execute(schema); !made) return made.error();
+    const auto mark = fmt::format("PRAGMA application_id = {}", application_id);
+    if (const auto marked = database_.execute(mark.c_str()); !marked) return marked.error();
+    auto insert = database_.prepare("INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?)");
+    if (!insert) return insert.error();
+    insert->bind(1, schema_version)
+        .bind(2, std::string_view{identity.scenario})
+        .bind(3, std::string_view{identity.scenario_text})
+        .bind(4, static_cast<std::int64_t>(identity.seed))
+        .bind(5, std::string_view{identity.dictionary})
+        .bind(6, std::string_view{identity.program});
+    if (const auto inserted = insert->run(); !inserted) return inserted.error();
+    return transaction->commit();
+}
+
+Result<void> CampaignStore::check(const Identity& identity) {
+    const auto refused = [&](const char* field, const std::string& why) {
+        return Error{fmt::format("{}: {}: {}", database_.file(), field, why)};
+    };
+    const auto version = database_.integer_of("SELECT schema_version FROM campaign");
+    if (!version) return version.error();
+    if (*version != schema_version)
+        return refused("schema_version", fmt::format("{} there, {} here", *version, schema_version));
+    auto select = database_.prepare("SELECT scenario, scenario_text, seed, dictionary, program FROM campaign");
+    if (!select) return select.error();
+    const auto row = select->step();
+    if (!row) return row.error();
+    if (!*row) return refused("campaign", "the file says of no campaign that it is its own");
+    const auto text = [&](int column) { return std::string{select->text(column)}; };
+    if (text(0) != identity.scenario)
+        return refused("scenario", fmt::format("'{}' there, '{}' here", text(0), identity.scenario));
+    if (text(1) != identity.scenario_text) return refused("scenario", difference(text(1), identity.scenario_text));
+    if (select->integer(2) != static_cast<std::int64_t>(identity.seed))
+        return refused("seed", fmt::format("{} there, {} here", select->integer(2), identity.seed));
+    if (text(3) != identity.dictionary)
+        return refused("dictionary", fmt::format("id {} there, {} here", text(3), identity.dictionary));
+    if (text(4) != identity.program)
+        return refused("program", fmt::format("{:.16} flew these cases, {:.16} is another", text(4), identity.program));
+    return {};
+}
+
+Result<void> CampaignStore::prepare() {
+    auto has = database_.prepare("SELECT 1 FROM cases WHERE number = ?");
+    if (!has) return has.error();
+    auto add_case = database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    if (!add_case) return add_case.error();
+    auto add_event = database_.prepare("INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
+    if (!add_event) return add_event.error();
+    has_ = std::move(*has);
+    add_case_ = std::move(*add_case);
+    add_event_ = std::move(*add_event);
+    return {};
+}
+
+Result<bool> CampaignStore::has(std::uint64_t case_number) {
+    auto row = has_.bind(1, static_cast<std::int64_t>(case_number)).step();
+    has_.reset();
+    return row;
+}
+
+Result<void> CampaignStore::add(std::span<const CaseResult> results) {
+    auto transaction = Transaction::begin_write(database_);
+    if (!transaction) return transaction.error();
+    for (const CaseResult& result : results) {
+        const auto number = static_cast<std::int64_t>(result.number);
+        add_case_.bind(1, number)
+            .bind(2, std::string_view{result.outcome})
+            .bind(3, std::string_view{result.reason})
+            .bind(4, static_cast<std::int64_t>(result.end_cycle));
+        for (int column = 5; column <= 11; ++column)
+            add_case_.bind_null(column);
+        if (const auto& touchdown = result.touchdown)
+            add_case_.bind(5, touchdown->vertical_mps)
+                .bind(6, touchdown->horizontal_mps)
+                .bind(7, touchdown->miss_m)
+                .bind(8, touchdown->latitude_deg)
+                .bind(9, touchdown->longitude_deg)
+                .bind(10, result.east_m)
+                .bind(11, result.north_m);
+        add_case_.bind(12, result.peak_deceleration_mps2).bind_null(13).bind_null(14).bind(15, result.propellant_kg);
+        if (result.parachute)
+            add_case_.bind(13, result.parachute->mach).bind(14, result.parachute->dynamic_pressure_Pa);
+        add_case_.bind_null(16).bind_null(17);
+        if (result.least_margin)
+            add_case_.bind(16, result.least_margin->margin_s)
+                .bind(17, std::string_view{result.least_margin->timepoint});
+        if (const auto added = add_case_.run(); !added) return added.error();
+        std::int64_t place = 0;
+        for (const CaseEvent& event : result.events) {
+            add_event_.bind(1, number)
+                .bind(2, place++)
+                .bind(3, std::string_view{event.name})
+                .bind(4, event.e_s)
+                .bind(5, event.altitude_m)
+                .bind(6, event.speed_mps);
+            if (const auto added = add_event_.run(); !added) return added.error();
+        }
+    }
+    return transaction->commit();
+}
+
+} // namespace aeolis::server::campaign

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "server/archive/sqlite.hpp"
+#include "server/archive/writer_lock.hpp"
+#include "server/campaign/case_result.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+namespace aeolis::server::campaign {
+
+/// What the cases of one file have in common. Cases of two identities never share a file.
+struct Identity {
+    std::string scenario;      ///< its name
+    std::string scenario_text; ///< complete
+    std::uint64_t seed = 1;
+    std::string dictionary; ///< id of the words on board
+    std::string program;    ///< digest of the program that flies
+};
+
+/// The results of a campaign in a SQLite file: one row a case, one a case's event. Rows are only ever added, and a case
+/// once.
+///
+///   campaign   one row: schema version, scenario, seed, dictionary, program
+///   cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
+///   events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
+///
+/// One thread owns it, and one process at a time writes.
+class CampaignStore {
+  public:
+    /// Makes the file when there is none. An Error names the field in which the file belongs to another campaign.
+    static Result<CampaignStore> open(const std::filesystem::path& file, const Identity& identity);
+
+    Result<bool> has(std::uint64_t case_number);
+    /// All of `results` or none; durable when it returns.
+    Result<void> add(std::span<const CaseResult> results);
+
+  private:
+    CampaignStore(archive::WriterLock lock, archive::sqlite::Database database)
+        : lock_(std::move(lock)), database_(std::move(database)) {}
+    Result<void> check(const Identity& identity);
+    Result<void> make(const Identity& identity);
+    Result<void> prepare();
+
+    archive::WriterLock lock_; // released last
+    archive::sqlite::Database database_;
+    archive::sqlite::Statement has_, add_case_, add_event_;
+};
+
+} // namespace aeolis::server::campaign

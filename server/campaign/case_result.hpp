@@ -1,0 +1,37 @@
+#pragma once
+
+#include "simulation/landing.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::server::campaign {
+
+struct CaseEvent {
+    std::string name;
+    double e_s = 0.0, altitude_m = 0.0, speed_mps = 0.0;
+};
+
+/// How much later a timepoint was triggered than its minimum offset from the firing before it permits.
+struct TimelineMargin {
+    std::string timepoint;
+    double margin_s = 0.0;
+};
+
+/// What a campaign keeps of one case.
+struct CaseResult {
+    std::uint64_t number = 0;
+    std::string outcome, reason; ///< as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
+    std::uint64_t end_cycle = 0; ///< 64 Hz cycles from the landing's start to its end
+    std::optional<simulation::TouchdownReport> touchdown;
+    double east_m = 0.0, north_m = 0.0; ///< of the target, when there was a touchdown
+    std::optional<simulation::ParachuteReport> parachute;
+    double peak_deceleration_mps2 = 0.0;
+    double propellant_kg = 0.0; ///< left at the end, after fly-away
+    std::optional<TimelineMargin> least_margin;
+    std::vector<CaseEvent> events;
+};
+
+} // namespace aeolis::server::campaign

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace aeolis::server::campaign {
+
+/// Mean and deviation of numbers as they come, without keeping them. Source: [welford-1962].
+class Moments {
+  public:
+    void add(double value);
+    std::uint64_t count() const { return count_; }
+    double mean() const { return mean_; }
+    double deviation() const; ///< of the sample, by n − 1; 0 for fewer than two
+
+  private:
+    std::uint64_t count_ = 0;
+    double mean_ = 0.0, squares_ = 0.0;
+};
+
+/// An ellipse about a mean, east and north.
+struct Ellipse {
+    double east_m = 0.0, north_m = 0.0;  ///< of its centre
+    double major_m = 0.0, minor_m = 0.0; ///< full axes
+    double azimuth_deg = 0.0;            ///< of the major axis, from north to east, 0 … 180
+};
+
+/// Points in a plane as they come, and the ellipse that holds `0.99` of a Gaussian with their mean and covariance: its
+/// semi-axes are the square roots of the covariance's eigenvalues times χ²(0.99; 2) = −2 ln 0.01 = 9.210.
+class PlaneMoments {
+  public:
+    void add(double east_m, double north_m);
+    std::uint64_t count() const { return count_; }
+    Ellipse ellipse_99() const; ///< without extent for fewer than two points
+
+  private:
+    std::uint64_t count_ = 0;
+    double east_m_ = 0.0, north_m_ = 0.0;
+    double east_east_ = 0.0, east_north_ = 0.0, north_north_ = 0.0;
+};
+
+/// The value below which a fraction of an ordered sample lies, interpolated between its neighbours, for numbers that
+/// come in ascending order and are not kept. The first is at fraction 0, the last at 1 [hyndman-1996, type 7].
+class Percentile {
+  public:
+    Percentile(double fraction, std::uint64_t count);
+    void add(double value); ///< not below the one before
+    double value() const { return value_; }
+
+  private:
+    double place_;
+    std::uint64_t at_ = 0;
+    double value_ = 0.0;
+};
+
+} // namespace aeolis::server::campaign

@@ -1,0 +1,106 @@
+#include "generated/dictionary_flight.hpp"
+#include "server/campaign/campaign.hpp"
+#include "server/campaign/campaign_plots.hpp"
+#include "server/campaign/campaign_report.hpp"
+#include "server/campaign/case_flights.hpp"
+#include "server/campaign/program_digest.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/scenario/scenario_text.hpp"
+#include "server/scenario/script_check.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <fmt/format.h>
+#include <thread>
+#include <unistd.h>
+
+namespace aeolis::server {
+namespace {
+
+std::atomic<bool>& stop_asked() {
+    static std::atomic<bool> asked{false};
+    return asked;
+}
+static_assert(std::atomic<bool>::is_always_lock_free); // a signal sets it
+
+/// Ctrl-C ends the campaign after the cases that are flying; the second time it ends the program.
+void stop_at_interrupt() {
+    std::signal(SIGINT, [](int) {
+        stop_asked() = true;
+        std::signal(SIGINT, SIG_DFL);
+    });
+    std::signal(SIGTERM, [](int) { stop_asked() = true; });
+}
+
+/// A bar on a terminal, else nothing.
+class ProgressBar {
+  public:
+    ~ProgressBar() {
+        if (drawn_) fmt::print(stderr, "\r\033[K");
+    }
+    void draw(const campaign::Progress& progress) {
+        if (!on_terminal_) return;
+        fmt::print(stderr, "\r{}\033[K", campaign::progress_line(progress));
+        drawn_ = true;
+    }
+
+  private:
+    bool on_terminal_ = isatty(STDERR_FILENO) == 1;
+    bool drawn_ = false;
+};
+
+unsigned jobs_of(const CampaignOptions& options) {
+    return options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
+}
+
+Result<campaign::Call> flown(const CampaignOptions& options, const simulation::Scenario& scenario,
+                             const dictionary::Dictionary& dictionary, const std::filesystem::path& file) {
+    auto program = campaign::program_digest();
+    if (!program) return program.error();
+    auto store = campaign::CampaignStore::open(file, {scenario.name, scenario_to_text(scenario), options.seed,
+                                                      fmt::format("{}", flight::dictionary_id), std::move(*program)});
+    if (!store) return store.error();
+    const campaign::CaseFlights flights{scenario, options.seed, dictionary};
+    stop_at_interrupt();
+    ProgressBar bar;
+    const auto progress = campaign::run_campaign(
+        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); },
+        stop_asked(), [&](const campaign::Progress& so_far) { bar.draw(so_far); });
+    if (!progress) return progress.error();
+    return campaign::Call{*progress, jobs_of(options), options.scenario, file.string()};
+}
+
+} // namespace
+
+int run_campaign(const CampaignOptions& options) {
+    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
+    if (!dictionary) return failed(dictionary.error().message);
+    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
+    if (!scenario) return failed(scenario.error().message);
+    if (const auto script = check_script(*scenario, *dictionary); !script)
+        return failed(options.scenario + ": " + script.error().message);
+    if (scenario->test_venue == simulation::TestVenue::performance)
+        return failed(options.scenario + ": test_venue: performance times one landing; a campaign flies many at once");
+
+    const std::filesystem::path file =
+        options.results.value_or(fmt::format("run-data/campaign-{}-{}.db", scenario->name, options.seed));
+    const auto call = flown(options, *scenario, *dictionary, file);
+    if (!call) return failed(call.error().message);
+
+    auto results = campaign::CampaignResults::open(file, options.cases);
+    if (!results) return failed(results.error().message);
+    const auto summary = results->summary();
+    if (!summary) return failed(summary.error().message);
+    if (options.json)
+        fmt::print("{}\n", campaign::campaign_json(*summary, *call));
+    else
+        fmt::print("{}", campaign::campaign_table(*summary, *call));
+    if (options.plots)
+        if (const auto drawn = campaign::write_plots(*results, *summary, *options.plots); !drawn)
+            return failed(drawn.error().message);
+    return summary->kept == summary->cases && summary->failed == 0 ? 0 : 1;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,84 @@
+#include "server/rehearsal/scripted_landing.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <utility>
+
+namespace aeolis::server {
+namespace {
+
+/// Where the recording tells of decisions that the truth cannot see: the event of the same name in capitals.
+std::vector<simulation::EventReportName> event_reports(const dictionary::Dictionary& dictionary) {
+    std::vector<simulation::EventReportName> reports;
+    for (const std::string name : simulation::decided_on_board) {
+        std::string capitals = name;
+        std::ranges::transform(capitals, capitals.begin(),
+                               [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+        if (const dictionary::Event* event = dictionary.event(capitals))
+            reports.push_back({dictionary.packets[event->packet].apid, event->id, name});
+    }
+    return reports;
+}
+
+} // namespace
+
+ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                                 const dictionary::Dictionary& dictionary)
+    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary)),
+      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
+      script_(scenario.commands), dispersed_(landing_.dispersed()) {}
+
+const simulation::CycleReport& ScriptedLanding::step() {
+    send_script();
+    const auto& report = landing_.step();
+    ++cycles_;
+    if (landing_.dispersed() && !std::exchange(dispersed_, true))
+        gateway_.renew_solution(solution_arguments(landing_.solution()));
+    return report;
+}
+
+void ScriptedLanding::hear(const simulation::CycleReport& report) {
+    for (const auto& packet : report.packets)
+        gateway_.receive(packet.octets, packet.link == simulation::LinkId::uhf_live, packet.ert, stages_);
+    // Once a second is enough for windows of many seconds.
+    if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
+}
+
+void ScriptedLanding::send_script() {
+    while (!script_.empty()) {
+        // The first one of those that are due first: an order within one instant is the scenario's.
+        const auto next = std::ranges::max_element(script_, {}, &simulation::ScriptedCommand::send_before_entry_s);
+        if (landing_.sclk() < entry_ - next->send_before_entry_s) return;
+        const auto command = std::move(*next);
+        script_.erase(next);
+        v1::CommandRequest request;
+        request.set_command(command.command);
+        request.set_from_solution(command.from_solution);
+        for (const auto& [name, value] : command.arguments) {
+            auto& argument = *request.add_arguments();
+            argument.set_name(name);
+            argument.set_value(value);
+        }
+        // Who wrote the command into the scenario has armed and named it.
+        request.set_armed(true);
+        request.set_confirmation(command.command);
+        const auto reply = submit(request);
+        if (!reply.accepted()) script_refusals_.push_back(reply.reason());
+    }
+}
+
+v1::CommandReply ScriptedLanding::submit(const v1::CommandRequest& request) {
+    const auto submitted = gateway_.submit(request, landing_.ert_now(), stages_);
+    if (!submitted.packet.empty()) landing_.uplink(submitted.packet);
+    return submitted.reply;
+}
+
+std::string text_of_bug(const CheckFailed& bug) {
+    return fmt::format("a check failed in the simulation: {} ({}:{})", bug.what(), bug.file(), bug.line());
+}
+
+std::vector<archive::StageRecord> ScriptedLanding::take_stages() {
+    return std::exchange(stages_, {});
+}
+
+} // namespace aeolis::server

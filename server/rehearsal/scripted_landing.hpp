@@ -1,0 +1,65 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+#include "common/check.hpp"
+#include "dictionaries/dictionary.hpp"
+#include "server/archive/records.hpp"
+#include "server/gateway/command_gateway.hpp"
+#include "simulation/landing.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace aeolis::server {
+
+/// A landing with its command path, and the scenario's own script, which goes through it.
+///
+/// In       cycles to step; commands                    Out   the cycle's report; stages of commands
+/// Rate     as fast as it is called                     Memory   the recording: some megabytes
+/// A value: copy it and the landing is forked, with what ground knows of it.
+class ScriptedLanding {
+  public:
+    /// The dictionary must outlive this and its copies.
+    ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                    const dictionary::Dictionary& dictionary);
+
+    void run_prime_by(std::shared_ptr<flight::CycleRunner> runner) { landing_.run_prime_by(std::move(runner)); }
+    /// See Landing::take_case.
+    void take_case(std::uint64_t case_number) { landing_.take_case(case_number); }
+
+    /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
+    const simulation::CycleReport& step();
+    /// What of a cycle reached Earth is taken in by the command path: for answers, and for the preconditions of what is
+    /// sent later.
+    void hear(const simulation::CycleReport& report);
+
+    v1::CommandReply submit(const v1::CommandRequest& request);
+
+    bool script_sent() const { return script_.empty(); }
+    /// Stages since the last call; their `seq` is not given yet.
+    std::vector<archive::StageRecord> take_stages();
+    /// Reasons for which commands of the script were refused.
+    const std::vector<std::string>& script_refusals() const { return script_refusals_; }
+
+    const simulation::Landing& landing() const { return landing_; }
+    const CommandGateway& gateway() const { return gateway_; }
+
+  private:
+    void send_script();
+
+    Sclk entry_;
+    simulation::Landing landing_;
+    CommandGateway gateway_;
+    std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
+    std::vector<archive::StageRecord> stages_;
+    std::vector<std::string> script_refusals_;
+    bool dispersed_;
+    std::uint64_t cycles_ = 0;
+};
+
+/// What is told of a landing that a bug has ended.
+std::string text_of_bug(const CheckFailed& bug);
+
+} // namespace aeolis::server
