@@ -11,9 +11,6 @@ namespace {
 
 constexpr ParameterDefaults parameters{};
 
-/// Ours: a late turn under the real-time clock is some ticks apart, never a second.
-constexpr double tick_apart_max_s = 1.0;
-
 void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
@@ -28,7 +25,7 @@ EdlMain::EdlMain(const Load& load)
 
 void EdlMain::on(const Tick& tick, Outbox& out) {
     // GNC would fly to the tick's time, however far that is.
-    if (!(std::abs(tick.now - out.now()) <= tick_apart_max_s)) {
+    if (!(std::abs(tick.now - out.now()) <= parameters.tick_apart_max_s)) {
         out.event(evr::UNEXPECTED_MESSAGE{.module_number = static_cast<std::uint8_t>(ModuleId::edl),
                                           .message_type = static_cast<std::uint8_t>(Message{tick}.index())});
         return out.send(ModuleId::sync, Confirm{ModuleId::edl});

@@ -48,7 +48,11 @@ class ThreadedExecutive final : public flight::CycleRunner {
     /// Empty when tasks run at real-time priorities, else why not, for people.
     const std::string& notice() const { return notice_; }
     MeasuredTimes times() const;
+#if defined(__SANITIZE_THREAD__)
+    static constexpr std::size_t stack_octets = 4 * 1024 * 1024;  ///< the sanitizer keeps a thread's state on its stack
+#else
     static constexpr std::size_t stack_octets = 256 * 1024;
+#endif
 
   private:
     class Task;

@@ -1,6 +1,5 @@
 #include "flight/edl_bg/edl_bg.hpp"
 
-#include "flight/edl/solution.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
@@ -49,6 +48,7 @@ TEST_CASE("parameters that cannot be true are refused: under the ground, entry i
 
 TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle", "[edl_bg][R23]") {
     Fixture f;
+    constexpr double solution_age_max_s = ParameterDefaults{}.solution_age_max_s;
     auto old = parameters();
     old.entry_sclk = old.epoch_sclk + 2.0 * solution_age_max_s;
     f.handle(SetParametersCommand{{}, old}, old.epoch_sclk + solution_age_max_s);

@@ -11,7 +11,7 @@
 using namespace aeolis;
 using namespace aeolis::server;
 
-TEST_CASE("in the venue performance a landing reports the times of every task against its budget", "[venue][threads][R8][R36]") {
+TEST_CASE("in the venue performance a landing reports the times of every task against its budget", "[venue][R8][R36]") {
     Rehearsal rehearsal{test::shipped_scenario("performance"), 1, 0, tests::shipped_dictionary()};
     for (int tick = 0; tick < 64 * 30; ++tick)
         rehearsal.step();
