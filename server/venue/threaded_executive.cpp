@@ -28,7 +28,7 @@ std::uint64_t thread_cpu_ns() {
 
 /// How much of a painted stack is painted still. Its thread is idle, but not ended: the thread sanitizer would call that a
 /// race on what the thread's own start has written there.
-[[gnu::no_sanitize("thread")]] std::size_t untouched_octets(const std::uint8_t* stack, std::size_t octets) {
+__attribute__((no_sanitize("thread"))) std::size_t untouched_octets(const std::uint8_t* stack, std::size_t octets) {
     std::size_t untouched = 0;
     while (untouched < octets && stack[untouched] == paint)
         ++untouched;

@@ -99,6 +99,7 @@ VenueTimeline::VenueTimeline(Sclk entry) : entry_(entry) {
 
 std::vector<VenueTimeline::Line> VenueTimeline::lines() {
     std::vector<Line> all;
+    all.reserve(rows.size());
     for (const Row& row : rows)
         all.push_back({row.timepoint, row.after, row.offset_s});
     return all;

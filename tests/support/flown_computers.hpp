@@ -16,12 +16,13 @@ namespace aeolis::test {
 class FlownComputers {
   public:
     /// In pre-EDL, EDL begun.
-    explicit FlownComputers(const simulation::Scenario& scenario = tests::gale_scenario(620.0))
+    explicit FlownComputers(const simulation::Scenario& scenario = tests::gale_scenario(900.0))
         : world_(scenario, 1), prime_(simulation::load_for(scenario), world_.sclk()),
           backup_(backup_load(scenario), world_.sclk()) {
         command(set_parameters(world_.solution()));
         command(enable_second_chance());
         command(do_edl());
+        AEOLIS_CHECK(prime_.state().edl.timeline().begun());
     }
 
     void step() {
