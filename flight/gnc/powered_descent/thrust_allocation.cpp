@@ -31,7 +31,7 @@ void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engin
                            std::array<double, 8>& throttle) const {
     Eigen::Matrix<double, 8, 1> change_N = Eigen::Matrix<double, 8, 1>::Zero();
     if (engines == 4)
-        for (int i = 0; i < 4; ++i)
+        for (Eigen::Index i = 0; i < 4; ++i)
             change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
     else
         change_N = of_eight_ * torque_B_Nm;
