@@ -23,7 +23,7 @@ class Source {
     T take() {
         T value{};
         const std::size_t size = std::min(sizeof(T), rest_.size());
-        std::memcpy(&value, rest_.data(), size);
+        if (size > 0) std::memcpy(&value, rest_.data(), size); // of no octets there is no address
         rest_ = rest_.subspan(size);
         return value;
     }
