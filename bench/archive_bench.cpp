@@ -73,7 +73,10 @@ dictionary::Dictionary wideband() {
     type.kind = dictionary::ValueKind::real;
     type.encoding = dictionary::Encoding::ieee754;
     type.bits = 32;
-    dictionary::Packet packet{"Wideband", "", apid, {}, static_cast<unsigned>(tm_overhead_octets + 4 * fields), {}, {}};
+    dictionary::Packet packet;
+    packet.name = "Wideband";
+    packet.apid = apid;
+    packet.octets = static_cast<unsigned>(tm_overhead_octets + 4 * fields);
     for (std::size_t i = 0; i < fields; ++i) {
         const ChannelId id{static_cast<std::uint16_t>(i)};
         const auto name = "wideband_" + std::to_string(i);

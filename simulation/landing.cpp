@@ -30,29 +30,6 @@ std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
 }
 
-/// Its name among those in decided_on_board; none for what the truth shows by itself.
-const char* decided_by_gnc(flight::gnc::Trigger trigger) {
-    using flight::gnc::Trigger;
-    switch (trigger) {
-    case Trigger::guidance_start:
-        return "guidance_start";
-    case Trigger::heading_alignment:
-        return "heading_alignment";
-    case Trigger::radar_lock:
-        return "radar_lock";
-    case Trigger::powered_approach:
-        return "powered_approach_start";
-    case Trigger::constant_velocity:
-        return "constant_velocity_start";
-    case Trigger::constant_deceleration:
-        return "constant_deceleration_start";
-    case Trigger::touchdown:
-        return "touchdown";
-    default:
-        return nullptr;
-    }
-}
-
 /// A link's last told state: a change is sent to Earth like everything else.
 struct LinkTeller {
     LinkId link{};
@@ -96,7 +73,6 @@ struct Landing::State {
     Computers computers;
     std::optional<GncAlone> gnc_alone; // in that venue the computers stay off
     std::optional<GncStandIn> gnc_stand_in;
-    flight::DeviceOutputs gnc_alone_out;
     flight::OctetBuffer<16384> radiated; // by either computer in this cycle
     Recorder recorder;
     UhfLink uhf;
@@ -119,16 +95,17 @@ struct Landing::State {
     std::optional<ParachuteReport> parachute;
     CycleReport report;
 
-    State(const Scenario& s, std::uint64_t seed_in, std::uint64_t case_number_in, std::vector<EventReportName> names)
+    State(const Scenario& s, const flight::Load& load, std::uint64_t seed_in, std::uint64_t case_number_in,
+          std::vector<EventReportName> names)
         : scenario(s), reports(std::move(names)), world(s, seed_in, case_number_in),
-          computers(load_for(s), world.sclk()), uhf(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::uhf}),
+          computers(load, world.sclk()), uhf(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::uhf}),
           x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
           relay(s.radio.relay_rate_bps),
           light_time_us(microseconds(s.radio.light_time_s)), seed(seed_in), case_number(case_number_in),
           dispersed(!disperses_later(s)) {
         computer_on = world.outcome() == Outcome::running;
-        if (s.test_venue == TestVenue::gnc_alone) gnc_alone.emplace(load_for(s), world.solution(), world.sclk());
-        if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load_for(s));
+        if (s.test_venue == TestVenue::gnc_alone) gnc_alone.emplace(load, world.solution(), world.sclk());
+        if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load);
     }
 
     static std::uint64_t links_case(const Scenario& s, std::uint64_t case_number) {
@@ -224,10 +201,10 @@ const flight::DeviceOutputs* Landing::State::run_computers(bool skipped) {
 }
 
 const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
-    gnc_alone->cycle(world.sense(), gnc_alone_out);
+    const flight::DeviceOutputs& commands = gnc_alone->cycle(world.sense());
     for (const flight::gnc::Trigger trigger : gnc_alone->told().triggers)
         if (const char* name = decided_by_gnc(trigger)) report.events.push_back(moment(name, world.truth()));
-    return &gnc_alone_out;
+    return &commands;
 }
 
 void Landing::State::radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us) {
@@ -300,7 +277,7 @@ void Landing::State::read_event_reports() {
 
 Landing::Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                  std::vector<EventReportName> reports)
-    : state_(std::make_unique<State>(scenario, seed, case_number, std::move(reports))) {}
+    : state_(std::make_unique<State>(scenario, load_for(scenario), seed, case_number, std::move(reports))) {}
 Landing::Landing(const Landing& other) : state_(std::make_unique<State>(*other.state_)) {
     // What was reported of the last cycle points into the original.
     state_->report = {};
@@ -400,8 +377,8 @@ double Landing::peak_deceleration_mps2() const {
 std::optional<ParachuteReport> Landing::parachute() const {
     return state_->parachute;
 }
-double Landing::propellant_kg() const {
-    return state_->world.inspect().propellant_kg;
+Inspection Landing::inspect() const {
+    return state_->world.inspect();
 }
 flight::Computer::Counters Landing::counters() const {
     return state_->computers.counters();

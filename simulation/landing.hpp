@@ -78,6 +78,23 @@ struct TruthState {
     double altitude_m = 0.0, speed_mps = 0.0, sensed_mps2 = 0.0;
 };
 
+/// What a test or a report may want to see of the truth, and flight never does.
+struct Inspection {
+    double mass_kg = 0.0; ///< of all that flies on
+    double propellant_kg = 0.0;
+    double mach = 0.0;
+    double dynamic_pressure_Pa = 0.0;
+    double angle_of_attack_deg = 0.0; ///< total, against the wind
+    double bank_deg = 0.0;            ///< lift vector, positive to the right
+    double density_kgm3 = 0.0;
+    double thrust_N = 0.0;
+    double bridle_m = 0.0;
+    std::array<double, 4> q_MB{1, 0, 0, 0};
+    std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
+    bool uhf_on = false; ///< transmitter on and an antenna selected
+    bool parachute_open = false;
+};
+
 enum class Outcome : std::uint8_t { running, touchdown, impact, lost, not_commanded, timeout };
 /// "running", "touchdown", …
 const char* name_of(Outcome outcome);
@@ -158,7 +175,7 @@ class Landing {
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
     std::optional<ParachuteReport> parachute() const; ///< at deployment
-    double propellant_kg() const;                     ///< left in the vehicle's tanks
+    Inspection inspect() const;
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
     double relay_progress() const;                   ///< 0 … 1 of the recording that has come down

@@ -54,8 +54,7 @@ class World {
 
     /// The vehicle takes the commands of this cycle and flies on to the next tick.
     void advance(const flight::DeviceOutputs& out);
-    /// Flies on to the next tick while no computer runs the buses: devices keep their last command for 2 s, then go
-    /// safe.
+    /// Flies on to the next tick while no computer runs the buses: thrusters close, engines keep their throttles for 2 s.
     void advance_uncommanded();
 
     /// A telecommand packet reaches the receiver with the next tick; false when it is too long for one.
@@ -77,22 +76,7 @@ class World {
     const Bus::Counters& bus_64_hz() const;
     const Bus::Counters& bus_8_hz() const;
 
-    /// What a test or a report may want to see of the truth, and flight never does.
-    struct Inspection {
-        double mass_kg = 0.0; ///< of all that flies on
-        double propellant_kg = 0.0;
-        double mach = 0.0;
-        double dynamic_pressure_Pa = 0.0;
-        double angle_of_attack_deg = 0.0; ///< total, against the wind
-        double bank_deg = 0.0;            ///< lift vector, positive to the right
-        double density_kgm3 = 0.0;
-        double thrust_N = 0.0;
-        double bridle_m = 0.0;
-        std::array<double, 4> q_MB{1, 0, 0, 0};
-        std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
-        bool uhf_on = false; ///< transmitter on and an antenna selected
-        bool parachute_open = false;
-    };
+    using Inspection = simulation::Inspection;
     Inspection inspect() const;
 
   private:

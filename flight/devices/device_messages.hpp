@@ -151,7 +151,8 @@ struct DeviceInputs {
 /// How long each entry thruster burns in the cycle that begins when this arrives; a driver that is told nothing closes its
 /// valves. flight/devices/effectors.hpp says where they are.
 struct ThrusterCommand {
-    std::array<double, 8> on_s{};      ///< 0 … 1/64 s
+    std::array<double, 8> on_s{}; ///< 0 … 1/64 s
+    bool operator==(const ThrusterCommand&) const = default;
 };
 struct EngineCommand {
     bool ignited = false;

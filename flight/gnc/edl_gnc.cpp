@@ -21,7 +21,8 @@ constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg 
 
 } // namespace
 
-EdlGnc::EdlGnc(const Load& load) : load_(load), mass_kg_(load.powered_descent_mass_kg) {
+EdlGnc::EdlGnc(const Load& load)
+    : load_(load), mass_kg_(load.powered_descent_mass_kg), steering_(load.engine_max_thrust_N) {
     lateral_.start(1);
 }
 
@@ -263,7 +264,7 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
         // Near lift up the two sides are hardly apart: there a reversal need not have been flown out.
         const bool settled = m.bank_rad * lateral_.sign() > 0.0 || wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
-        if (lateral_.on(m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
+        if (lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
             out.bank_reversal = lateral_.reversals();
         bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
     } else if (mode() == Mode::heading_alignment) {
@@ -329,30 +330,29 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     }
 }
 
-Inertia EdlGnc::inertia(const Configuration& configuration) const {
-    const auto with = [](double mass_kg, const Gyration& radii) {
-        return Inertia{mass_kg * radii.across_m * radii.across_m, mass_kg * radii.along_z_m * radii.along_z_m};
-    };
-    if (mode() < Mode::free_fall)
-        return with(load_.entry_mass_kg,
-                    configuration.heatshield_gone ? gyration_without_heatshield : gyration_of_entry_vehicle);
-    const double carried_kg = configuration.rover_separated && mode() != Mode::flyaway ? load_.rover_mass_kg : 0.0;
-    return with(mass_kg_ - carried_kg,
-                configuration.rover_separated ? gyration_of_stage : gyration_of_stage_with_rover);
+Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines) {
+    if (mode <= Mode::free_fall || !engines.ignited) return Steers::thrusters;
+    return configuration.sky_crane_started ? Steers::four_engines : Steers::eight_engines;
 }
 
-// The engines steer once guidance throttles them; before that, and without them, the thrusters do.
+Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg) {
+    const Gyration& radii = mode < Mode::free_fall ? configuration.heatshield_gone ? gyration_without_heatshield
+                                                                                   : gyration_of_entry_vehicle
+                            : configuration.rover_separated ? gyration_of_stage
+                                                            : gyration_of_stage_with_rover;
+    return {rigid_kg * radii.across_m * radii.across_m, rigid_kg * radii.along_z_m * radii.along_z_m};
+}
+
 void EdlGnc::steer(const Configuration& configuration, Output& out) {
     const NavigatedState& state = strapdown_.state();
     const bool in_air = mode() >= Mode::range_control;
     const AttitudeState attitude{state.p_MoB_M, state.v_MB_M, state.q_MB, strapdown_.rate_B_rps(), in_air};
-    const Vector3 torque_B = control_torque(out.attitude, attitude, inertia(configuration));
-    if (mode() > Mode::free_fall && out.engines.ignited)
-        torque_allocation_.add(torque_B, configuration.sky_crane_started ? 4 : 8, load_.engine_max_thrust_N,
-                               out.engines.throttle);
-    else
-        out.thrusters = thruster_selection_.select(torque_B);
-    if (out.thrusters.on_s != ThrusterCommand{}.on_s)
+    const bool rover_hangs = configuration.rover_separated && mode() != Mode::flyaway;
+    const double rigid_kg =
+        mode() < Mode::free_fall ? load_.entry_mass_kg : mass_kg_ - (rover_hangs ? load_.rover_mass_kg : 0.0);
+    steering_.cycle(out.attitude, attitude, inertia_of(mode(), configuration, rigid_kg),
+                    steers(mode(), configuration, out.engines), out.thrusters, out.engines);
+    if (out.thrusters != ThrusterCommand{})
         pulses_felt_until_ = measured_at_ + parameters.pulse_felt_ticks * seconds_per_tick;
 }
 

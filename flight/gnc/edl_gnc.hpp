@@ -3,7 +3,7 @@
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
 #include "flight/gnc/attitude/attitude_control.hpp"
-#include "flight/gnc/attitude/thruster_selection.hpp"
+#include "flight/gnc/attitude/steering.hpp"
 #include "flight/gnc/entry/lateral_logic.hpp"
 #include "flight/gnc/entry/target_geometry.hpp"
 #include "flight/gnc/navigation/force_filter.hpp"
@@ -11,7 +11,6 @@
 #include "flight/gnc/navigation/radar_filter.hpp"
 #include "flight/gnc/navigation/strapdown.hpp"
 #include "flight/gnc/powered_descent/divert.hpp"
-#include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 #include "flight/gnc/quantities.hpp"
 #include "flight/gnc/sky_crane/rate_control.hpp"
@@ -154,6 +153,11 @@ struct Output {
     std::uint16_t radar_beams = 0; ///< of the last radar solution
 };
 
+/// What steers in a mode: the engines once guidance throttles them; before that, and without them, the thrusters.
+Steers steers(Mode mode, const Configuration& configuration, const EngineCommand& engines);
+/// Of the rigid body that is steered: the vehicle, later the stage with or without the rover on it.
+Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg);
+
 /// All of GNC's state, a value of fixed size.
 class EdlGnc {
   public:
@@ -217,7 +221,6 @@ class EdlGnc {
     void guide_descent(Sclk now, const Configuration& configuration, Output& out);
     void push(const Vector3& acceleration_M, int engines, Output& out);
     void steer(const Configuration& configuration, Output& out);
-    Inertia inertia(const Configuration& configuration) const;
     void burn(const DeviceInputs& in, const Configuration& configuration);
     void report(Output& out) const;
     double since(Sclk then) const { return measured_at_ - then; }
@@ -250,8 +253,7 @@ class EdlGnc {
 
     double mass_kg_ = 0.0; ///< on engines
     double thrust_command_N_ = 0.0;
-    ThrusterSelection thruster_selection_;
-    powered_descent::TorqueAllocation torque_allocation_;
+    Steering steering_;
     powered_descent::ApproachProfile approach_;
     powered_descent::Divert divert_;
     Vector3 divert_from_M_ = Vector3::Zero();

@@ -97,7 +97,7 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     }
     result.parachute = landing.parachute();
     result.peak_deceleration_mps2 = landing.peak_deceleration_mps2();
-    result.propellant_kg = landing.propellant_kg();
+    result.propellant_kg = landing.inspect().propellant_kg;
     result.least_margin = least_margin(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
     result.events = flight.events;
     std::ranges::sort(result.events, {}, [](const CaseEvent& event) { return std::tie(event.e_s, event.name); });

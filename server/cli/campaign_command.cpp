@@ -7,7 +7,6 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/scenario/scenario_text.hpp"
-#include "server/scenario/script_check.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -75,18 +74,15 @@ Result<campaign::Call> flown(const CampaignOptions& options, const simulation::S
 } // namespace
 
 int run_campaign(const CampaignOptions& options) {
-    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
-    if (!dictionary) return failed(dictionary.error().message);
-    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
-    if (!scenario) return failed(scenario.error().message);
-    if (const auto script = check_script(*scenario, *dictionary); !script)
-        return failed(options.scenario + ": " + script.error().message);
-    if (scenario->test_venue == simulation::TestVenue::performance)
+    const auto ready = flyable(options.shared, options.scenario);
+    if (!ready) return failed(ready.error().message);
+    const auto& [dictionary, scenario] = *ready;
+    if (scenario.test_venue == simulation::TestVenue::performance)
         return failed(options.scenario + ": test_venue: performance times one landing; a campaign flies many at once");
 
     const std::filesystem::path file =
-        options.results.value_or(fmt::format("run-data/campaign-{}-{}.db", scenario->name, options.seed));
-    const auto call = flown(options, *scenario, *dictionary, file);
+        options.results.value_or(fmt::format("run-data/campaign-{}-{}.db", scenario.name, options.seed));
+    const auto call = flown(options, scenario, dictionary, file);
     if (!call) return failed(call.error().message);
 
     auto results = campaign::CampaignResults::open(file, options.cases);

@@ -28,6 +28,7 @@ struct RehearseOptions {
     std::string scenario;
     std::uint64_t seed = 1, case_number = 0;
     std::optional<std::filesystem::path> archive;
+    std::optional<std::filesystem::path> truth; ///< 16 rows a second of what really happened, as CSV
     bool json = false;
 };
 int rehearse(const RehearseOptions& options);

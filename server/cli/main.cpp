@@ -87,6 +87,7 @@ int main(int argc, char** argv) {
         ->check(whole_number())
         ->capture_default_str();
     rehearse_command->add_option("--archive", rehearsing.archive, "store everything in this SQLite file");
+    rehearse_command->add_option("--truth", rehearsing.truth, "write what really flew, 16 rows a second, to this CSV file");
     rehearse_command->add_flag("--json", rehearsing.json, "print one JSON object");
     add_shared(*rehearse_command, rehearsing.shared);
     rehearse_command->callback([&] { exit_code = rehearse(rehearsing); });

@@ -1,7 +1,6 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/rehearsal/rehearsal.hpp"
-#include "server/scenario/script_check.hpp"
 #include "server/venue/message_flow.hpp"
 
 #include <fmt/format.h>
@@ -10,23 +9,21 @@
 namespace aeolis::server {
 
 int modules(const ModulesOptions& options) {
-    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
-    if (!dictionary) return failed(dictionary.error().message);
-    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
-    if (!scenario) return failed(scenario.error().message);
-    if (const auto script = check_script(*scenario, *dictionary); !script) return failed(options.scenario + ": " + script.error().message);
+    const auto ready = flyable(options.shared, options.scenario);
+    if (!ready) return failed(ready.error().message);
+    const auto& [dictionary, scenario] = *ready;
     const auto flow = std::make_shared<MessageFlow>();
-    Rehearsal rehearsal{*scenario, options.seed, 0, *dictionary, flow};
+    Rehearsal rehearsal{scenario, options.seed, 0, dictionary, flow};
     while (!rehearsal.finished()) {
         rehearsal.step();
         rehearsal.take_stages();
     }
     if (flow->cycles() == 0)
-        return failed(fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario->test_venue)));
+        return failed(fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario.test_venue)));
     if (rehearsal.outcome() != "touchdown")
         return failed(fmt::format("{}: the landing that is counted ended as {} {}", options.scenario, rehearsal.outcome(),
                                   rehearsal.outcome_reason()));
-    fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario->name, options.seed)));
+    fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario.name, options.seed)));
     return 0;
 }
 

@@ -4,11 +4,15 @@
 #include "server/rehearsal/pipeline_thread.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
-#include "server/scenario/script_check.hpp"
+
+#include <Eigen/Core>
 
 #include <chrono>
+#include <cmath>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
+#include <numbers>
 
 namespace aeolis::server {
 namespace {
@@ -27,8 +31,45 @@ Result<std::unique_ptr<PipelineThread>> opened_archive(const std::filesystem::pa
     return pipeline;
 }
 
+/// What really flies, a row each fourth cycle until it stands, for plots.
+class TruthFile {
+  public:
+    Result<void> open(const std::filesystem::path& file) {
+        file_ = file;
+        rows_.open(file, std::ios::binary);
+        rows_ << "e_s,altitude_m,speed_mps,flight_path_deg,latitude_deg,longitude_deg,sensed_mps2,bank_deg,angle_of_attack_deg,"
+                 "mach,dynamic_pressure_Pa,thrust_N,mass_kg\n";
+        return state();
+    }
+    void add(const simulation::Landing& landing) {
+        const simulation::TruthState truth = landing.truth();
+        if (!rows_.is_open() || landing.outcome() != simulation::Outcome::running || truth.sclk.ticks() % 4 != 0) return;
+        const simulation::Inspection seen = landing.inspect();
+        const Eigen::Vector3d p{truth.p_MoB_M_m.data()}, v{truth.v_MB_M_mps.data()};
+        constexpr double degree = std::numbers::pi / 180.0;
+        rows_ << fmt::format("{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
+                             truth.altitude_m, truth.speed_mps, std::asin(v.dot(p) / (v.norm() * p.norm())) / degree,
+                             std::asin(p.z() / p.norm()) / degree, std::atan2(p.y(), p.x()) / degree, truth.sensed_mps2,
+                             seen.bank_deg, seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N,
+                             seen.mass_kg);
+    }
+    Result<void> close() {
+        if (rows_.is_open()) rows_.close();
+        return state();
+    }
+
+  private:
+    Result<void> state() const {
+        if (rows_.fail()) return Error{file_.string() + ": cannot be written"};
+        return {};
+    }
+
+    std::filesystem::path file_;
+    std::ofstream rows_;
+};
+
 /// To the end, everything that reaches Earth into the archive.
-Result<void> fly_archived(Rehearsal& rehearsal, PipelineThread& pipeline) {
+Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread& pipeline) {
     if (const auto run = pipeline.begin(rehearsal.run_start(0.0)); !run) return run.error();
     Delivery delivery;
     const auto hand_over = [&] {
@@ -37,6 +78,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, PipelineThread& pipeline) {
     };
     while (!rehearsal.finished()) {
         delivery.add(rehearsal.step());
+        truth.add(rehearsal.landing());
         for (auto& stage : rehearsal.take_stages())
             delivery.entries.emplace_back(std::move(stage));
         if (delivery.entries.size() >= delivery_entries && !hand_over()) return Error{pipeline.fault()};
@@ -48,31 +90,31 @@ Result<void> fly_archived(Rehearsal& rehearsal, PipelineThread& pipeline) {
 } // namespace
 
 int rehearse(const RehearseOptions& options) {
-    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
-    if (!dictionary) return failed(dictionary.error().message);
-    const auto scenario = scenario_given(options.scenario, options.shared.scenarios);
-    if (!scenario) return failed(scenario.error().message);
-
-    if (const auto script = check_script(*scenario, *dictionary); !script)
-        return failed(options.scenario + ": " + script.error().message);
-
+    const auto ready = flyable(options.shared, options.scenario);
+    if (!ready) return failed(ready.error().message);
+    const auto& [dictionary, scenario] = *ready;
     std::unique_ptr<PipelineThread> pipeline;
     if (options.archive) {
-        auto opened = opened_archive(*options.archive, *dictionary);
+        auto opened = opened_archive(*options.archive, dictionary);
         if (!opened) return failed(opened.error().message);
         pipeline = std::move(*opened);
     }
+    TruthFile truth;
+    if (options.truth)
+        if (const auto opened = truth.open(*options.truth); !opened) return failed(opened.error().message);
     const auto began = std::chrono::steady_clock::now();
-    Rehearsal rehearsal{*scenario, options.seed, options.case_number, *dictionary};
+    Rehearsal rehearsal{scenario, options.seed, options.case_number, dictionary};
     if (pipeline) {
-        if (const auto flown = fly_archived(rehearsal, *pipeline); !flown) return failed(flown.error().message);
+        if (const auto flown = fly_archived(rehearsal, truth, *pipeline); !flown) return failed(flown.error().message);
     } else {
         while (!rehearsal.finished()) {
             rehearsal.step();
             rehearsal.take_stages();
+            truth.add(rehearsal.landing());
         }
     }
     const double wall_s = std::chrono::duration<double>{std::chrono::steady_clock::now() - began}.count();
+    if (const auto written = truth.close(); !written) return failed(written.error().message);
     if (options.json)
         fmt::print("{}\n", landing_json(rehearsal, wall_s));
     else

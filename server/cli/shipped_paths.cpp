@@ -3,6 +3,7 @@
 #include "generated/dictionary_flight.hpp"
 #include "server/scenario/scenario_library.hpp"
 #include "server/scenario/scenario_text.hpp"
+#include "server/scenario/script_check.hpp"
 
 #include <fmt/format.h>
 
@@ -37,6 +38,15 @@ Result<simulation::Scenario> scenario_given(const std::string& given, const std:
     std::error_code error;
     const bool is_name = given.find_first_of("/.") == std::string::npos && !std::filesystem::exists(given, error);
     return is_name ? ScenarioLibrary{scenarios}.scenario(given) : scenario_from_file(given);
+}
+
+Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario) {
+    auto dictionary = dictionary_of_flight(shared.dictionary);
+    if (!dictionary) return dictionary.error();
+    auto read = scenario_given(scenario, shared.scenarios);
+    if (!read) return read.error();
+    if (const auto script = check_script(*read, *dictionary); !script) return Error{scenario + ": " + script.error().message};
+    return Flyable{std::move(*dictionary), std::move(*read)};
 }
 
 int failed(const std::string& message, int exit_code) {

@@ -2,6 +2,7 @@
 
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "server/cli/commands.hpp"
 #include "simulation/scenario.hpp"
 
 #include <filesystem>
@@ -22,6 +23,13 @@ Result<dictionary::Dictionary> dictionary_of_flight(const std::filesystem::path&
 
 /// `given` is a file, or the name of a scenario that ships.
 Result<simulation::Scenario> scenario_given(const std::string& given, const std::filesystem::path& scenarios);
+
+/// What it takes to fly: flight's own dictionary, and a scenario whose commands that dictionary knows.
+struct Flyable {
+    dictionary::Dictionary dictionary;
+    simulation::Scenario scenario;
+};
+Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario);
 
 /// One line to stderr, "aeolis: …"; returns the exit code.
 int failed(const std::string& message, int exit_code = 1);

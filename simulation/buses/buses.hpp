@@ -13,13 +13,12 @@ namespace aeolis::simulation {
 ///
 /// The IMU hangs on neither: its samples come over a link of its own.
 ///
-/// In       what a cycle commands, each to the unit addressed in it      Out   what is done, and replies for the
-/// computer Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz
-/// with the next
-///          multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
-/// Cyclic   attitude, thrust and pay-out go out in every 64 Hz frame, and radar and engines are read in it. A driver
-/// that
-///          hears nothing keeps its last command for 2 s and then goes safe: no thrust, no torque. [facts]
+/// In       what a cycle commands, each to the unit addressed in it
+/// Out      what is done, and replies for the computer
+/// Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz with the
+///          next multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
+/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, and radar and engines are read in it. Thrusters
+///          that hear nothing close at once; engines keep their last throttles for 2 s and then go safe. [facts]
 class Buses {
   public:
     Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);

@@ -76,6 +76,7 @@ constexpr std::array<TrimRow, 12> trim{{
 }};
 
 constexpr double lift_slope_beyond_table = 0.6; // ours
+constexpr double lift_of_flight = 1.04;         // ours: what the published trajectory flew of the table's lift-to-drag, 1.01 … 1.07
 constexpr double largest_lift_angle_deg = 30.0; // ours: beyond it lift fades to nothing at 90°
 
 struct Place {
@@ -117,7 +118,7 @@ AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad)
     const Row& low = table[at.below];
     const Row& high = table[at.below + 1];
     AeroCoefficients coefficients{between(low.drag, high.drag, 1.0),
-                                  between(low.lift, high.lift, lift_slope_beyond_table)};
+                                  lift_of_flight * between(low.lift, high.lift, lift_slope_beyond_table)};
     if (angle_deg > largest_lift_angle_deg)
         coefficients.lift *= std::max(0.0, (90.0 - angle_deg) / (90.0 - largest_lift_angle_deg));
     return coefficients;
@@ -129,12 +130,13 @@ double trim_angle_rad(double mach) {
     return degree_rad * (low_deg + at.part * (trim[at.below + 1].angle_deg - low_deg));
 }
 
-double moment_slope(double mach) {
+Trim trim_at(double mach) {
     constexpr double offset_m = 0.1;
     const double angle_rad = trim_angle_rad(mach);
-    const AeroCoefficients at_trim = aeroshell_coefficients(mach, angle_rad);
-    const double axial = at_trim.drag * std::cos(angle_rad) - at_trim.lift * std::sin(angle_rad);
-    return axial * offset_m / (aeroshell_diameter_m * std::sin(angle_rad));
+    const double sine = std::sin(angle_rad);
+    const AeroCoefficients coefficients = aeroshell_coefficients(mach, angle_rad);
+    const double axial = coefficients.drag * std::cos(angle_rad) - coefficients.lift * sine;
+    return {sine, axial * offset_m / (aeroshell_diameter_m * sine)};
 }
 
 } // namespace aeolis::simulation

@@ -1,7 +1,6 @@
 #include "simulation/vehicle/vehicle.hpp"
 
 #include "simulation/entry_flight.hpp"
-#include "simulation/vehicle/aeroshell.hpp"
 #include "simulation/vehicle/parachute.hpp"
 
 namespace aeolis::simulation {
@@ -122,13 +121,13 @@ double Vehicle::moving_kg(double now_s) const {
     return configuration_.rigid_kg();
 }
 
-Wrench Vehicle::wrench(const Step& step, double fraction, const RigidBody& body) const {
+Wrench Vehicle::wrench(Step& step, double fraction, const RigidBody& body) const {
     const double now_s = step.start_s + fraction * step.length_s;
     const Vector3 push_B =
         step.thrusters.force_B + step.engines_start_B_N + fraction * (step.engines_end_B_N - step.engines_start_B_N);
     Wrench wrench{body.q_MB * push_B, step.thrusters.torque_B + step.engines_start_B_Nm +
                                           fraction * (step.engines_end_B_Nm - step.engines_start_B_Nm)};
-    add_air(now_s, body, wrench);
+    add_air(now_s, step, body, wrench);
     add_bridle(now_s, body, wrench);
     return wrench;
 }
@@ -146,7 +145,7 @@ void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) co
         wrench.force_M -= load * rover_kg * gravity(body.p_MoB_M).norm() * up;
 }
 
-void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const {
+void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const {
     const double altitude = body.p_MoB_M.norm() - ground_radius_m_;
     if (altitude > air_ends_m) return;
     const Air air = atmosphere_.at(altitude);
@@ -188,8 +187,9 @@ void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const
     // Turned back to trim, where the wind comes along x as much as the centre of mass is off the axis.
     const Vector3 wind_B = body.q_MB.conjugate() * forward;
     const double offset = configuration_.offset();
-    const double trim = offset * std::sin(trim_angle_rad(mach)) + (1.0 - offset) * std::sin(balanced_trim_angle_rad);
-    const double stiffness_Nm = area_N * aeroshell_diameter_m * moment_slope(mach);
+    if (!step.trim) step.trim = trim_at(mach);
+    const double trim = offset * step.trim->sine + (1.0 - offset) * std::sin(balanced_trim_angle_rad);
+    const double stiffness_Nm = area_N * aeroshell_diameter_m * step.trim->moment_slope;
     const double damping_Nms = area_N * aeroshell_diameter_m * aeroshell_diameter_m / (2.0 * speed_mps);
     const Vector3& w = body.rate_B_rps;
     wrench.torque_B += Vector3{-stiffness_Nm * wind_B.y() - damping_Nms * pitch_damping * w.x(),

@@ -5,6 +5,7 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/mars/wind.hpp"
 #include "simulation/scenario.hpp"
+#include "simulation/vehicle/aeroshell.hpp"
 #include "simulation/vehicle/bridle.hpp"
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
@@ -64,10 +65,11 @@ class Vehicle {
         double start_s = 0.0, length_s = 0.0;
         Thrusters::Push thrusters;
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
+        std::optional<Trim> trim; ///< by the Mach number at its start: it changes slowly
     };
     double moving_kg(double now_s) const;
-    Wrench wrench(const Step& step, double fraction, const RigidBody& body) const;
-    void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
+    Wrench wrench(Step& step, double fraction, const RigidBody& body) const;
+    void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
     void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
     double ground_radius_m_;

@@ -24,9 +24,9 @@ GncAlone::GncAlone(const flight::Load& load, const NavigationSolution& solution,
     gnc_.set_solution(solution_of(solution), now);
 }
 
-void GncAlone::cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out) {
-    out.begin_cycle();
-    timeline_.act(in.now, out);
+const flight::DeviceOutputs& GncAlone::cycle(const flight::DeviceInputs& in) {
+    out_.begin_cycle();
+    timeline_.act(in.now, out_);
     gnc_.cycle(in, configuration(), told_);
     if (configuration().radar_on) {
         // As in flight: the beams meet the attitude of their own tick, and the solution waits for the next cycle.
@@ -36,9 +36,32 @@ void GncAlone::cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out)
             if (const auto solution = batch_.solve(in.now)) gnc_.on(*solution);
     }
     timeline_.take(told_, in.now);
-    timeline_.act(in.now, out);
-    out.thrusters = told_.thrusters;
-    out.engines = told_.engines;
+    timeline_.act(in.now, out_);
+    out_.thrusters = told_.thrusters;
+    out_.engines = told_.engines;
+    return out_;
+}
+
+const char* decided_by_gnc(flight::gnc::Trigger trigger) {
+    using flight::gnc::Trigger;
+    switch (trigger) {
+    case Trigger::guidance_start:
+        return "guidance_start";
+    case Trigger::heading_alignment:
+        return "heading_alignment";
+    case Trigger::radar_lock:
+        return "radar_lock";
+    case Trigger::powered_approach:
+        return "powered_approach_start";
+    case Trigger::constant_velocity:
+        return "constant_velocity_start";
+    case Trigger::constant_deceleration:
+        return "constant_deceleration_start";
+    case Trigger::touchdown:
+        return "touchdown";
+    default:
+        return nullptr;
+    }
 }
 
 } // namespace aeolis::simulation

@@ -19,7 +19,8 @@ class GncAlone {
   public:
     GncAlone(const flight::Load& load, const NavigationSolution& solution, Sclk now);
 
-    void cycle(const flight::DeviceInputs& in, flight::DeviceOutputs& out);
+    /// What goes out to the devices, until the next.
+    const flight::DeviceOutputs& cycle(const flight::DeviceInputs& in);
 
     void shift_navigation(const flight::NavigationShift& by) { gnc_.shift_navigation(by); }
 
@@ -31,7 +32,11 @@ class GncAlone {
     flight::gnc::EdlGnc gnc_;
     flight::gnc::RadarBatch batch_;
     flight::gnc::Output told_;
+    flight::DeviceOutputs out_;
     VenueTimeline timeline_;
 };
+
+/// The name of what GNC decided, among those in decided_on_board; none for what the truth shows by itself.
+const char* decided_by_gnc(flight::gnc::Trigger trigger);
 
 } // namespace aeolis::simulation

@@ -1,6 +1,6 @@
 #include "simulation/venues/gnc_stand_in.hpp"
 
-#include "flight/devices/effectors.hpp"
+#include "flight/gnc/mars.hpp"
 #include "simulation/mars/mars.hpp"
 #include "simulation/vectors.hpp"
 
@@ -18,18 +18,14 @@ using flight::gnc::Mode;
 using flight::gnc::Trigger;
 using Attitude = flight::gnc::AttitudeCommand::Mode;
 
-constexpr double guidance_start_mps2 = 1.96;
-constexpr double heading_alignment_mps = 1100.0;
+constexpr flight::ParameterDefaults parameters{};
 constexpr double sufr_mps = 453.0; // [od137]
-constexpr double sufr_lasts_s = 9.0;
-constexpr double parachute_lasts_s = 20.0;
 constexpr double priming_above_backshell_m = 1340.0;
-constexpr double weight_mps2 = 3.71;
-constexpr double approach_end_m = 150.0, approach_end_mps = 32.0, slow_below_m = 32.0, sky_crane_mps = 0.75;
+constexpr double approach_end_m = 150.0, slow_below_m = 32.0;
 
 /// Lift to the left or right as in [od137], roughly.
 double bank_deg(const TruthState& truth) {
-    if (truth.speed_mps <= heading_alignment_mps) return 0.0;
+    if (truth.speed_mps <= parameters.heading_alignment_speed_mps) return 0.0;
     if (truth.e_s > 124.0) return -49.0;
     if (truth.e_s > 98.0) return 46.0;
     return truth.e_s > 72.0 ? -48.0 : 72.0;
@@ -42,9 +38,9 @@ int reversals(const TruthState& truth) {
 /// Two stretches of even deceleration, then slow and steady.
 double wanted_climb_mps(double height_m) {
     if (height_m > approach_end_m)
-        return -std::min(75.0, std::sqrt(approach_end_mps * approach_end_mps + 6.0 * (height_m - approach_end_m)));
+        return -std::min(75.0, std::sqrt(parameters.constant_velocity_mps * parameters.constant_velocity_mps + 6.0 * (height_m - approach_end_m)));
     if (height_m > slow_below_m) return -std::sqrt(0.56 + 8.6 * (height_m - slow_below_m));
-    return -sky_crane_mps;
+    return -parameters.sky_crane_descent_rate_mps;
 }
 
 } // namespace
@@ -79,7 +75,7 @@ const flight::gnc::Output& GncStandIn::cycle(const World& world, const flight::g
 void GncStandIn::follow(const flight::gnc::Configuration& configuration) {
     if (configuration.enabled) take(GncModeEvent::enabled);
     if (configuration.guidance_armed) take(GncModeEvent::guidance_armed);
-    if (now_ - mode_since_ >= sufr_lasts_s) take(GncModeEvent::straightened_up);
+    if (now_ - mode_since_ >= parameters.sufr_duration_s) take(GncModeEvent::straightened_up);
     if (configuration.parachute_out) take(GncModeEvent::parachute_out);
     if (configuration.backshell_gone) take(GncModeEvent::backshell_gone);
     if (configuration.sky_crane_started) take(GncModeEvent::throttled_down);
@@ -91,10 +87,10 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
     const TruthState truth = world.truth();
     const NavigationSolution& solution = world.solution();
     if (mode_.can(GncModeEvent::drag_felt) &&
-        fire(Trigger::guidance_start, at_least(Quantity::drag_mps2, truth.sensed_mps2, guidance_start_mps2)))
+        fire(Trigger::guidance_start, at_least(Quantity::drag_mps2, truth.sensed_mps2, parameters.guidance_start_drag_mps2)))
         take(GncModeEvent::drag_felt);
     if (mode_.can(GncModeEvent::slow_for_heading) &&
-        fire(Trigger::heading_alignment, at_most(Quantity::speed_mps, truth.speed_mps, heading_alignment_mps)))
+        fire(Trigger::heading_alignment, at_most(Quantity::speed_mps, truth.speed_mps, parameters.heading_alignment_speed_mps)))
         take(GncModeEvent::slow_for_heading);
     if (mode_.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
         fire(Trigger::sufr_start, at_most(Quantity::speed_mps, truth.speed_mps, sufr_mps)))
@@ -103,10 +99,10 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
         fire(Trigger::parachute, at_most(Quantity::speed_mps, truth.speed_mps, solution.parachute_speed_mps));
     if (mode_.state() != Mode::parachute_descent) return;
     const double parachute_s = configuration.parachute_time ? now_ - *configuration.parachute_time : 0.0;
-    if (parachute_s > parachute_lasts_s)
+    if (parachute_s > parameters.heatshield_delay_min_s)
         fire(Trigger::heatshield, at_most(Quantity::speed_mps, truth.speed_mps, solution.heatshield_speed_mps));
     if (!configuration.heatshield_gone) return;
-    if (configuration.radar_on) fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, 9000.0));
+    if (configuration.radar_on) fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, parameters.radar_altitude_max_m));
     fire(Trigger::engine_priming, at_most(Quantity::altitude_m, truth.altitude_m,
                                           solution.backshell_altitude_m + priming_above_backshell_m));
     if (configuration.engines_primed)
@@ -118,7 +114,7 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
     const double in_mode_s = now_ - mode_since_;
     switch (mode_.state()) {
     case Mode::free_fall:
-        if (fire(Trigger::powered_approach, at_least(Quantity::time_in_mode_s, in_mode_s, 1.0)))
+        if (fire(Trigger::powered_approach, at_least(Quantity::time_in_mode_s, in_mode_s, flight::gnc::powered_descent::free_fall_s)))
             take(GncModeEvent::fallen_clear);
         break;
     case Mode::powered_approach:
@@ -133,9 +129,9 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
         fire(Trigger::sky_crane, at_most(Quantity::altitude_m, truth.altitude_m, slow_below_m - 2.0));
         break;
     case Mode::sky_crane:
-        fire(Trigger::rover_separation, at_least(Quantity::time_in_mode_s, in_mode_s, 2.5));
+        fire(Trigger::rover_separation, at_least(Quantity::time_in_mode_s, in_mode_s, parameters.sky_crane_settle_s));
         if (configuration.touchdown_logic_ready && world.contact())
-            fire(Trigger::touchdown, at_least(Quantity::time_in_mode_s, now_ - *world.contact(), 1.25));
+            fire(Trigger::touchdown, at_least(Quantity::time_in_mode_s, now_ - *world.contact(), parameters.touchdown_settle_s));
         break;
     default:
         break;
@@ -169,7 +165,7 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
     const double up_mps = v.dot(local.up);
     const double feed_forward_mps2 = truth.altitude_m > slow_below_m ? 3.0 : 0.0;
     const double climb_mps2 =
-        weight_mps2 + feed_forward_mps2 + 1.2 * (wanted_climb_mps(truth.altitude_m) - up_mps);
+        flight::gnc::mars_weight_mps2 + feed_forward_mps2 + 1.2 * (wanted_climb_mps(truth.altitude_m) - up_mps);
     const Vector3 push = climb_mps2 * local.up - 0.3 * (v - up_mps * local.up);
     const double mass_kg = world.inspect().mass_kg - (world.contact() ? load_.rover_mass_kg : 0.0);
     const double thrust_N = std::min(25000.0, push.norm() * mass_kg);
@@ -185,21 +181,14 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
 void GncStandIn::steer(const World& world, const flight::gnc::Configuration& configuration) {
     const World::Inspection seen = world.inspect();
     const TruthState truth = world.truth();
-    const double mass_kg = seen.mass_kg - (configuration.rover_separated && !configuration.bridle_cut ? load_.rover_mass_kg : 0.0);
-    const flight::Gyration& radii = mode_.state() < Mode::free_fall ? flight::gyration_of_entry_vehicle
-                                    : configuration.rover_separated ? flight::gyration_of_stage
-                                                                    : flight::gyration_of_stage_with_rover;
-    const flight::gnc::Inertia inertia{mass_kg * radii.across_m * radii.across_m,
-                                       mass_kg * radii.along_z_m * radii.along_z_m};
+    const Mode mode = mode_.state();
+    const bool rover_hangs = configuration.rover_separated && !configuration.bridle_cut;
+    const double rigid_kg = seen.mass_kg - (rover_hangs ? load_.rover_mass_kg : 0.0);
     const flight::gnc::AttitudeState state{vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps),
                                            flight::gnc::to_quaternion(seen.q_MB), vector3(seen.rate_B_rps),
-                                           mode_.state() >= Mode::range_control};
-    const Vector3 torque_B = flight::gnc::control_torque(told_.attitude, state, inertia);
-    if (mode_.state() > Mode::free_fall && told_.engines.ignited)
-        torque_allocation_.add(torque_B, configuration.sky_crane_started ? 4 : 8, load_.engine_max_thrust_N,
-                               told_.engines.throttle);
-    else
-        told_.thrusters = thruster_selection_.select(torque_B);
+                                           mode >= Mode::range_control};
+    steering_.cycle(told_.attitude, state, flight::gnc::inertia_of(mode, configuration, rigid_kg),
+                    flight::gnc::steers(mode, configuration, told_.engines), told_.thrusters, told_.engines);
 }
 
 void GncStandIn::report(const World& world) {

@@ -16,7 +16,7 @@ namespace aeolis::simulation {
 /// Source   bank history roughly [od137]; the rest is ours
 class GncStandIn {
   public:
-    explicit GncStandIn(const flight::Load& load) : load_(load) {}
+    explicit GncStandIn(const flight::Load& load) : load_(load), steering_(load.engine_max_thrust_N) {}
 
     const flight::gnc::Output& cycle(const World& world, const flight::gnc::Configuration& configuration);
 
@@ -36,8 +36,7 @@ class GncStandIn {
     Sclk now_, mode_since_;
     std::array<bool, flight::gnc::trigger_count> fired_{};
     int reversals_ = 0;
-    flight::gnc::ThrusterSelection thruster_selection_;
-    flight::gnc::powered_descent::TorqueAllocation torque_allocation_;
+    flight::gnc::Steering steering_;
     flight::gnc::Output told_;
 };
 

@@ -1,7 +1,5 @@
 #include "simulation/venues/venue_timeline.hpp"
 
-#include <span>
-
 namespace aeolis::simulation {
 namespace {
 

@@ -52,7 +52,7 @@ struct Flight {
 bool same_outputs(const DeviceOutputs& a, const DeviceOutputs& b) {
     return std::ranges::equal(a.nvm.span(), b.nvm.span()) && std::ranges::equal(a.uhf.span(), b.uhf.span()) &&
            std::ranges::equal(a.pyros.span(), b.pyros.span()) && a.engines.throttle == b.engines.throttle &&
-           a.thrusters.on_s == b.thrusters.on_s && a.tone == b.tone;
+           a.thrusters == b.thrusters && a.tone == b.tone;
 }
 
 }  // namespace

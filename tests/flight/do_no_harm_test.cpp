@@ -23,7 +23,7 @@ Load backup_load() {
 bool commands_something(const DeviceOutputs& out) {
     return out.in_command || !out.pyros.empty() || !out.switches.empty() || !out.telecom.empty() || out.thrusters_enabled || out.engines.ignited ||
            out.pay_out_bridle || out.tone || out.designate_b_prime || !out.cross_string.empty() ||
-           out.thrusters.on_s != ThrusterCommand{}.on_s;
+           out.thrusters != ThrusterCommand{};
 }
 
 /// A backup computer under a rain of random messages and inputs.

@@ -1,7 +1,16 @@
 #include "flight/gnc/entry/lateral_logic.hpp"
+#include "generated/dictionary_flight.hpp"
 #include "tests/support/catch.hpp"
 
+using namespace aeolis;
 using namespace aeolis::flight::gnc;
+
+namespace {
+
+constexpr Sclk now{1000.0};
+constexpr double interval_s = flight::ParameterDefaults{}.reversal_interval_min_s;
+
+} // namespace
 
 TEST_CASE("the deadband shrinks with velocity and is halved when lift is saturated", "[gnc][R27]") {
     CHECK(crossrange_deadband_m(5000.0, false) > crossrange_deadband_m(2000.0, false));
@@ -12,19 +21,27 @@ TEST_CASE("bank reverses when the target has left the deadband on the side away 
     LateralLogic logic;
     logic.start(1);
     const double edge_m = crossrange_deadband_m(3000.0, false);
-    CHECK_FALSE(logic.on(+2.0 * edge_m, 3000.0, false, true)); // lift already turns towards it
-    CHECK_FALSE(logic.on(-0.99 * edge_m, 3000.0, false, true));
-    CHECK(logic.on(-1.01 * edge_m, 3000.0, false, true));
+    CHECK_FALSE(logic.on(now, +2.0 * edge_m, 3000.0, false, true)); // lift already turns towards it
+    CHECK_FALSE(logic.on(now, -0.99 * edge_m, 3000.0, false, true));
+    CHECK(logic.on(now, -1.01 * edge_m, 3000.0, false, true));
     CHECK(logic.sign() == -1);
     CHECK(logic.reversals() == 1);
-    CHECK_FALSE(logic.on(-1.01 * edge_m, 3000.0, false, true));
-    CHECK(logic.on(+1.01 * edge_m, 3000.0, false, true));
+    CHECK_FALSE(logic.on(now + interval_s, -1.01 * edge_m, 3000.0, false, true));
+    CHECK(logic.on(now + interval_s, +1.01 * edge_m, 3000.0, false, true));
     CHECK(logic.reversals() == 2);
 }
 
 TEST_CASE("no reversal is asked for before the last one is flown", "[gnc][R27]") {
     LateralLogic logic;
     logic.start(1);
-    CHECK_FALSE(logic.on(-1.0e6, 3000.0, false, false));
+    CHECK_FALSE(logic.on(now, -1.0e6, 3000.0, false, false));
     CHECK(logic.reversals() == 0);
+}
+
+TEST_CASE("a reversal comes no sooner than the least time after the last", "[gnc][R27]") {
+    LateralLogic logic;
+    logic.start(1);
+    REQUIRE(logic.on(now, -1.0e6, 3000.0, false, true));
+    CHECK_FALSE(logic.on(now + (interval_s - seconds_per_tick), +1.0e6, 3000.0, false, true));
+    CHECK(logic.on(now + interval_s, +1.0e6, 3000.0, false, true));
 }

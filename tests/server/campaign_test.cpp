@@ -183,7 +183,7 @@ TEST_CASE("case K of a campaign is the landing that rehearse --case K flies, bit
     CHECK(flown.touchdown->longitude_deg == touchdown->longitude_deg);
     CHECK(std::hypot(flown.east_m, flown.north_m) == Approx(touchdown->miss_m).epsilon(1e-3));
     CHECK(flown.peak_deceleration_mps2 == rehearsal.landing().peak_deceleration_mps2());
-    CHECK(flown.propellant_kg == rehearsal.landing().propellant_kg());
+    CHECK(flown.propellant_kg == rehearsal.landing().inspect().propellant_kg);
     REQUIRE(flown.parachute);
     CHECK(flown.parachute->mach == rehearsal.landing().parachute()->mach);
     REQUIRE(flown.events.size() == rehearsal.events().size());

@@ -1,3 +1,4 @@
+#include "flight/load.hpp"
 #include "server/api/json.hpp"
 #include "tests/support/catch.hpp"
 
@@ -10,6 +11,7 @@
 #include <google/protobuf/struct.pb.h>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -69,10 +71,35 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
     }
 }
 
+TEST_CASE("the entry reference is a table of falling speed, with every row a number", "[cli][R27]") {
+    if (program() == nullptr) return;
+    const auto ended = run(program(), "entry reference --scenario od137");
+    REQUIRE(ended.code == 0);
+    std::istringstream lines{ended.text};
+    std::string line;
+    std::getline(lines, line);
+    CHECK(line == "velocity_mps,range_to_go_m,drag_mps2,altitude_rate_mps,d_range_d_drag_s2,d_range_d_altitude_rate_s,"
+                  "d_range_d_lift_to_drag_m,lift_to_drag");
+    double last_mps = 0.0, farthest_m = 0.0;
+    int rows = 0;
+    for (; std::getline(lines, line); ++rows) {
+        double velocity_mps = 0.0, range_m = 0.0, drag_mps2 = 0.0;
+        REQUIRE(std::sscanf(line.c_str(), "%lf,%lf,%lf", &velocity_mps, &range_m, &drag_mps2) == 3);
+        CHECK(std::count(line.begin(), line.end(), ',') == 7);
+        CHECK(velocity_mps > last_mps);
+        CHECK(range_m > farthest_m);
+        last_mps = velocity_mps;
+        farthest_m = range_m;
+    }
+    CHECK(rows == static_cast<int>(aeolis::flight::EntryReference{}.rows.size()));
+}
+
 TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli]") {
     if (program() == nullptr) return;
-    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 5>{{
+    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 7>{{
              {"rehearse --scenario no_such", "no_such"},
+             {"entry reference --scenario no_such", "no_such"},
+             {"rehearse --scenario gnc_alone --truth /nope/truth.csv", "/nope/truth.csv"},
              {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
              {"campaign --scenario campaign --cases 2 --results /dev/null", "/dev/null"},
              {"campaign --scenario performance --cases 2", "performance: test_venue: "},

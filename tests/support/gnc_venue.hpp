@@ -30,12 +30,12 @@ class GncVenue {
 
     void step() {
         inputs_ = world_.sense();
-        alone_.cycle(inputs_, out_);
+        const flight::DeviceOutputs& commands = alone_.cycle(inputs_);
         for (const flight::gnc::Trigger trigger : told().triggers)
             events_.push_back({trigger, 0, told(), world_.truth(), world_.inspect()});
         if (told().bank_reversal != 0)
             events_.push_back({std::nullopt, told().bank_reversal, told(), world_.truth(), world_.inspect()});
-        world_.advance(out_);
+        world_.advance(commands);
     }
 
     void run() {
@@ -59,7 +59,6 @@ class GncVenue {
     simulation::World world_;
     simulation::GncAlone alone_;
     flight::DeviceInputs inputs_;
-    flight::DeviceOutputs out_;
     std::vector<Event> events_;
 };
 

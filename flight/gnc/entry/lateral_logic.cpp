@@ -8,6 +8,7 @@ namespace {
 
 constexpr double deadband_0_m = ParameterDefaults{}.crossrange_deadband_m;
 constexpr double deadband_2_s2pm = ParameterDefaults{}.crossrange_deadband_s2pm;
+constexpr double reversal_interval_min_s = ParameterDefaults{}.reversal_interval_min_s;
 
 } // namespace
 
@@ -16,10 +17,12 @@ double crossrange_deadband_m(double velocity_mps, bool saturated) {
     return saturated ? 0.5 * deadband_m : deadband_m;
 }
 
-bool LateralLogic::on(double crossrange_m, double velocity_mps, bool saturated, bool settled) {
+bool LateralLogic::on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled) {
+    if (reversed_at_ && now - *reversed_at_ < reversal_interval_min_s) return false;
     if (!settled || sign_ * crossrange_m >= -crossrange_deadband_m(velocity_mps, saturated)) return false;
     sign_ = -sign_;
     ++reversals_;
+    reversed_at_ = now;
     return true;
 }
 

@@ -1,0 +1,14 @@
+#include "flight/gnc/attitude/steering.hpp"
+
+namespace aeolis::flight::gnc {
+
+void Steering::cycle(const AttitudeCommand& wanted, const AttitudeState& state, const Inertia& inertia, Steers steers,
+                     ThrusterCommand& thrusters, EngineCommand& engines) {
+    const Vector3 torque_B_Nm = control_torque(wanted, state, inertia);
+    if (steers == Steers::thrusters)
+        thrusters = thruster_selection_.select(torque_B_Nm);
+    else
+        torque_allocation_.add(torque_B_Nm, steers == Steers::eight_engines ? 8 : 4, engine_max_thrust_N_, engines.throttle);
+}
+
+} // namespace aeolis::flight::gnc
