@@ -14,6 +14,7 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double step_s = 0.25;
+constexpr double descent_step_s = 0.05; // a parachute that opens a step later lands 20 m farther
 constexpr double longest_s = 900.0;
 constexpr double least_deceleration_mps2 = 0.5; // below it velocity is no clock
 constexpr double bank_before_guidance_rad = 77.0 * degree_rad;
@@ -55,11 +56,19 @@ Node node_of(const EntryFlight& flight, const PointMass& at, double ground_m, do
     return node;
 }
 
+/// How the range still to come, R, changes with the state at a node.
+struct Costate {
+    double altitude = 0.0;       ///< ∂R/∂h
+    double flight_path_m = 0.0;  ///< ∂R/∂γ
+    double lift_to_drag_m = 0.0; ///< ∂R/∂u
+};
+
 /// The reference flight and what comes after it.
 struct Flight {
     std::vector<Node> nodes; ///< from where it slows down to the start of SUFR
     double ground_at_end_m = 0.0;
     double after_m = 0.0; ///< along the ground from the start of SUFR to the landing
+    Costate at_end;       ///< how that changes with the state in which SUFR starts
 };
 
 double ground_step_m(const PointMass& before, const PointMass& after, double target_radius_m) {
@@ -73,7 +82,8 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     double mass_kg = masses.entry_kg - 6.0 * masses.entry_balance_each_kg;
     bool heatshield = true;
     double ground_m = 0.0, since_mortar_s = -1.0;
-    for (double t = 0.0; t < longest_s; t += step_s) {
+    const Vector3 right_M = at.v_MB_M.cross(at.p_MoB_M).normalized();
+    for (double t = 0.0; t < longest_s; t += descent_step_s) {
         const double altitude_m = at.p_MoB_M.norm() - scenario.target.radius_m;
         const double speed_mps = at.v_MB_M.norm();
         if (altitude_m <= scenario.backshell_altitude_m) break;
@@ -96,16 +106,30 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
                        (-aero.drag * v.normalized() + aero.lift * lift_direction(p, v, 0.0));
             const double area_m2 =
                 scenario.parachute_drag_area_m2 * parachute_inflation(since_mortar_s) * parachute_mach_factor(mach);
-            return -pressure_by_mass * area_m2 * v.normalized();
+            const Vector3 forward = v.normalized();
+            const Vector3 lift = parachute_lift_direction(forward, right_M, since_mortar_s);
+            return pressure_by_mass * area_m2 * (parachute_lift_to_drag * lift - forward);
         };
-        const PointMass next = runge_kutta_step(at, step_s, force);
+        const PointMass next = runge_kutta_step(at, descent_step_s, force);
         ground_m += ground_step_m(at, next, scenario.target.radius_m);
         at = next;
-        if (since_mortar_s >= 0.0) since_mortar_s += step_s;
+        if (since_mortar_s >= 0.0) since_mortar_s += descent_step_s;
     }
     const Horizon local = horizon(at.p_MoB_M);
     const double level_mps = (at.v_MB_M - at.v_MB_M.dot(local.up) * local.up).norm();
     return ground_m + level_mps * free_fall_s + divert_m * std::cos(divert_azimuth_rad - azimuth_rad(at));
+}
+
+Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atmosphere, const PointMass& at) {
+    constexpr double dh_m = 200.0, dgamma_rad = 0.5 * degree_rad;
+    const Vector3 up = at.p_MoB_M.normalized();
+    const auto range_m = [&](double h_m, double gamma_rad) {
+        const Vector3 v = std::cos(gamma_rad) * at.v_MB_M +
+                          std::sin(gamma_rad) * at.v_MB_M.norm() * lift_direction(at.p_MoB_M, at.v_MB_M, 0.0);
+        return range_after_entry_m(scenario, atmosphere, {at.p_MoB_M + h_m * up, v});
+    };
+    return {(range_m(dh_m, 0.0) - range_m(-dh_m, 0.0)) / (2.0 * dh_m),
+            (range_m(0.0, dgamma_rad) - range_m(0.0, -dgamma_rad)) / (2.0 * dgamma_rad), 0.0};
 }
 
 Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere& atmosphere, double held_rad) {
@@ -132,6 +156,7 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
     }
     result.ground_at_end_m = ground_m;
     result.after_m = range_after_entry_m(scenario, atmosphere, at);
+    result.at_end = range_slopes_after_entry(scenario, atmosphere, at);
     return result;
 }
 
@@ -148,12 +173,6 @@ Rates rates(const Node& node, double scale_height_m, double target_radius_m, dou
     const double gamma_rate = lift_up / v + (v / r - g / v) * std::cos(gamma) + node.coriolis_rps;
     return {v * std::sin(gamma) / v_rate, gamma_rate / v_rate, v * std::cos(gamma) * target_radius_m / r / v_rate};
 }
-
-struct Costate {
-    double altitude = 0.0;       ///< ∂R/∂h
-    double flight_path_m = 0.0;  ///< ∂R/∂γ
-    double lift_to_drag_m = 0.0; ///< ∂R/∂u
-};
 
 Costate costate_rate(const Node& node, double scale_height_m, double target_radius_m, const Costate& at) {
     constexpr double dh = 10.0, dg = 1.0e-4, du = 1.0e-3;
@@ -232,6 +251,7 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     // Backwards along the flight, Heun's method.
     const std::vector<Node>& nodes = best.nodes;
     std::vector<Costate> costates(nodes.size());
+    costates.back() = best.at_end;
     const double radius_m = scenario.target.radius_m;
     for (std::size_t i = nodes.size() - 1; i > 0; --i) {
         const double dv = nodes[i - 1].velocity_mps - nodes[i].velocity_mps;

@@ -314,7 +314,7 @@ flight::DeviceInputs& World::sense() {
     in.bridle.reset();
     in.uplink.clear();
     if (s.vehicle.configuration().cruise_stage && in.now.ticks() % 64 == 0)
-        in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB());
+        in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB(), in.now);
     if (s.buses.radar_was_read()) {
         const flight::Unit unit = s.buses.unit(flight::Device::radar);
         const bool blind = s.vehicle.configuration().heatshield ||

@@ -55,6 +55,7 @@ struct ImuSample {
 /// Attitude at start, from cruise attitude determination (star scanner): sent once a second until separation.
 struct CruiseAttitude {
     std::array<double, 4> q_MB{1, 0, 0, 0};
+    Sclk at{}; ///< the tick of which it is
 };
 
 /// One velocity and slant-range measurement of the landing radar along one beam.

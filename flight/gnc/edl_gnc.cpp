@@ -44,6 +44,15 @@ void EdlGnc::set_solution(const Solution& solution, Sclk now) {
 
 void EdlGnc::on(const CruiseAttitude& attitude) {
     cruise_attitude_ = attitude;
+    take_cruise_attitude();
+}
+
+// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come just there.
+void EdlGnc::take_cruise_attitude() {
+    if (!cruise_attitude_ || (navigating_ && cruise_attitude_->at > navigated_to_)) return;
+    if (!cruise_stage_gone_ && (!navigating_ || cruise_attitude_->at == navigated_to_))
+        strapdown_.set_attitude(to_quaternion(cruise_attitude_->q_MB));
+    cruise_attitude_.reset();
 }
 
 void EdlGnc::on(const RadarSolution& solution) {
@@ -116,11 +125,9 @@ void EdlGnc::hold(Trigger trigger, const Conditions& conditions, Output& out) co
 void EdlGnc::cycle(const DeviceInputs& in, const Configuration& configuration, Output& out) {
     out = Output{};
     navigate(in.imu.span(), in.now);
+    cruise_stage_gone_ = configuration.cruise_stage_gone;
     if (in.cruise_attitude) on(*in.cruise_attitude);
-    // It is as of this tick, so it comes after the IMU's increments up to here, not before: the vehicle still spins.
-    if (cruise_attitude_ && !configuration.cruise_stage_gone)
-        strapdown_.set_attitude(to_quaternion(cruise_attitude_->q_MB));
-    cruise_attitude_.reset();
+    take_cruise_attitude();
     if (!navigating_) {
         measured_at_ = in.now;
         return;

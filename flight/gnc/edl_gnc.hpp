@@ -209,6 +209,7 @@ class EdlGnc {
     };
 
     void navigate(std::span<const ImuSample> imu, Sclk now);
+    void take_cruise_attitude();
     void measure(Sclk now);
     bool take(GncModeEvent event, Sclk now);
     bool fire(Trigger trigger, const Conditions& conditions, Output& out);
@@ -229,7 +230,8 @@ class EdlGnc {
     Solution solution_;
     Vector3 target_M_ = Vector3::UnitX();
     bool navigating_ = false;
-    std::optional<CruiseAttitude> cruise_attitude_; ///< to be taken at the end of the next cycle's increments
+    std::optional<CruiseAttitude> cruise_attitude_; ///< to be taken when the increments have come to its tick
+    bool cruise_stage_gone_ = false;
     Sclk navigated_to_;
     Sclk pulses_felt_until_; ///< of thrusters, in vacuum
     Strapdown strapdown_;

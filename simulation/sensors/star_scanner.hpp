@@ -14,9 +14,9 @@ class StarScanner {
     StarScanner(const Dispersions& dispersions, Random random)
         : error_(rotation(dispersions.attitude_rad * vector3(random.normal3()))) {}
 
-    flight::CruiseAttitude measure(const Quaternion& q_MB) const {
+    flight::CruiseAttitude measure(const Quaternion& q_MB, Sclk now) const {
         const Quaternion measured = (q_MB * error_).normalized();
-        return {array4(measured)};
+        return {array4(measured), now};
     }
 
     const Quaternion& error() const { return error_; }

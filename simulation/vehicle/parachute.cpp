@@ -2,16 +2,13 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace aeolis::simulation {
 namespace {
 
 constexpr double overshoot = 0.2;          // ours
 constexpr double overshoot_decay_s = 0.25; // ours
-constexpr double swing_rad = 0.087;        // ours, as the two below: 5°
-constexpr double swing_period_s = 7.0;
-constexpr double swing_decay_s = 12.0;
+constexpr double plane_turns_rps = 4.5 * 0.017453292519943295;
 
 struct Row {
     double mach, factor;
@@ -31,10 +28,10 @@ double parachute_inflation(double since_mortar_s) {
     return 1.0 + overshoot * std::exp(-(since_mortar_s - first_peak_s) / overshoot_decay_s);
 }
 
-double parachute_swing_rad(double since_line_stretch_s) {
-    if (since_line_stretch_s <= 0.0) return 0.0;
-    return swing_rad * std::exp(-since_line_stretch_s / swing_decay_s) *
-           std::sin(2.0 * std::numbers::pi * since_line_stretch_s / swing_period_s);
+Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s) {
+    const double turned_rad = plane_turns_rps * (since_mortar_s - line_stretch_s);
+    const Vector3 right = (right_M - right_M.dot(forward) * forward).normalized();
+    return std::cos(turned_rad) * right.cross(forward) + std::sin(turned_rad) * right;
 }
 
 double parachute_mach_factor(double mach) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "simulation/vectors.hpp"
+
 namespace aeolis::simulation {
 
 /// The disk-gap-band parachute: when it opens after the mortar, and its drag area with the vehicle under it.
@@ -18,8 +20,12 @@ inline constexpr double riser_behind_m = 2.0;
 /// What friction in bridles and risers takes from the vehicle's swing below the confluence (wrist mode). [N m s] Ours.
 inline constexpr double wrist_damping_Nms = 900.0;
 
-/// The parachute swings about the wind by this angle at first, in one plane, and less with time. Ours.
-double parachute_swing_rad(double since_line_stretch_s);
+/// The parachute trims beside the wind and so lifts too: what the published trajectory shows, 0.15 when it opens, 0.13 … 0.21
+/// later [od137].
+inline constexpr double parachute_lift_to_drag = 0.17;
+/// Unit, across `forward`: up when the parachute opens, as the vehicle flew lift up, then turning about the wind to the right.
+/// `right_M` is level, to the right of the flight at the mortar. [od137] until 15 s after; that it goes on evenly is ours.
+Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s);
 
 /// Drag area relative to that at terminal speed.
 double parachute_mach_factor(double mach);

@@ -27,7 +27,6 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
-      swing_direction_rad_(2.0 * std::numbers::pi * Random{seed, case_number, Stream::swing}.uniform()),
       configuration_(scenario.masses) {}
 
 void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
@@ -38,7 +37,6 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
     wind_ = drawn.wind_;
     body_.p_MoB_M = at.p_MoB_M;
     body_.v_MB_M = at.v_MB_M;
-    swing_direction_rad_ = drawn.swing_direction_rad_;
 }
 
 void Vehicle::fire(flight::PyroId pyro, double now_s) {
@@ -58,6 +56,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         break;
     case PyroId::parachute_mortar:
         mortar_s_ = now_s;
+        right_at_mortar_M_ = body_.v_MB_M.cross(body_.p_MoB_M).normalized();
         break;
     case PyroId::heatshield_separation:
         configuration_.heatshield = false;
@@ -163,12 +162,9 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     const double since_mortar_s = mortar_s_ ? now_s - *mortar_s_ : 0.0;
     const double inflation = mortar_s_ ? parachute_inflation(since_mortar_s) : 0.0;
     if (inflation > 0.0) {
-        const Horizon local = horizon(body.p_MoB_M);
-        const Vector3 sideways =
-            std::cos(swing_direction_rad_) * local.east + std::sin(swing_direction_rad_) * local.north;
-        const double swing_rad = parachute_swing_rad(since_mortar_s - line_stretch_s);
-        const Vector3 pull_M = -pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
-                               (forward + std::tan(swing_rad) * sideways).normalized();
+        const Vector3 lift = parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s);
+        const Vector3 pull_M = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
+                               (parachute_lift_to_drag * lift - forward);
         const Vector3 confluence_B{0.0, 0.0, -riser_behind_m};
         wrench.force_M += pull_M;
         wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;

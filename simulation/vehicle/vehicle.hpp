@@ -80,12 +80,12 @@ class Vehicle {
 
     RigidBody body_;
     Vector3 specific_force_M_ = Vector3::Zero();
-    double swing_direction_rad_; ///< from east, of the parachute's swing
     Thrusters thrusters_;
     Configuration configuration_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
+    Vector3 right_at_mortar_M_ = Vector3::UnitZ(); ///< level, to the right of its flight
 };
 
 } // namespace aeolis::simulation
