@@ -9,9 +9,7 @@ using namespace aeolis::flight::gnc;
 namespace {
 
 simulation::Scenario without_errors() {
-    simulation::Scenario scenario;
-    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    return scenario;
+    return simulation::undispersed({});
 }
 
 struct Near {
