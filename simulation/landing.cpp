@@ -380,6 +380,9 @@ std::optional<ParachuteReport> Landing::parachute() const {
 Inspection Landing::inspect() const {
     return state_->world.inspect();
 }
+SeparationReport Landing::separation() const {
+    return state_->world.separation();
+}
 flight::Computer::Counters Landing::counters() const {
     return state_->computers.counters();
 }

@@ -89,6 +89,7 @@ struct Inspection {
     double density_kgm3 = 0.0;
     double thrust_N = 0.0;
     double bridle_m = 0.0;
+    double swing_deg = 0.0; ///< of the bridle, off the vertical
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
     bool uhf_on = false; ///< transmitter on and an antenna selected
@@ -130,6 +131,12 @@ struct EventReportName {
 /// The air that the parachute opened into.
 struct ParachuteReport {
     double mach = 0.0, dynamic_pressure_Pa = 0.0;
+};
+
+/// How near the vehicle came again to what it had let go; none: never nearer once that was clear.
+struct SeparationReport {
+    std::optional<double> heatshield_least_m, backshell_least_m;
+    const char* struck = nullptr; ///< the body that it came back to
 };
 
 class Landing {
@@ -176,6 +183,7 @@ class Landing {
     double peak_deceleration_mps2() const;
     std::optional<ParachuteReport> parachute() const; ///< at deployment
     Inspection inspect() const;
+    SeparationReport separation() const;
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
     double relay_progress() const;                   ///< 0 … 1 of the recording that has come down

@@ -26,6 +26,12 @@ enum class Stream : std::uint64_t {
     bus_64_hz,
     bus_8_hz,
     imu_link,
+    imu_mounting,
+    imu_b_mounting,
+    radar_dropout,
+    radar_b_dropout,
+    gust,
+    terrain,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

@@ -56,6 +56,15 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"dispersions.attitude_rad", s.dispersions.attitude_rad, 0.0, 0.2},
         {"dispersions.radar_range_fraction", s.dispersions.radar_range_fraction, 0.0, 0.2},
         {"dispersions.radar_velocity_mps", s.dispersions.radar_velocity_mps, 0.0, 5.0},
+        {"dispersions.imu_misalignment_rad", s.dispersions.imu_misalignment_rad, 0.0, 0.1},
+        {"dispersions.gust_mps", s.dispersions.gust_mps, 0.0, 30.0},
+        {"dispersions.radar_dropout_fraction", s.dispersions.radar_dropout_fraction, 0.0, 1.0},
+        {"dispersions.terrain_height_m", s.dispersions.terrain_height_m, 0.0, 500.0},
+        {"dispersions.terrain_slope_deg", s.dispersions.terrain_slope_deg, 0.0, 5.0},
+        {"dispersions.parachute_plane_deg", s.dispersions.parachute_plane_deg, 0.0, 180.0},
+        {"ground.height_m", s.ground.height_m, -1000.0, 1000.0},
+        {"ground.slope_deg", s.ground.slope_deg, 0.0, 20.0},
+        {"ground.uphill_azimuth_deg", s.ground.uphill_azimuth_deg, -180.0, 360.0},
         {"parachute_drag_area_m2", s.parachute_drag_area_m2, 1.0, 1000.0},
         {"steady_wind_east_mps", s.steady_wind_east_mps, -100.0, 100.0},
         {"steady_wind_north_mps", s.steady_wind_north_mps, -100.0, 100.0},
@@ -213,7 +222,7 @@ bool disperses_later(const Scenario& scenario) {
 }
 
 Scenario undispersed(Scenario scenario) {
-    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
     return scenario;
 }
 

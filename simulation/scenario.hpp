@@ -56,6 +56,19 @@ struct Dispersions {
     double attitude_rad = 1.5e-3;
     double radar_range_fraction = 0.0067;
     double radar_velocity_mps = 0.033;
+    double imu_misalignment_rad = 1.0e-4; ///< of the sensors' axes, about each axis of B. Ours
+    double gust_mps = 2.0;                ///< of each horizontal part of gusts near the ground. Ours
+    double radar_dropout_fraction = 0.01; ///< no deviation: the part of the radar's readings that fail. Ours
+    double terrain_height_m = 0.0;
+    double terrain_slope_deg = 0.0; ///< of the rise towards east and towards north
+    double parachute_plane_deg = 30.0; ///< of the plane in which the parachute begins to lift, off up. Ours
+};
+
+/// The ground around the target, over the sphere of its radius; a case adds its own (Dispersions). Ours.
+struct Ground {
+    double height_m = 0.0; ///< at the target
+    double slope_deg = 0.0;
+    double uphill_azimuth_deg = 0.0; ///< where it rises to, from north to east
 };
 
 /// Atmosphere scale by height above the landing radius: density = table × scale.
@@ -130,6 +143,7 @@ struct Scenario {
     std::optional<double> disperse_before_entry_s;
     EntryState entry;
     Target target;
+    Ground ground;
     Masses masses;
     Dispersions dispersions;
     std::vector<DensityScale> density_scale;

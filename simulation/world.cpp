@@ -9,6 +9,7 @@
 #include "simulation/vehicle/vehicle.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace aeolis::simulation {
 namespace {
@@ -24,6 +25,24 @@ constexpr double wheels_break_vertical_mps = 2.0;   // ours
 constexpr double wheels_break_horizontal_mps = 1.5; // ours
 constexpr double stage_clear_m = 50.0;              // ours: a stage that falls nearer has hit the rover
 constexpr double waits_for_cutting_s = 20.0;        // ours
+
+Imu imu(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
+    const bool a = unit == flight::Unit::a;
+    return {scenario.dispersions, Random{seed, case_number, a ? Stream::imu : Stream::imu_b},
+            Random{seed, case_number, a ? Stream::imu_mounting : Stream::imu_b_mounting}};
+}
+
+Radar radar(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
+    const bool a = unit == flight::Unit::a;
+    return {scenario.dispersions, Random{seed, case_number, a ? Stream::radar : Stream::radar_b},
+            Random{seed, case_number, a ? Stream::radar_dropout : Stream::radar_b_dropout}};
+}
+
+std::string seconds_text(double seconds) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2f s", seconds);
+    return text.data();
+}
 
 } // namespace
 
@@ -57,10 +76,9 @@ struct World::State {
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
         : scenario(s), initial(initial_state(s, seed, case_number)),
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
-          buses(s, seed, case_number), imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
-                                            Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
-          radars{Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}},
-                 Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar_b}}},
+          buses(s, seed, case_number), imus{imu(s, seed, case_number, flight::Unit::a),
+                                            imu(s, seed, case_number, flight::Unit::b)},
+          radars{radar(s, seed, case_number, flight::Unit::a), radar(s, seed, case_number, flight::Unit::b)},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
         events.reserve(8);
     }
@@ -94,6 +112,20 @@ struct World::State {
         return truth;
     }
 
+    SeparationReport separation() const {
+        const auto& [heatshield, backshell] = vehicle.separated();
+        return {heatshield.least_m(), backshell.least_m(),
+                heatshield.struck()  ? "heatshield"
+                : backshell.struck() ? "backshell"
+                                     : nullptr};
+    }
+
+    bool heatshield_hides(const flight::RadarBeam& beam) const {
+        if (vehicle.configuration().heatshield) return true;
+        return Radar::hides(vehicle.separated().heatshield.from(vehicle.at().p_MoB_M),
+                            vehicle.q_MB() * vector3(beam.direction_B));
+    }
+
     void tell(const char* name) { events.push_back(moment(name, truth())); }
     void end(Outcome how, std::string why) {
         if (outcome != Outcome::running) return;
@@ -112,7 +144,7 @@ struct World::State {
         watch();
     }
     void fly_one_tick();
-    void touch_ground(std::int64_t grid);
+    void touch_ground(const std::optional<PointMass>& rover);
     void watch();
 };
 
@@ -187,12 +219,14 @@ void World::State::fly_one_tick() {
         const std::int64_t next = std::min(end_grid, (at / grid_per_reading + 1) * grid_per_reading);
         const double step_s = seconds(next - at);
         const Quaternion before = vehicle.q_MB();
-        Vector3 felt = -free_fall(vehicle.at().p_MoB_M, Vector3::Zero());
-        if (!stage_down) {
+        const bool stands = stage_down.has_value();
+        if (!stands) {
+            const std::optional<PointMass> rover = vehicle.rover();
             vehicle.step(seconds(at), step_s);
-            felt = vehicle.specific_force_M();
-            touch_ground(next);
+            touch_ground(rover);
         }
+        const Vector3 felt =
+            stands ? Vector3{-free_fall(vehicle.at().p_MoB_M, Vector3::Zero())} : vehicle.specific_force_M();
         imu.integrate(felt, before, vehicle.q_MB(), step_s);
         if (next % grid_per_reading == 0) {
             const flight::ImuSample sample = imu.read(static_cast<std::uint32_t>(next / grid_per_reading));
@@ -201,27 +235,28 @@ void World::State::fly_one_tick() {
         at = next;
     }
     ++ticks;
+    if (!stage_down) vehicle.fly_separated();
 }
 
-void World::State::touch_ground(std::int64_t grid) {
-    const double time_s = seconds(grid);
-    const PointMass& at = vehicle.at();
-    if (const auto wheels_m = vehicle.wheels_height_m(time_s); !contact && wheels_m && *wheels_m <= 0.0) {
-        const Horizon local = horizon(at.p_MoB_M);
-        const double vertical_mps = vehicle.rover_descent_mps(time_s);
-        const double horizontal_mps = std::hypot(at.v_MB_M.dot(local.east), at.v_MB_M.dot(local.north));
+// `rover` as it was a step ago: the ground has begun to slow it since its wheels touched.
+void World::State::touch_ground(const std::optional<PointMass>& rover) {
+    if (rover && !contact && vehicle.wheels_height_m() <= 0.0) {
+        const Vector3& p = rover->p_MoB_M;
+        const Horizon local = horizon(p);
+        const double vertical_mps = -rover->v_MB_M.dot(local.up);
+        const double horizontal_mps = std::hypot(rover->v_MB_M.dot(local.east), rover->v_MB_M.dot(local.north));
         const Vector3 target =
             place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0);
         const double miss_m =
             scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
         contact = sclk() + seconds_per_tick;
-        p_MoRover_M = local.up * scenario.target.radius_m;
-        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(at.p_MoB_M) / degree_rad,
-                                    longitude_rad(at.p_MoB_M) / degree_rad};
+        p_MoRover_M = p;
+        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(p) / degree_rad,
+                                    longitude_rad(p) / degree_rad};
         if (vertical_mps > wheels_break_vertical_mps || horizontal_mps > wheels_break_horizontal_mps)
             end(Outcome::impact, "the rover touched the ground too fast");
     }
-    if (vehicle.altitude_m() <= 0.0) stage_down = sclk() + seconds_per_tick;
+    if (vehicle.height_m() <= 0.0) stage_down = sclk() + seconds_per_tick;
 }
 
 void World::State::watch() {
@@ -242,6 +277,8 @@ void World::State::watch() {
     if (outcome != Outcome::running) return;
     if (now.altitude_m < burns_up_m && vehicle.configuration().cruise_stage)
         return end(Outcome::not_commanded, "entered with the cruise stage attached: nothing was commanded");
+    if (const char* body = separation().struck)
+        return end(Outcome::lost, std::string{"the vehicle was struck by its "} + body + " at E+" + seconds_text(now.e_s));
     if (!contact && stage_down) return end(Outcome::impact, "the vehicle hit the ground");
     if (now.e_s > scenario.timeout_after_entry_s) return end(Outcome::timeout, "not on the ground in time");
     if (!contact) return;
@@ -290,10 +327,10 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.initial.solution.v_MB_M_mps = array3(believed.v_MB_M + flown.v_MB_M);
 
     const Dispersions& errors = s.scenario.dispersions;
-    s.imus[0].disperse(errors, {seed, case_number, Stream::imu});
-    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b});
-    s.radars[0] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar}};
-    s.radars[1] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar_b}};
+    s.imus[0].disperse(errors, {seed, case_number, Stream::imu}, {seed, case_number, Stream::imu_mounting});
+    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b}, {seed, case_number, Stream::imu_b_mounting});
+    s.radars = {radar(s.scenario, seed, case_number, flight::Unit::a),
+                radar(s.scenario, seed, case_number, flight::Unit::b)};
     s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
     s.buses.disperse(seed, case_number);
     return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
@@ -317,13 +354,12 @@ flight::DeviceInputs& World::sense() {
         in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB(), in.now);
     if (s.buses.radar_was_read()) {
         const flight::Unit unit = s.buses.unit(flight::Device::radar);
-        const bool blind = s.vehicle.configuration().heatshield ||
-                           s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
+        const bool blind = s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
             flight::RadarBeam reading =
-                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB());
-            if (blind) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
+                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
+            if (blind || s.heatshield_hides(reading)) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }
     }
@@ -391,6 +427,9 @@ std::optional<Sclk> World::contact() const {
 double World::peak_deceleration_mps2() const {
     return state_->peak.mps2();
 }
+SeparationReport World::separation() const {
+    return state_->separation();
+}
 const NavigationSolution& World::solution() const {
     return state_->initial.solution;
 }
@@ -417,6 +456,7 @@ World::Inspection World::inspect() const {
             .density_kgm3 = flow.density_kgm3,
             .thrust_N = s.vehicle.engines().thrust_N(),
             .bridle_m = s.vehicle.bridle().payed_out_m(s.now_s()),
+            .swing_deg = s.vehicle.swing_rad() / degree_rad,
             .q_MB = array4(s.vehicle.q_MB()),
             .rate_B_rps = array3(s.vehicle.body().rate_B_rps),
             .parachute_open = s.vehicle.parachute_open(s.now_s())};

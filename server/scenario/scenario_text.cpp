@@ -41,6 +41,11 @@ const Bindings<simulation::Target> target_fields = {
     AEOLIS_BIND(Target, longitude_deg),
     AEOLIS_BIND(Target, radius_m),
 };
+const Bindings<simulation::Ground> ground_fields = {
+    AEOLIS_BIND(Ground, height_m),
+    AEOLIS_BIND(Ground, slope_deg),
+    AEOLIS_BIND(Ground, uphill_azimuth_deg),
+};
 const Bindings<simulation::Masses> mass_fields = {
     AEOLIS_BIND(Masses, cruise_stage_kg),    AEOLIS_BIND(Masses, cruise_balance_each_kg),
     AEOLIS_BIND(Masses, entry_kg),           AEOLIS_BIND(Masses, entry_balance_each_kg),
@@ -62,6 +67,12 @@ const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, attitude_rad),
     AEOLIS_BIND(Dispersions, radar_range_fraction),
     AEOLIS_BIND(Dispersions, radar_velocity_mps),
+    AEOLIS_BIND(Dispersions, imu_misalignment_rad),
+    AEOLIS_BIND(Dispersions, gust_mps),
+    AEOLIS_BIND(Dispersions, parachute_plane_deg),
+    AEOLIS_BIND(Dispersions, radar_dropout_fraction),
+    AEOLIS_BIND(Dispersions, terrain_height_m),
+    AEOLIS_BIND(Dispersions, terrain_slope_deg),
 };
 const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, light_time_s),
@@ -233,6 +244,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     if (message.has_disperse_before_entry_s()) scenario.disperse_before_entry_s = message.disperse_before_entry_s();
     read(message.entry(), entry_fields, scenario.entry);
     read(message.target(), target_fields, scenario.target);
+    read(message.ground(), ground_fields, scenario.ground);
     read(message.masses(), mass_fields, scenario.masses);
     read(message.dispersions(), dispersion_fields, scenario.dispersions);
     read(message.radio(), radio_fields, scenario.radio);
@@ -282,6 +294,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     message.set_disperse_before_entry_s(scenario.disperse_before_entry_s.value_or(scenario.start_before_entry_s));
     write(scenario.entry, entry_fields, *message.mutable_entry());
     write(scenario.target, target_fields, *message.mutable_target());
+    write(scenario.ground, ground_fields, *message.mutable_ground());
     write(scenario.masses, mass_fields, *message.mutable_masses());
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
     write(scenario.radio, radio_fields, *message.mutable_radio());

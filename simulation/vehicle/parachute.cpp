@@ -28,8 +28,9 @@ double parachute_inflation(double since_mortar_s) {
     return 1.0 + overshoot * std::exp(-(since_mortar_s - first_peak_s) / overshoot_decay_s);
 }
 
-Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s) {
-    const double turned_rad = plane_turns_rps * (since_mortar_s - line_stretch_s);
+Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s,
+                                 double from_up_rad) {
+    const double turned_rad = from_up_rad + plane_turns_rps * (since_mortar_s - line_stretch_s);
     const Vector3 right = (right_M - right_M.dot(forward) * forward).normalized();
     return std::cos(turned_rad) * right.cross(forward) + std::sin(turned_rad) * right;
 }

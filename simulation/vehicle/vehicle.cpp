@@ -2,6 +2,7 @@
 
 #include "simulation/entry_flight.hpp"
 #include "simulation/vehicle/parachute.hpp"
+#include "simulation/vehicle/rover_wheels.hpp"
 
 namespace aeolis::simulation {
 namespace {
@@ -9,6 +10,10 @@ namespace {
 constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [od137] 2 rpm
 constexpr double powered_drag_area_m2 = 5.0;                     // ours: what free fall at backshell separation shows
 constexpr double air_ends_m = 250000.0;
+
+Vector3 on_axis(const Vector3& station_B) {
+    return {0.0, 0.0, station_B.z()};
+}
 
 double dispersed(double fraction, Random random) {
     return 1.0 + fraction * random.normal();
@@ -18,19 +23,25 @@ double dispersed(double fraction, Random random) {
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
                  std::uint64_t case_number)
-    : ground_radius_m_(scenario.target.radius_m),
+    : terrain_(scenario, Random{seed, case_number, Stream::terrain}), masses_(scenario.masses),
       parachute_area_m2_(scenario.parachute_drag_area_m2 * dispersed(scenario.dispersions.parachute_drag_fraction,
                                                                      Random{seed, case_number, Stream::parachute})),
       aeroshell_factor_(dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag})),
       atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
-            Random{seed, case_number, Stream::wind}),
+            Random{seed, case_number, Stream::wind},
+            Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
-      configuration_(scenario.masses) {}
+      parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
+                           Random{seed, case_number, Stream::swing}.normal()),
+      configuration_(scenario.masses), centre_B_m_(configuration_.centre_B_m()),
+      thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario.masses).centre_B_m())),
+      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario.masses).centre_B_m())) {}
 
 void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
     const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
+    terrain_ = drawn.terrain_;
     parachute_area_m2_ = drawn.parachute_area_m2_;
     aeroshell_factor_ = drawn.aeroshell_factor_;
     atmosphere_ = drawn.atmosphere_;
@@ -59,15 +70,20 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         right_at_mortar_M_ = body_.v_MB_M.cross(body_.p_MoB_M).normalized();
         break;
     case PyroId::heatshield_separation:
+        let_go(separated_.heatshield, Stations::heatshield_m, masses_.heatshield_kg, heatshield_drag_area_m2);
         configuration_.heatshield = false;
         break;
     case PyroId::engine_valves:
         engines_.open_valves(now_s);
         break;
     case PyroId::backshell_separation:
+        let_go(separated_.backshell, Stations::backshell_m, masses_.backshell_and_parachute_kg,
+               parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
         configuration_.backshell = false;
         break;
     case PyroId::rover_separation:
+        if (configuration_.rover_on_stage)
+            rover_ = point_at(body_, Vector3{0.0, 0.0, Stations::rover_m} - centre_B_m_);
         configuration_.rover_on_stage = false;
         break;
     case PyroId::bridle_cutter:
@@ -79,6 +95,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     case PyroId::coolant_vent:
         break;
     }
+    recentre();
 }
 
 void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled,
@@ -89,35 +106,83 @@ void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_e
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
 }
 
+void Vehicle::let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const {
+    body.release(point_at(body_, Vector3{0.0, 0.0, station_m} - centre_B_m_), mass_kg, drag_area_m2);
+}
+
+PointMass Vehicle::point_at(const RigidBody& body, const Vector3& from_centre_B) const {
+    const Vector3 rate_B = body.rate_B_rps - body.q_MB.conjugate() * Vector3{0.0, 0.0, mars_spin_rps};
+    return {body.p_MoB_M + body.q_MB * from_centre_B, body.v_MB_M + body.q_MB * rate_B.cross(from_centre_B)};
+}
+
+void Vehicle::recentre() {
+    const Vector3 centre_B_m = configuration_.centre_B_m();
+    const PointMass moved = point_at(body_, centre_B_m - centre_B_m_);
+    body_.p_MoB_M = moved.p_MoB_M;
+    body_.v_MB_M = moved.v_MB_M;
+    centre_B_m_ = centre_B_m;
+}
+
+void Vehicle::fly_separated() {
+    for (SeparatedBody* body : {&separated_.heatshield, &separated_.backshell})
+        body->tick(body_.p_MoB_M, atmosphere_, wind_, terrain_);
+}
+
 bool Vehicle::parachute_open(double now_s) const {
     return configuration_.backshell && mortar_s_ && now_s - *mortar_s_ > line_stretch_s;
 }
 
 void Vehicle::step(double now_s, double step_s) {
+    wind_.advance(body_.p_MoB_M, body_.v_MB_M, altitude_m(), step_s);
     Step step;
     step.start_s = now_s;
     step.length_s = step_s;
     step.thrusters = thrusters_.mean(now_s, step_s);
+    step.thrusters.torque_B += (thrusters_from_B_m_ - centre_B_m_).cross(step.thrusters.force_B);
+    const Vector3 engines_arm_B_m = engines_from_B_m_ - centre_B_m_;
     step.engines_start_B_N = engines_.force_B_N();
-    step.engines_start_B_Nm = engines_.torque_B_Nm();
-    const double burnt_kg = engines_.advance(now_s, step_s, configuration_.propellant_kg());
+    step.engines_start_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_start_B_N);
+    const double burnt_kg =
+        step.thrusters.propellant_kg + engines_.advance(now_s, step_s, configuration_.propellant_kg());
     step.engines_end_B_N = engines_.force_B_N();
-    step.engines_end_B_Nm = engines_.torque_B_Nm();
+    step.engines_end_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_end_B_N);
     configuration_.burn(0.5 * burnt_kg); // mass in the middle of the step
-    const double mass_kg = moving_kg(now_s);
+    const double mass_kg = configuration_.rigid_kg();
     Vector3 force_M;
-    body_ = runge_kutta_step(
-        body_, step_s, mass_kg, configuration_.inertia(),
-        [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
+    if (rover_hangs()) {
+        const StageAndRover both = runge_kutta_step(
+            StageAndRover{body_, rover_}, step_s, mass_kg, configuration_.inertia(), configuration_.rover_kg(),
+            [&](double fraction, const StageAndRover& at) { return loads(step, fraction, at); }, &force_M);
+        body_ = both.stage;
+        rover_ = both.rover;
+    } else {
+        body_ = runge_kutta_step(
+            body_, step_s, mass_kg, configuration_.inertia(),
+            [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
+    }
     specific_force_M_ = force_M / mass_kg;
     configuration_.burn(0.5 * burnt_kg);
 }
 
-// In the air, stage and rover fall together; once the rover stands, the stage moves alone.
-double Vehicle::moving_kg(double now_s) const {
-    const bool hanging = !configuration_.rover_on_stage && configuration_.bridle;
-    if (!hanging || bridle_.load(now_s, altitude_m()) >= 1.0) return configuration_.total_kg();
-    return configuration_.rigid_kg();
+PointMass Vehicle::on_bridle(const RigidBody& stage, const PointMass& rover) const {
+    const PointMass confluence = point_at(stage, Vector3{0.0, 0.0, Bridle::confluence_m} - centre_B_m_);
+    return {rover.p_MoB_M - confluence.p_MoB_M, rover.v_MB_M - confluence.v_MB_M};
+}
+
+StageAndRoverLoads Vehicle::loads(Step& step, double fraction, const StageAndRover& both) const {
+    StageAndRoverLoads loads{wrench(step, fraction, both.stage)};
+    const double rover_kg = configuration_.rover_kg();
+    const PointMass offset = on_bridle(both.stage, both.rover);
+    const Vector3 pull_M =
+        bridle_.pull_N(step.start_s + fraction * step.length_s, rover_kg, offset.p_MoB_M, offset.v_MB_M);
+    const Vector3 arm_B = Vector3{0.0, 0.0, Bridle::confluence_m} - centre_B_m_;
+    loads.on_stage.force_M -= pull_M;
+    loads.on_stage.torque_B -= arm_B.cross(both.stage.q_MB.conjugate() * pull_M);
+    loads.on_rover_M = pull_M;
+    const Vector3& p = both.rover.p_MoB_M;
+    const double sunk_m = wheels_below_rover_m - terrain_.height_m(p);
+    if (sunk_m > 0.0) loads.on_rover_M += ground_reaction_N(rover_kg, sunk_m, terrain_.normal(p), both.rover.v_MB_M);
+    return loads;
 }
 
 Wrench Vehicle::wrench(Step& step, double fraction, const RigidBody& body) const {
@@ -127,25 +192,11 @@ Wrench Vehicle::wrench(Step& step, double fraction, const RigidBody& body) const
     Wrench wrench{body.q_MB * push_B, step.thrusters.torque_B + step.engines_start_B_Nm +
                                           fraction * (step.engines_end_B_Nm - step.engines_start_B_Nm)};
     add_air(now_s, step, body, wrench);
-    add_bridle(now_s, body, wrench);
     return wrench;
 }
 
-void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const {
-    if (configuration_.rover_on_stage || !configuration_.bridle) return;
-    const double radius_m = body.p_MoB_M.norm();
-    const double rover_kg = configuration_.rover_kg();
-    const double load = bridle_.load(now_s, radius_m - ground_radius_m_);
-    const Vector3 up = body.p_MoB_M / radius_m;
-    // The rover that is let down pulls less than its weight; on the ground, soil bears what the bridle no longer does.
-    if (load >= 1.0)
-        wrench.force_M += rover_kg * bridle_.acceleration_mps2(now_s) * up;
-    else
-        wrench.force_M -= load * rover_kg * gravity(body.p_MoB_M).norm() * up;
-}
-
 void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const {
-    const double altitude = body.p_MoB_M.norm() - ground_radius_m_;
+    const double altitude = terrain_.altitude_m(body.p_MoB_M);
     if (altitude > air_ends_m) return;
     const Air air = atmosphere_.at(altitude);
     const Vector3 through_air = body.v_MB_M - wind_.at(body.p_MoB_M, altitude);
@@ -162,10 +213,10 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     const double since_mortar_s = mortar_s_ ? now_s - *mortar_s_ : 0.0;
     const double inflation = mortar_s_ ? parachute_inflation(since_mortar_s) : 0.0;
     if (inflation > 0.0) {
-        const Vector3 lift = parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s);
+        const Vector3 lift = parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s, parachute_plane_rad_);
         const Vector3 pull_M = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
                                (parachute_lift_to_drag * lift - forward);
-        const Vector3 confluence_B{0.0, 0.0, -riser_behind_m};
+        const Vector3 confluence_B = Vector3{0.0, 0.0, riser_station_m} - centre_B_m_;
         wrench.force_M += pull_M;
         wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;
     }
@@ -212,13 +263,15 @@ Vehicle::Flow Vehicle::flow() const {
     return flow;
 }
 
-std::optional<double> Vehicle::wheels_height_m(double now_s) const {
-    if (configuration_.rover_on_stage || !configuration_.bridle) return {};
-    return altitude_m() - bridle_.standing_height_m(now_s);
+double Vehicle::wheels_height_m() const {
+    return terrain_.height_m(rover_.p_MoB_M) - wheels_below_rover_m;
 }
 
-double Vehicle::rover_descent_mps(double now_s) const {
-    return -body_.v_MB_M.dot(body_.p_MoB_M.normalized()) + bridle_.speed_mps(now_s);
+double Vehicle::swing_rad() const {
+    if (!rover_hangs()) return 0.0;
+    const Vector3 offset = on_bridle(body_, rover_).p_MoB_M;
+    const Vector3 down = -body_.p_MoB_M.normalized();
+    return std::atan2(down.cross(offset).norm(), down.dot(offset));
 }
 
 } // namespace aeolis::simulation

@@ -3,6 +3,7 @@
 #include "flight/devices/device_messages.hpp"
 #include "simulation/mars/atmosphere.hpp"
 #include "simulation/mars/point_mass.hpp"
+#include "simulation/mars/terrain.hpp"
 #include "simulation/mars/wind.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/vehicle/aeroshell.hpp"
@@ -10,17 +11,19 @@
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
+#include "simulation/vehicle/separated_bodies.hpp"
+#include "simulation/vehicle/stage_and_rover.hpp"
 #include "simulation/vehicle/thrusters.hpp"
 
 #include <optional>
 
 namespace aeolis::simulation {
 
-/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines and a
-/// bridle.
+/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines; and once
+/// it is let down, the rover on its bridle as a second body, which swings and comes to stand.
 ///
-/// Its point is the descent stage's, before separation the vehicle's. The ground is a sphere of the landing radius:
-/// flat around the site. Time is in seconds since the start of the world.
+/// Its point is the centre of mass of what is rigid: with each jettison it moves to that of what flies on, and with the
+/// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds since the start of the world.
 class Vehicle {
   public:
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
@@ -36,16 +39,21 @@ class Vehicle {
                  bool pay_out_bridle, double now_s);
     /// Flies on by at most 5 ms.
     void step(double now_s, double step_s);
+    /// A tick of 1/64 s has been flown: so do the bodies that it has let go.
+    void fly_separated();
 
     PointMass at() const { return {body_.p_MoB_M, body_.v_MB_M}; }
     const RigidBody& body() const { return body_; }
     const Quaternion& q_MB() const { return body_.q_MB; }
     const Vector3& specific_force_M() const { return specific_force_M_; } ///< [m/s²] mean over the last step
-    double altitude_m() const { return body_.p_MoB_M.norm() - ground_radius_m_; }
+    double altitude_m() const { return terrain_.altitude_m(body_.p_MoB_M); } ///< above the landing radius
+    double height_m() const { return terrain_.height_m(body_.p_MoB_M); }     ///< above the ground below
 
     const Configuration& configuration() const { return configuration_; }
     const Engines& engines() const { return engines_; }
     const Bridle& bridle() const { return bridle_; }
+    const SeparatedBodies& separated() const { return separated_; }
+    const Terrain& terrain() const { return terrain_; }
 
     /// What the air does to it now.
     struct Flow {
@@ -55,9 +63,12 @@ class Vehicle {
     Flow flow() const;
     bool parachute_open(double now_s) const;
 
-    /// Height of the rover's wheels above ground while it hangs on the bridle. [m]
-    std::optional<double> wheels_height_m(double now_s) const;
-    double rover_descent_mps(double now_s) const;
+    /// The rover while the bridle holds it off the stage: its centre of mass.
+    std::optional<PointMass> rover() const { return rover_hangs() ? std::optional{rover_} : std::nullopt; }
+    /// Height of its wheels above ground. [m]
+    double wheels_height_m() const;
+    /// How far the bridle is off the vertical. [rad]
+    double swing_rad() const;
 
   private:
     /// What pushes by itself over a step, constant or linear over it.
@@ -67,25 +78,40 @@ class Vehicle {
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
         std::optional<Trim> trim; ///< by the Mach number at its start: it changes slowly
     };
-    double moving_kg(double now_s) const;
+    /// A body whose station it is is let go.
+    void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const;
+    /// Where and how fast a point of it moves that is `from_centre_B` from its centre of mass.
+    PointMass point_at(const RigidBody& body, const Vector3& from_centre_B) const;
+    /// What is attached has changed: its point moves on to the centre of mass.
+    void recentre();
+    bool rover_hangs() const { return !configuration_.rover_on_stage && configuration_.bridle; }
+    /// From where the bridle meets the stage to the rover, and how that changes. [m, m/s] in M
+    PointMass on_bridle(const RigidBody& stage, const PointMass& rover) const;
+    StageAndRoverLoads loads(Step& step, double fraction, const StageAndRover& both) const;
     Wrench wrench(Step& step, double fraction, const RigidBody& body) const;
     void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
-    void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
-    double ground_radius_m_;
+    Terrain terrain_;
+    Masses masses_;
     double parachute_area_m2_; ///< with this case's own drag
+    double parachute_plane_rad_; ///< this case's own, from up, in which its lift begins
     double aeroshell_factor_;  ///< this case's own drag and lift
     Atmosphere atmosphere_;
     Wind wind_;
 
     RigidBody body_;
+    PointMass rover_; ///< while it hangs
     Vector3 specific_force_M_ = Vector3::Zero();
     Thrusters thrusters_;
     Configuration configuration_;
+    Vector3 centre_B_m_; ///< the point of body_, from the stage's own centre of mass
+    /// Origins of the drawings of thrusters and engines, likewise: on the axis.
+    Vector3 thrusters_from_B_m_, engines_from_B_m_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
     Vector3 right_at_mortar_M_ = Vector3::UnitZ(); ///< level, to the right of its flight
+    SeparatedBodies separated_;
 };
 
 } // namespace aeolis::simulation

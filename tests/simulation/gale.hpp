@@ -20,9 +20,7 @@ inline simulation::Scenario gale_scenario(double start_before_entry_s = 700.0) {
 
 /// The same with every seeded error switched off.
 inline simulation::Scenario undisturbed_scenario(double start_before_entry_s = 700.0) {
-    simulation::Scenario scenario = gale_scenario(start_before_entry_s);
-    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
-    return scenario;
+    return simulation::undispersed(gale_scenario(start_before_entry_s));
 }
 
 } // namespace aeolis::tests
