@@ -215,7 +215,7 @@ std::vector<double> row_measure(const std::vector<Node>& nodes) {
 } // namespace
 
 double reference_bank_rad(double velocity_mps, double held_rad) {
-    constexpr double early_mps = 5300.0, held_from_mps = 4400.0, held_to_mps = 1100.0, up_at_mps = 1040.0;
+    constexpr double early_mps = 5300.0, held_from_mps = 4400.0, held_to_mps = 1100.0, up_at_mps = 980.0;
     if (velocity_mps >= early_mps) return bank_before_guidance_rad;
     if (velocity_mps >= held_from_mps) {
         const double part = (velocity_mps - held_from_mps) / (early_mps - held_from_mps);

@@ -1,6 +1,7 @@
 #include "simulation/scenario.hpp"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 
@@ -222,7 +223,8 @@ bool disperses_later(const Scenario& scenario) {
 }
 
 Scenario undispersed(Scenario scenario) {
-    scenario.dispersions = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    // Each of its fields is a deviation, so a new one cannot be left out.
+    scenario.dispersions = std::bit_cast<Dispersions>(std::array<double, sizeof(Dispersions) / sizeof(double)>{});
     return scenario;
 }
 

@@ -26,6 +26,8 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
     : terrain_(scenario, Random{seed, case_number, Stream::terrain}), masses_(scenario.masses),
       parachute_area_m2_(scenario.parachute_drag_area_m2 * dispersed(scenario.dispersions.parachute_drag_fraction,
                                                                      Random{seed, case_number, Stream::parachute})),
+      parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
+                           Random{seed, case_number, Stream::swing}.normal()),
       aeroshell_factor_(dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag})),
       atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
@@ -33,8 +35,6 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
             Random{seed, case_number, Stream::wind},
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
-      parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
-                           Random{seed, case_number, Stream::swing}.normal()),
       configuration_(scenario.masses), centre_B_m_(configuration_.centre_B_m()),
       thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario.masses).centre_B_m())),
       engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario.masses).centre_B_m())) {}
@@ -43,6 +43,7 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
     const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
     terrain_ = drawn.terrain_;
     parachute_area_m2_ = drawn.parachute_area_m2_;
+    parachute_plane_rad_ = drawn.parachute_plane_rad_;
     aeroshell_factor_ = drawn.aeroshell_factor_;
     atmosphere_ = drawn.atmosphere_;
     wind_ = drawn.wind_;

@@ -12,8 +12,8 @@
 //
 // In       crossrange of the target, positive to the right; V            Out   sign of bank, number of reversals
 // Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation. Its numbers are ours, read
-//          off the crossrange at which [od137] began its first and third reversal, 3.4 km at 4970 m/s and 2.1 km at 1380 m/s;
-//          the second began at 10 km, and the least time is what is between the first and it
+//          off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned from there to its times);
+//          the second came only at 10 km, and the least time is what was between the first and it
 namespace aeolis::flight::gnc {
 
 /// Half width of the deadband [m] at a velocity.
