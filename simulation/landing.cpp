@@ -400,6 +400,9 @@ double Landing::peak_deceleration_mps2() const {
 std::optional<ParachuteReport> Landing::parachute() const {
     return state_->parachute;
 }
+SeparationReport Landing::separation() const {
+    return state_->world.separation();
+}
 double Landing::propellant_kg() const {
     return state_->world.inspect().propellant_kg;
 }

@@ -115,6 +115,12 @@ struct ParachuteReport {
     double mach = 0.0, dynamic_pressure_Pa = 0.0;
 };
 
+/// How near the vehicle came again to what it had let go; none: never nearer once that was clear.
+struct SeparationReport {
+    std::optional<double> heatshield_least_m, backshell_least_m;
+    const char* struck = nullptr; ///< the body that it came back to
+};
+
 class Landing {
   public:
     /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the events
@@ -158,6 +164,7 @@ class Landing {
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
     std::optional<ParachuteReport> parachute() const; ///< at deployment
+    SeparationReport separation() const;
     double propellant_kg() const;                     ///< left in the vehicle's tanks
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another

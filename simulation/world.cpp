@@ -9,6 +9,7 @@
 #include "simulation/vehicle/vehicle.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace aeolis::simulation {
 namespace {
@@ -24,6 +25,12 @@ constexpr double wheels_break_vertical_mps = 2.0;   // ours
 constexpr double wheels_break_horizontal_mps = 1.5; // ours
 constexpr double stage_clear_m = 50.0;              // ours: a stage that falls nearer has hit the rover
 constexpr double waits_for_cutting_s = 20.0;        // ours
+
+std::string seconds_text(double seconds) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2f s", seconds);
+    return text.data();
+}
 
 } // namespace
 
@@ -92,6 +99,14 @@ struct World::State {
         truth.speed_mps = vehicle.at().v_MB_M.norm();
         truth.sensed_mps2 = vehicle.specific_force_M().norm();
         return truth;
+    }
+
+    SeparationReport separation() const {
+        const auto& [heatshield, backshell] = vehicle.separated();
+        return {heatshield.least_m(), backshell.least_m(),
+                heatshield.struck()  ? "heatshield"
+                : backshell.struck() ? "backshell"
+                                     : nullptr};
     }
 
     void tell(const char* name) { events.push_back(moment(name, truth())); }
@@ -201,6 +216,7 @@ void World::State::fly_one_tick() {
         at = next;
     }
     ++ticks;
+    if (!stage_down) vehicle.fly_separated();
 }
 
 void World::State::touch_ground(std::int64_t grid) {
@@ -242,6 +258,8 @@ void World::State::watch() {
     if (outcome != Outcome::running) return;
     if (now.altitude_m < burns_up_m && vehicle.configuration().cruise_stage)
         return end(Outcome::not_commanded, "entered with the cruise stage attached: nothing was commanded");
+    if (const char* body = separation().struck)
+        return end(Outcome::lost, std::string{"the vehicle was struck by its "} + body + " at E+" + seconds_text(now.e_s));
     if (!contact && stage_down) return end(Outcome::impact, "the vehicle hit the ground");
     if (now.e_s > scenario.timeout_after_entry_s) return end(Outcome::timeout, "not on the ground in time");
     if (!contact) return;
@@ -390,6 +408,9 @@ std::optional<Sclk> World::contact() const {
 }
 double World::peak_deceleration_mps2() const {
     return state_->peak.mps2();
+}
+SeparationReport World::separation() const {
+    return state_->separation();
 }
 const NavigationSolution& World::solution() const {
     return state_->initial.solution;

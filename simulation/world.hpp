@@ -72,6 +72,7 @@ class World {
     const std::optional<TouchdownReport>& touchdown() const; ///< from the rover's first contact
     std::optional<Sclk> contact() const;                     ///< when that was
     double peak_deceleration_mps2() const;
+    SeparationReport separation() const;
     const NavigationSolution& solution() const;
     bool uhf_on() const; ///< the selected transmitter radiates through an antenna
     const Bus::Counters& bus_64_hz() const;

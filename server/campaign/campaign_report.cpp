@@ -127,6 +127,9 @@ std::string campaign_json(const Summary& summary, const Call& call) {
         .raw("propellant_kg", spread_json(summary.propellant_kg))
         .raw("least_margin_s", spread_json(summary.least_margin_s))
         .raw("least_margin", margin_json)
+        .raw("heatshield_least_m", spread_json(summary.heatshield_least_m))
+        .raw("backshell_least_m", spread_json(summary.backshell_least_m))
+        .count("recontacts", summary.recontacts)
         .count("failed", summary.failed)
         .raw("failures", json_array(summary.failures, failure_json))
         .count("jobs", call.jobs)
@@ -149,7 +152,9 @@ std::string campaign_table(const Summary& summary, const Call& call) {
             row("parachute Mach", summary.parachute_mach, 3) +
             row("parachute dynamic pressure Pa", summary.parachute_pressure_Pa, 1) +
             row("propellant left kg", summary.propellant_kg, 1) +
-            row("least timeline margin s", summary.least_margin_s, 3) + '\n';
+            row("least timeline margin s", summary.least_margin_s, 3) +
+            row("heatshield nearest m", summary.heatshield_least_m, 1) +
+            row("backshell nearest m", summary.backshell_least_m, 1) + '\n';
     const Ellipse& ellipse = summary.ellipse;
     text += fmt::format("99 % ellipse {:.2f} x {:.2f} km, major axis at azimuth {:.1f} deg, centre {:+.2f} km east, "
                         "{:+.2f} km north of the target\n",
@@ -164,6 +169,9 @@ std::string campaign_table(const Summary& summary, const Call& call) {
     if (const auto& margin = summary.least_margin)
         text += fmt::format("least timeline margin {:.3f} s, of {} in case {}\n", margin->margin_s, margin->timepoint,
                             margin->number);
+    if (summary.backshell_least_m.count > 0)
+        text += fmt::format("{} recontacts; backshell never nearer than {:.1f} m\n", summary.recontacts,
+                            summary.backshell_least_m.least);
     text += summary.failed == 0 ? "no case failed\n" : fmt::format("\n{} failed\n", summary.failed);
     text += failure_rows(summary, call);
     text += fmt::format("{} cases flown now in {:.1f} s, {} jobs, {:.2f} cases/s; results in {}\n", call.progress.flown,

@@ -88,6 +88,7 @@ Result<Summary> CampaignResults::summary() {
     if (const auto read = read_events(summary); !read) return read.error();
     if (const auto read = read_spreads(summary); !read) return read.error();
     if (const auto read = read_margin(summary); !read) return read.error();
+    if (const auto read = read_recontacts(summary); !read) return read.error();
     PlaneMoments plane;
     if (const auto read = each_touchdown_m([&](Point at) { plane.add(at.x, at.y); }); !read) return read.error();
     summary.ellipse = plane.ellipse_99();
@@ -145,7 +146,9 @@ Result<void> CampaignResults::read_spreads(Summary& into) {
           Wanted{"parachute_mach", all, &into.parachute_mach},
           Wanted{"parachute_pressure_Pa", all, &into.parachute_pressure_Pa},
           Wanted{"peak_deceleration_mps2", all, &into.peak_deceleration_mps2},
-          Wanted{"least_margin_s", all, &into.least_margin_s}}) {
+          Wanted{"least_margin_s", all, &into.least_margin_s},
+          Wanted{"heatshield_least_m", all, &into.heatshield_least_m},
+          Wanted{"backshell_least_m", all, &into.backshell_least_m}}) {
         const auto found = spread(wanted.column, wanted.source);
         if (!found) return found.error();
         *wanted.into = *found;
@@ -161,6 +164,13 @@ Result<void> CampaignResults::read_margin(Summary& into) {
         into.least_margin =
             LeastMargin{row.real(0), std::string{row.text(1)}, static_cast<std::uint64_t>(row.integer(2))};
     });
+}
+
+Result<void> CampaignResults::read_recontacts(Summary& into) {
+    auto struck = database_.prepare("SELECT count(*) FROM flown WHERE struck_by IS NOT NULL");
+    if (!struck) return struck.error();
+    return each_row(*struck,
+                    [&](const Statement& row) { into.recontacts = static_cast<std::uint64_t>(row.integer(0)); });
 }
 
 Result<void> CampaignResults::each(const char* sql, const std::function<void(Point)>& take) {

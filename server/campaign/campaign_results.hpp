@@ -50,6 +50,8 @@ struct Summary {
     Ellipse ellipse;
     Spread parachute_mach, parachute_pressure_Pa;
     Spread peak_deceleration_mps2, propellant_kg, least_margin_s;
+    Spread heatshield_least_m, backshell_least_m; ///< of the cases in which the vehicle came nearer to it again
+    std::uint64_t recontacts = 0;
     std::optional<LeastMargin> least_margin;
     std::vector<Failure> failures; ///< the first `failures_max`
     std::uint64_t failed = 0;
@@ -84,6 +86,7 @@ class CampaignResults {
     Result<void> read_events(Summary& into);
     Result<void> read_spreads(Summary& into);
     Result<void> read_margin(Summary& into);
+    Result<void> read_recontacts(Summary& into);
 
     archive::sqlite::Database database_;
     std::uint64_t cases_;

@@ -96,6 +96,7 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
         result.north_m = target.radius_m * (result.touchdown->latitude_deg - target.latitude_deg) * degree_rad;
     }
     result.parachute = landing.parachute();
+    result.separation = landing.separation();
     result.peak_deceleration_mps2 = landing.peak_deceleration_mps2();
     result.propellant_kg = landing.propellant_kg();
     result.least_margin = least_margin(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));

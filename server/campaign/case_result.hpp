@@ -28,6 +28,7 @@ struct CaseResult {
     std::optional<simulation::TouchdownReport> touchdown;
     double east_m = 0.0, north_m = 0.0; ///< of the target, when there was a touchdown
     std::optional<simulation::ParachuteReport> parachute;
+    simulation::SeparationReport separation;
     double peak_deceleration_mps2 = 0.0;
     double propellant_kg = 0.0; ///< left at the end, after fly-away
     std::optional<TimelineMargin> least_margin;

@@ -21,11 +21,20 @@ double real_time_factor(const Rehearsal& rehearsal, double wall_s) {
     return wall_s > 0.0 ? static_cast<double>(rehearsal.cycles()) * seconds_per_tick / wall_s : 0.0;
 }
 
+std::string metres_json(const std::optional<double>& metres) {
+    return metres ? json_number(*metres) : "null";
+}
+
+std::string nearest_text(const char* body, const std::optional<double>& metres) {
+    return metres ? fmt::format("the {} came within {:.1f} m again\n", body, *metres) : "";
+}
+
 } // namespace
 
 std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
     const auto touchdown = landing.touchdown();
+    const auto separation = landing.separation();
     const auto proof = rehearsal.proof();
     const auto& tones = rehearsal.tones();
     const auto event_json = [](const simulation::TruthEvent& event) {
@@ -61,6 +70,8 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
         .raw("events", json_array(sorted_events(rehearsal), event_json))
         .number("peak_deceleration_mps2", landing.peak_deceleration_mps2())
         .raw("touchdown", touchdown_json)
+        .raw("heatshield_least_m", metres_json(separation.heatshield_least_m))
+        .raw("backshell_least_m", metres_json(separation.backshell_least_m))
         .raw("timepoints", json_array(rehearsal.firings(), firing_json))
         .raw("tones", JsonObject{}
                           .count("sent", tones.sent)
@@ -99,6 +110,9 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
             fmt::format("touchdown {:.2f} m/s down, {:.2f} m/s across, {:.0f} m from the target, at {:.4f}, {:.4f}\n",
                         touchdown->vertical_mps, touchdown->horizontal_mps, touchdown->miss_m, touchdown->latitude_deg,
                         touchdown->longitude_deg);
+    const auto separation = landing.separation();
+    text += nearest_text("heatshield", separation.heatshield_least_m) +
+            nearest_text("backshell", separation.backshell_least_m);
     const auto& tones = rehearsal.tones();
     text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
                         rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);

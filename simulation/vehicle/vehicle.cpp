@@ -10,6 +10,7 @@ namespace {
 constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [od137] 2 rpm
 constexpr double powered_drag_area_m2 = 5.0;                     // ours: what free fall at backshell separation shows
 constexpr double air_ends_m = 250000.0;
+constexpr double heatshield_ahead_m = 1.0, backshell_ahead_m = -1.2; // ours
 
 double dispersed(double fraction, Random random) {
     return 1.0 + fraction * random.normal();
@@ -19,7 +20,7 @@ double dispersed(double fraction, Random random) {
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
                  std::uint64_t case_number)
-    : ground_radius_m_(scenario.target.radius_m),
+    : ground_radius_m_(scenario.target.radius_m), masses_(scenario.masses),
       parachute_area_m2_(scenario.parachute_drag_area_m2 * dispersed(scenario.dispersions.parachute_drag_fraction,
                                                                      Random{seed, case_number, Stream::parachute})),
       aeroshell_factor_(dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag})),
@@ -61,12 +62,15 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         mortar_s_ = now_s;
         break;
     case PyroId::heatshield_separation:
+        let_go(separated_.heatshield, heatshield_ahead_m, masses_.heatshield_kg, heatshield_drag_area_m2);
         configuration_.heatshield = false;
         break;
     case PyroId::engine_valves:
         engines_.open_valves(now_s);
         break;
     case PyroId::backshell_separation:
+        let_go(separated_.backshell, backshell_ahead_m, masses_.backshell_and_parachute_kg,
+               parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
         configuration_.backshell = false;
         break;
     case PyroId::rover_separation:
@@ -89,6 +93,17 @@ void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_e
     thrusters_.command(thrusters, thrusters_enabled && !configuration_.cruise_stage, now_s);
     engines_.command(engines, now_s);
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
+}
+
+void Vehicle::let_go(SeparatedBody& body, double ahead_m, double mass_kg, double drag_area_m2) const {
+    const Vector3 arm_B{0.0, 0.0, ahead_m};
+    body.release({body_.p_MoB_M + body_.q_MB * arm_B, body_.v_MB_M + body_.q_MB * body_.rate_B_rps.cross(arm_B)}, mass_kg,
+                 drag_area_m2);
+}
+
+void Vehicle::fly_separated() {
+    for (SeparatedBody* body : {&separated_.heatshield, &separated_.backshell})
+        body->tick(body_.p_MoB_M, atmosphere_, wind_, ground_radius_m_);
 }
 
 bool Vehicle::parachute_open(double now_s) const {

@@ -9,6 +9,7 @@
 #include "simulation/vehicle/configuration.hpp"
 #include "simulation/vehicle/engines.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
+#include "simulation/vehicle/separated_bodies.hpp"
 #include "simulation/vehicle/thrusters.hpp"
 
 #include <optional>
@@ -35,6 +36,8 @@ class Vehicle {
                  bool pay_out_bridle, double now_s);
     /// Flies on by at most 5 ms.
     void step(double now_s, double step_s);
+    /// A tick of 1/64 s has been flown: so do the bodies that it has let go.
+    void fly_separated();
 
     PointMass at() const { return {body_.p_MoB_M, body_.v_MB_M}; }
     const RigidBody& body() const { return body_; }
@@ -45,6 +48,7 @@ class Vehicle {
     const Configuration& configuration() const { return configuration_; }
     const Engines& engines() const { return engines_; }
     const Bridle& bridle() const { return bridle_; }
+    const SeparatedBodies& separated() const { return separated_; }
 
     /// What the air does to it now.
     struct Flow {
@@ -65,12 +69,15 @@ class Vehicle {
         Thrusters::Push thrusters;
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
     };
+    /// A body that sits `ahead_m` along z of B is let go.
+    void let_go(SeparatedBody& body, double ahead_m, double mass_kg, double drag_area_m2) const;
     double moving_kg(double now_s) const;
     Wrench wrench(const Step& step, double fraction, const RigidBody& body) const;
     void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
     void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
     double ground_radius_m_;
+    Masses masses_;
     double parachute_area_m2_; ///< with this case's own drag
     double aeroshell_factor_;  ///< this case's own drag and lift
     Atmosphere atmosphere_;
@@ -84,6 +91,7 @@ class Vehicle {
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
+    SeparatedBodies separated_;
 };
 
 } // namespace aeolis::simulation

@@ -26,6 +26,7 @@ constexpr double parachute_lasts_s = 20.0;
 constexpr double priming_above_backshell_m = 1340.0;
 constexpr double weight_mps2 = 3.71;
 constexpr double approach_end_m = 150.0, approach_end_mps = 32.0, slow_below_m = 32.0, sky_crane_mps = 0.75;
+constexpr double sidestep_mps = 12.0; // while it approaches: from under the backshell
 
 /// Lift to the left or right as in [od137], roughly.
 double bank_deg(const TruthState& truth) {
@@ -170,7 +171,8 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
     const double feed_forward_mps2 = truth.altitude_m > slow_below_m ? 3.0 : 0.0;
     const double climb_mps2 =
         weight_mps2 + feed_forward_mps2 + 1.2 * (wanted_climb_mps(truth.altitude_m) - up_mps);
-    const Vector3 push = climb_mps2 * local.up - 0.3 * (v - up_mps * local.up);
+    const Vector3 wanted_level = (mode == Mode::powered_approach ? sidestep_mps : 0.0) * local.east;
+    const Vector3 push = climb_mps2 * local.up - 0.3 * (v - up_mps * local.up - wanted_level);
     const double mass_kg = world.inspect().mass_kg - (world.contact() ? load_.rover_mass_kg : 0.0);
     const double thrust_N = std::min(25000.0, push.norm() * mass_kg);
     told_.attitude.thrust_direction_M = array3(push.normalized());

@@ -43,6 +43,7 @@ CaseResult made_up(std::uint64_t number) {
     result.north_m = 2000.0 * std::cos(3.0 * x);
     result.parachute = simulation::ParachuteReport{1.7 + 0.01 * std::sin(x), 500.0};
     result.propellant_kg = 40.0;
+    result.separation.backshell_least_m = 300.0 + x;
     result.least_margin = TimelineMargin{"sufr", 2.0 + std::sin(x)};
     result.events = {{"entry_interface", 0.0, 131052.0, 5845.2}, {"touchdown", 420.0 + std::sin(x), 7.4, 0.7}};
     return result;
@@ -63,7 +64,7 @@ std::vector<std::string> rows_of(const std::filesystem::path& file) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create);
     REQUIRE(database);
     std::vector<std::string> rows;
-    for (const auto& [sql, columns] : {std::pair{"SELECT * FROM cases ORDER BY number", 17},
+    for (const auto& [sql, columns] : {std::pair{"SELECT * FROM cases ORDER BY number", 20},
                                        std::pair{"SELECT * FROM events ORDER BY case_number, place", 6}}) {
         auto select = database->prepare(sql);
         REQUIRE(select);
@@ -412,6 +413,8 @@ void check_bands(int cases) {
     CHECK(number_at(json, {"parachute", "dynamic_pressure_Pa", "min"}) > 200.0);
     CHECK(number_at(json, {"parachute", "dynamic_pressure_Pa", "max"}) < 750.0);
     CHECK(number_at(json, {"propellant_kg", "min"}) > 0.0);
+    CHECK(number_at(json, {"recontacts"}) == 0);
+    CHECK(number_at(json, {"backshell_least_m", "min"}) > 10.0);
     CHECK(number_at(json, {"least_margin", "margin_s"}) >= 0.0);
 }
 
@@ -456,4 +459,24 @@ TEST_CASE("plots hold a dot a case and stay within their frames", "[campaign]") 
         CHECK(found == dots);
     }
     CHECK_FALSE(write_plots(*results, *summary, folder / "a.db"));
+}
+
+TEST_CASE("a campaign counts the cases that were struck by what they had let go, and says how near the others came",
+          "[campaign]") {
+    const test::TemporaryFolder folder;
+    run(folder / "a.db", 10, 2, [](std::uint64_t number) {
+        CaseResult result = made_up(number);
+        if (number == 4) result.separation = {{}, 7.5, "backshell"};
+        if (number == 5) result.separation = {};
+        return result;
+    });
+    const auto summary = summary_of(folder / "a.db", 10);
+    CHECK(summary.recontacts == 1);
+    CHECK(summary.heatshield_least_m.count == 0);
+    CHECK(summary.backshell_least_m.count == 9);
+    CHECK(summary.backshell_least_m.least == 7.5);
+    const auto json = json_of(campaign_json(summary, {}));
+    CHECK(number_at(json, {"recontacts"}) == 1);
+    CHECK(number_at(json, {"backshell_least_m", "max"}) == 310.0);
+    CHECK_THAT(campaign_table(summary, {}), Catch::Contains("1 recontacts; backshell never nearer than 7.5 m"));
 }

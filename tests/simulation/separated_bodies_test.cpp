@@ -1,0 +1,108 @@
+#include "simulation/vehicle/separated_bodies.hpp"
+
+#include "common/time.hpp"
+#include "simulation/devices/load.hpp"
+#include "simulation/venues/gnc_alone.hpp"
+#include "tests/simulation/gale.hpp"
+#include "tests/simulation/truth_pilot.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cmath>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+constexpr double ground_m = 3391148.0;
+const Vector3 up = Vector3::UnitX();
+
+PointMass at_height(double height_m, double descent_mps) {
+    return {(ground_m + height_m) * up, -descent_mps * up};
+}
+
+struct Still {
+    Atmosphere atmosphere{tests::gale_scenario().density_scale};
+    Wind wind{0.0, 0.0, 0.0, Random{1, 0, Stream::wind}};
+
+    void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, atmosphere, wind, ground_m); }
+};
+
+} // namespace
+
+TEST_CASE("a backshell under its parachute comes down at the terminal speed of its mass, and stays where it lands",
+          "[simulation][separated]") {
+    const Still air;
+    SeparatedBody backshell{10.0, 40.0};
+    backshell.release(at_height(1660.0, 79.0), 349.0, 205.0);
+    const auto fly = [&](double for_s) {
+        for (double t = 0.0; t < for_s; t += seconds_per_tick)
+            air.tick(backshell, ground_m * up);
+    };
+    fly(40.0);
+    const double height_m = backshell.at().p_MoB_M.norm() - ground_m;
+    const double terminal_mps = std::sqrt(2.0 * 349.0 * 3.71 / (air.atmosphere.at(height_m).density_kgm3 * 205.0));
+    CHECK(backshell.at().v_MB_M.norm() == Approx(terminal_mps).epsilon(0.01));
+    fly(60.0);
+    CHECK(backshell.at().p_MoB_M.norm() == Approx(ground_m));
+    CHECK(backshell.at().v_MB_M.isZero());
+}
+
+TEST_CASE("steps of a sixteenth of a second fly a separated body as steps of a tick do, within a centimetre",
+          "[simulation][separated]") {
+    const Still air;
+    SeparatedBody backshell{10.0, 40.0};
+    backshell.release(at_height(1660.0, 79.0), 349.0, 205.0);
+    PointMass fine = at_height(1660.0, 79.0);
+    for (int tick = 0; tick < 640; ++tick) {
+        air.tick(backshell, ground_m * up);
+        fine = runge_kutta_step(fine, seconds_per_tick, [&](double, const Vector3& p, const Vector3& v) -> Vector3 {
+            return -(0.5 * air.atmosphere.at(p.norm() - ground_m).density_kgm3 * 205.0 / 349.0 * v.norm()) * v;
+        });
+    }
+    CHECK((backshell.at().p_MoB_M - fine.p_MoB_M).norm() < 0.01);
+}
+
+TEST_CASE("only who has got clear can be struck, by coming within its size again", "[simulation][separated]") {
+    const Still air;
+    SeparatedBody body{5.0, 15.0};
+    const PointMass start = at_height(100000.0, 0.0);
+    body.release(start, 385.0, 0.0);
+    const auto vehicle_at = [&](double distance_m) { air.tick(body, start.p_MoB_M + distance_m * up); };
+    for (const double leaving_m : {1.0, 4.0, 2.0, 14.0, 4.0})
+        vehicle_at(leaving_m);
+    CHECK_FALSE(body.least_m());
+    for (const double distance_m : {16.0, 20.0, 8.0, 12.0})
+        vehicle_at(distance_m);
+    REQUIRE(body.least_m());
+    CHECK(*body.least_m() == Approx(8.0).margin(0.1));
+    CHECK_FALSE(body.struck());
+    vehicle_at(4.0);
+    CHECK(body.struck());
+}
+
+TEST_CASE("in a landing nothing that was let go is met again", "[simulation][separated]") {
+    tests::TruthPilot pilot{tests::undisturbed_scenario(620.0)};
+    pilot.run();
+    INFO(pilot.world.outcome_reason());
+    CHECK(pilot.world.outcome() == Outcome::touchdown);
+    const SeparationReport separation = pilot.world.separation();
+    CHECK(separation.struck == nullptr);
+    REQUIRE(separation.backshell_least_m);
+    CHECK(*separation.backshell_least_m > 50.0);
+}
+
+TEST_CASE("without the sidestep the backshell comes down on the stage, and the landing is lost", "[simulation][separated][gnc]") {
+    const Scenario scenario = tests::undisturbed_scenario(620.0);
+    World world{scenario, 1};
+    flight::Load load = load_for(scenario);
+    load.divert_m = 0.0;
+    GncAlone gnc{load, world.solution(), world.sclk()};
+    flight::DeviceOutputs out;
+    while (world.outcome() == Outcome::running) {
+        gnc.cycle(world.sense(), out);
+        world.advance(out);
+    }
+    CHECK(world.outcome() == Outcome::lost);
+    CHECK_THAT(world.outcome_reason(), Catch::StartsWith("the vehicle was struck by its backshell at E+"));
+}
