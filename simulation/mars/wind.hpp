@@ -1,22 +1,31 @@
 #pragma once
 
+#include "simulation/mars/gusts.hpp"
 #include "simulation/mars/mars.hpp"
 #include "simulation/random.hpp"
 
 namespace aeolis::simulation {
 
 /// Wind over Gale. No measured winds are published for the landing, so all of it is ours: the scenario's steady wind, a
-/// case's own constant part, and below 5 km two waves over height for gusts, half as strong. Horizontal everywhere.
+/// case's own constant part, below 5 km two waves over height half as strong, for shear; these are horizontal everywhere. And
+/// gusts, which change as the vehicle flies on.
 class Wind {
   public:
-    Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random);
+    Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts);
 
     /// Velocity of the air relative to rotating Mars [m/s] in M, at `p_MoB_M`, whose height is `altitude_m`.
     Vector3 at(const Vector3& p_MoB_M, double altitude_m) const;
 
+    /// The vehicle, there with that velocity, flies on for `step_s`.
+    void advance(const Vector3& p_MoB_M, const Vector3& v_MB_M, double altitude_m, double step_s) {
+        if (gusts_.blow_at(altitude_m))
+            gusts_.advance(altitude_m, (v_MB_M - at(p_MoB_M, altitude_m)).norm(), step_s);
+    }
+
   private:
-    double east_mps_, north_mps_, gust_mps_;
+    double east_mps_, north_mps_, wave_mps_;
     double east_phase_rad_, north_phase_rad_;
+    Gusts gusts_;
 };
 
 } // namespace aeolis::simulation

@@ -27,7 +27,8 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
       atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
-            Random{seed, case_number, Stream::wind}),
+            Random{seed, case_number, Stream::wind},
+            Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
       swing_direction_rad_(2.0 * std::numbers::pi * Random{seed, case_number, Stream::swing}.uniform()),
       configuration_(scenario.masses) {}
@@ -111,6 +112,7 @@ bool Vehicle::parachute_open(double now_s) const {
 }
 
 void Vehicle::step(double now_s, double step_s) {
+    wind_.advance(body_.p_MoB_M, body_.v_MB_M, altitude_m(), step_s);
     Step step;
     step.start_s = now_s;
     step.length_s = step_s;
