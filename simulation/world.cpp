@@ -66,8 +66,8 @@ struct World::State {
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
           buses(s, seed, case_number), imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
                                             Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
-          radars{Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar}},
-                 Radar{s.dispersions, s.target.radius_m, Random{seed, case_number, Stream::radar_b}}},
+          radars{Radar{s.dispersions, Random{seed, case_number, Stream::radar}},
+                 Radar{s.dispersions, Random{seed, case_number, Stream::radar_b}}},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
         events.reserve(8);
     }
@@ -231,13 +231,13 @@ void World::State::touch_ground(std::int64_t grid) {
         const double miss_m =
             scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
         contact = sclk() + seconds_per_tick;
-        p_MoRover_M = local.up * scenario.target.radius_m;
+        p_MoRover_M = local.up * vehicle.terrain().radius_m(at.p_MoB_M);
         touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(at.p_MoB_M) / degree_rad,
                                     longitude_rad(at.p_MoB_M) / degree_rad};
         if (vertical_mps > wheels_break_vertical_mps || horizontal_mps > wheels_break_horizontal_mps)
             end(Outcome::impact, "the rover touched the ground too fast");
     }
-    if (vehicle.altitude_m() <= 0.0) stage_down = sclk() + seconds_per_tick;
+    if (vehicle.height_m() <= 0.0) stage_down = sclk() + seconds_per_tick;
 }
 
 void World::State::watch() {
@@ -310,8 +310,8 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     const Dispersions& errors = s.scenario.dispersions;
     s.imus[0].disperse(errors, {seed, case_number, Stream::imu});
     s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b});
-    s.radars[0] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar}};
-    s.radars[1] = {errors, s.scenario.target.radius_m, {seed, case_number, Stream::radar_b}};
+    s.radars[0] = {errors, {seed, case_number, Stream::radar}};
+    s.radars[1] = {errors, {seed, case_number, Stream::radar_b}};
     s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
     s.buses.disperse(seed, case_number);
     return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
@@ -340,7 +340,7 @@ flight::DeviceInputs& World::sense() {
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
             flight::RadarBeam reading =
-                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB());
+                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
             if (blind) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }

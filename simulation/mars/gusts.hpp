@@ -3,6 +3,8 @@
 #include "simulation/mars/mars.hpp"
 #include "simulation/random.hpp"
 
+#include <array>
+
 namespace aeolis::simulation {
 
 /// Gusts along the way of one vehicle: each part a first-order Gauss–Markov process by the length of air flown through.

@@ -12,8 +12,8 @@ constexpr std::array<std::int64_t, Radar::beams> phase_grid{0, 13, 27, 40, 53, 6
 
 } // namespace
 
-Radar::Radar(const Dispersions& dispersions, double ground_radius_m, Random random)
-    : ground_radius_m_(ground_radius_m), range_scale_(1.0 + dispersions.radar_range_fraction * random.normal()),
+Radar::Radar(const Dispersions& dispersions, Random random)
+    : range_scale_(1.0 + dispersions.radar_range_fraction * random.normal()),
       range_noise_fraction_(0.5 * dispersions.radar_range_fraction),
       velocity_noise_mps_(0.5 * dispersions.radar_velocity_mps), noise_(random) {
     for (double& bias_mps : velocity_bias_mps_)
@@ -26,31 +26,21 @@ std::array<double, 3> Radar::direction_B(std::uint32_t beam) {
     return {std::sin(off_rad) * std::cos(azimuth_rad), std::sin(off_rad) * std::sin(azimuth_rad), std::cos(off_rad)};
 }
 
-Radar::Ray Radar::ray(const PointMass& at, const Vector3& direction_M) const {
-    // |p + s d| = ground radius, the nearer root.
-    const double half_b = at.p_MoB_M.dot(direction_M);
-    const double radius_m = at.p_MoB_M.norm();
-    const double c = (radius_m - ground_radius_m_) * (radius_m + ground_radius_m_);
-    const double discriminant = half_b * half_b - c;
-    if (half_b >= 0.0 || discriminant < 0.0 || c < 0.0) return {};
-    return {true, c / (-half_b + std::sqrt(discriminant)), -at.v_MB_M.dot(direction_M)};
-}
-
-flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB) {
+flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB,
+                                 const Terrain& terrain) {
     flight::RadarBeam reading;
     reading.beam = static_cast<std::uint8_t>(beam);
     reading.direction_B = direction_B(beam);
     const Vector3 direction_M = q_MB * vector3(reading.direction_B);
-    const Ray truth = ray(at, direction_M);
-    const double incidence_cosine = -direction_M.dot(at.p_MoB_M.normalized());
+    const Terrain::Meeting truth = terrain.meet(at.p_MoB_M, direction_M);
     // Drawn whether valid or not: the stream stays in step.
     const double range_noise = noise_.normal();
     const double velocity_noise = noise_.normal();
     reading.valid =
-        truth.hits && truth.range_m <= largest_range_m && incidence_cosine >= std::cos(largest_incidence_rad);
+        truth.meets && truth.range_m <= largest_range_m && truth.incidence_cosine >= std::cos(largest_incidence_rad);
     if (!reading.valid) return reading;
     reading.range_m = truth.range_m * (range_scale_ + range_noise_fraction_ * range_noise);
-    reading.range_rate_mps = truth.range_rate_mps + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;
+    reading.range_rate_mps = -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;
     return reading;
 }
 

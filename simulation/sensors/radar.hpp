@@ -2,6 +2,7 @@
 
 #include "flight/devices/device_messages.hpp"
 #include "simulation/mars/point_mass.hpp"
+#include "simulation/mars/terrain.hpp"
 #include "simulation/random.hpp"
 #include "simulation/scenario.hpp"
 
@@ -10,7 +11,7 @@
 
 namespace aeolis::simulation {
 
-/// The landing radar: six beams in turn, each at 20 Hz, over ground that is a sphere of the landing radius.
+/// The landing radar: six beams in turn, each at 20 Hz.
 ///
 /// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts] Ours: their azimuths (0°, 120°, 240°; 60°, 240°), a
 /// largest range of 12 km, a largest angle of 65° between beam and vertical, and that a reading is as of its tick.
@@ -18,27 +19,18 @@ namespace aeolis::simulation {
 /// again is noise on each reading. The hung rover, the plume and the falling heatshield are not seen.
 class Radar {
   public:
-    Radar(const Dispersions& dispersions, double ground_radius_m, Random random);
+    Radar(const Dispersions& dispersions, Random random);
 
     static constexpr std::uint32_t beams = 6;
     static std::array<double, 3> direction_B(std::uint32_t beam);
 
-    struct Ray {
-        bool hits = false;
-        double range_m = 0.0;
-        double range_rate_mps = 0.0; ///< positive: the range grows
-    };
-    /// The truth along one beam, whatever the radar can measure.
-    Ray ray(const PointMass& at, const Vector3& direction_M) const;
-
     /// The reading of one beam now.
-    flight::RadarBeam measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB);
+    flight::RadarBeam measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB, const Terrain& terrain);
 
     /// Whether `beam` measures between two moments of the 1600 Hz grid (first excluded, last included).
     static bool due(std::uint32_t beam, std::int64_t after, std::int64_t until);
 
   private:
-    double ground_radius_m_;
     double range_scale_, range_noise_fraction_, velocity_noise_mps_;
     std::array<double, beams> velocity_bias_mps_{};
     Random noise_;

@@ -20,11 +20,11 @@ void SeparatedBody::release(const PointMass& at, double mass_kg, double drag_are
 }
 
 void SeparatedBody::tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, const Wind& wind,
-                         double ground_radius_m) {
+                         const Terrain& terrain) {
     if (!released_) return;
     since_step_s_ += seconds_per_tick;
     if (since_step_s_ >= step_ticks * seconds_per_tick) {
-        if (!down_) fly(since_step_s_, atmosphere, wind, ground_radius_m);
+        if (!down_) fly(since_step_s_, atmosphere, wind, terrain);
         since_step_s_ = 0.0;
     }
     const double before_m = distance_m_;
@@ -33,16 +33,16 @@ void SeparatedBody::tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, c
     if (clear_ && distance_m_ < before_m) least_m_ = std::min(least_m_.value_or(distance_m_), distance_m_);
 }
 
-void SeparatedBody::fly(double step_s, const Atmosphere& atmosphere, const Wind& wind, double ground_radius_m) {
+void SeparatedBody::fly(double step_s, const Atmosphere& atmosphere, const Wind& wind, const Terrain& terrain) {
     at_ = runge_kutta_step(at_, step_s, [&](double, const Vector3& p, const Vector3& v) -> Vector3 {
-        const double altitude_m = p.norm() - ground_radius_m;
+        const double altitude_m = terrain.altitude_m(p);
         const Vector3 through_air = v - wind.at(p, altitude_m);
         return -(0.5 * atmosphere.at(altitude_m).density_kgm3 * drag_area_m2_ / mass_kg_ * through_air.norm()) *
                through_air;
     });
-    if (at_.p_MoB_M.norm() > ground_radius_m) return;
+    if (terrain.height_m(at_.p_MoB_M) > 0.0) return;
     down_ = true;
-    at_.p_MoB_M *= ground_radius_m / at_.p_MoB_M.norm();
+    at_.p_MoB_M *= terrain.radius_m(at_.p_MoB_M) / at_.p_MoB_M.norm();
     at_.v_MB_M.setZero();
 }
 

@@ -2,6 +2,7 @@
 
 #include "simulation/mars/atmosphere.hpp"
 #include "simulation/mars/point_mass.hpp"
+#include "simulation/mars/terrain.hpp"
 #include "simulation/mars/wind.hpp"
 
 #include <array>
@@ -23,7 +24,7 @@ class SeparatedBody {
     /// Let go at `at`. Once.
     void release(const PointMass& at, double mass_kg, double drag_area_m2);
     /// A tick has passed; the vehicle is now at `p_MoB_M`.
-    void tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, const Wind& wind, double ground_radius_m);
+    void tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, const Wind& wind, const Terrain& terrain);
 
     bool released() const { return released_; }
     /// How near the vehicle has come to it again; none: it never came nearer once it was clear.
@@ -35,7 +36,7 @@ class SeparatedBody {
     Vector3 from(const Vector3& p_MoB_M) const { return at_.p_MoB_M + since_step_s_ * at_.v_MB_M - p_MoB_M; }
 
   private:
-    void fly(double step_s, const Atmosphere& atmosphere, const Wind& wind, double ground_radius_m);
+    void fly(double step_s, const Atmosphere& atmosphere, const Wind& wind, const Terrain& terrain);
 
     double size_m_, clear_m_;
     double mass_kg_ = 1.0, drag_area_m2_ = 0.0;

@@ -20,7 +20,7 @@ double dispersed(double fraction, Random random) {
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
                  std::uint64_t case_number)
-    : ground_radius_m_(scenario.target.radius_m), masses_(scenario.masses),
+    : terrain_(scenario, Random{seed, case_number, Stream::terrain}), masses_(scenario.masses),
       parachute_area_m2_(scenario.parachute_drag_area_m2 * dispersed(scenario.dispersions.parachute_drag_fraction,
                                                                      Random{seed, case_number, Stream::parachute})),
       aeroshell_factor_(dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag})),
@@ -35,6 +35,7 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
 
 void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
     const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
+    terrain_ = drawn.terrain_;
     parachute_area_m2_ = drawn.parachute_area_m2_;
     aeroshell_factor_ = drawn.aeroshell_factor_;
     atmosphere_ = drawn.atmosphere_;
@@ -104,7 +105,7 @@ void Vehicle::let_go(SeparatedBody& body, double ahead_m, double mass_kg, double
 
 void Vehicle::fly_separated() {
     for (SeparatedBody* body : {&separated_.heatshield, &separated_.backshell})
-        body->tick(body_.p_MoB_M, atmosphere_, wind_, ground_radius_m_);
+        body->tick(body_.p_MoB_M, atmosphere_, wind_, terrain_);
 }
 
 bool Vehicle::parachute_open(double now_s) const {
@@ -135,7 +136,7 @@ void Vehicle::step(double now_s, double step_s) {
 // In the air, stage and rover fall together; once the rover stands, the stage moves alone.
 double Vehicle::moving_kg(double now_s) const {
     const bool hanging = !configuration_.rover_on_stage && configuration_.bridle;
-    if (!hanging || bridle_.load(now_s, altitude_m()) >= 1.0) return configuration_.total_kg();
+    if (!hanging || bridle_.load(now_s, height_m()) >= 1.0) return configuration_.total_kg();
     return configuration_.rigid_kg();
 }
 
@@ -152,10 +153,9 @@ Wrench Vehicle::wrench(const Step& step, double fraction, const RigidBody& body)
 
 void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const {
     if (configuration_.rover_on_stage || !configuration_.bridle) return;
-    const double radius_m = body.p_MoB_M.norm();
     const double rover_kg = configuration_.rover_kg();
-    const double load = bridle_.load(now_s, radius_m - ground_radius_m_);
-    const Vector3 up = body.p_MoB_M / radius_m;
+    const double load = bridle_.load(now_s, terrain_.height_m(body.p_MoB_M));
+    const Vector3 up = body.p_MoB_M.normalized();
     // The rover that is let down pulls less than its weight; on the ground, soil bears what the bridle no longer does.
     if (load >= 1.0)
         wrench.force_M += rover_kg * bridle_.acceleration_mps2(now_s) * up;
@@ -164,7 +164,7 @@ void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) co
 }
 
 void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const {
-    const double altitude = body.p_MoB_M.norm() - ground_radius_m_;
+    const double altitude = terrain_.altitude_m(body.p_MoB_M);
     if (altitude > air_ends_m) return;
     const Air air = atmosphere_.at(altitude);
     const Vector3 through_air = body.v_MB_M - wind_.at(body.p_MoB_M, altitude);
@@ -235,7 +235,7 @@ Vehicle::Flow Vehicle::flow() const {
 
 std::optional<double> Vehicle::wheels_height_m(double now_s) const {
     if (configuration_.rover_on_stage || !configuration_.bridle) return {};
-    return altitude_m() - bridle_.standing_height_m(now_s);
+    return height_m() - bridle_.standing_height_m(now_s);
 }
 
 double Vehicle::rover_descent_mps(double now_s) const {

@@ -3,6 +3,7 @@
 #include "flight/devices/device_messages.hpp"
 #include "simulation/mars/atmosphere.hpp"
 #include "simulation/mars/point_mass.hpp"
+#include "simulation/mars/terrain.hpp"
 #include "simulation/mars/wind.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/vehicle/bridle.hpp"
@@ -19,8 +20,7 @@ namespace aeolis::simulation {
 /// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines and a
 /// bridle.
 ///
-/// Its point is the descent stage's, before separation the vehicle's. The ground is a sphere of the landing radius:
-/// flat around the site. Time is in seconds since the start of the world.
+/// Its point is the descent stage's, before separation the vehicle's. Time is in seconds since the start of the world.
 class Vehicle {
   public:
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
@@ -43,12 +43,14 @@ class Vehicle {
     const RigidBody& body() const { return body_; }
     const Quaternion& q_MB() const { return body_.q_MB; }
     const Vector3& specific_force_M() const { return specific_force_M_; } ///< [m/s²] mean over the last step
-    double altitude_m() const { return body_.p_MoB_M.norm() - ground_radius_m_; }
+    double altitude_m() const { return terrain_.altitude_m(body_.p_MoB_M); } ///< above the landing radius
+    double height_m() const { return terrain_.height_m(body_.p_MoB_M); }     ///< above the ground below
 
     const Configuration& configuration() const { return configuration_; }
     const Engines& engines() const { return engines_; }
     const Bridle& bridle() const { return bridle_; }
     const SeparatedBodies& separated() const { return separated_; }
+    const Terrain& terrain() const { return terrain_; }
 
     /// What the air does to it now.
     struct Flow {
@@ -76,7 +78,7 @@ class Vehicle {
     void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
     void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
-    double ground_radius_m_;
+    Terrain terrain_;
     Masses masses_;
     double parachute_area_m2_; ///< with this case's own drag
     double aeroshell_factor_;  ///< this case's own drag and lift

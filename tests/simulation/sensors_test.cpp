@@ -52,20 +52,20 @@ TEST_CASE("the IMU gives 200 readings a second, three or four a tick, and counts
 }
 
 TEST_CASE("a radar beam measures slant range and closing speed to the ground below", "[simulation][radar]") {
-    Dispersions none;
-    none.radar_range_fraction = none.radar_velocity_mps = 0.0;
+    const Dispersions none = tests::undisturbed_scenario().dispersions;
     constexpr double ground_m = 3391148.0;
-    Radar radar{none, ground_m, Random{1, 0, Stream::radar}};
+    Radar radar{none, Random{1, 0, Stream::radar}};
+    const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const PointMass at{(ground_m + 2000.0) * up, -80.0 * up + 10.0 * Vector3::UnitY()};
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
 
-    const auto nadir = radar.measure(0, at, down);
+    const auto nadir = radar.measure(0, at, down, flat);
     REQUIRE(nadir.valid);
     CHECK(nadir.range_m == Approx(2000.0));
     CHECK(nadir.range_rate_mps == Approx(-80.0));
 
-    const auto slanted = radar.measure(1, at, down);
+    const auto slanted = radar.measure(1, at, down, flat);
     REQUIRE(slanted.valid);
     CHECK(slanted.range_m == Approx(2000.0 / std::cos(20.0 * degree_rad)).epsilon(1e-3));
     const Vector3 direction = down * vector3(slanted.direction_B);
@@ -74,16 +74,17 @@ TEST_CASE("a radar beam measures slant range and closing speed to the ground bel
 }
 
 TEST_CASE("a beam that is out of range, too flat or turned away measures nothing", "[simulation][radar]") {
-    Radar radar{Dispersions{}, 3391148.0, Random{1, 0, Stream::radar}};
+    Radar radar{Dispersions{}, Random{1, 0, Stream::radar}};
+    const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
     const auto at = [&](double altitude_m) { return PointMass{(3391148.0 + altitude_m) * up, -80.0 * up}; };
-    CHECK(radar.measure(0, at(11500.0), down).valid);
-    CHECK_FALSE(radar.measure(0, at(12500.0), down).valid);
+    CHECK(radar.measure(0, at(11500.0), down, flat).valid);
+    CHECK_FALSE(radar.measure(0, at(12500.0), down, flat).valid);
     const Quaternion tilted = down * rotation({0.0, 70.0 * degree_rad, 0.0});
-    CHECK_FALSE(radar.measure(0, at(500.0), tilted).valid);
+    CHECK_FALSE(radar.measure(0, at(500.0), tilted, flat).valid);
     const Quaternion away = down * rotation({std::numbers::pi, 0.0, 0.0});
-    CHECK_FALSE(radar.measure(0, at(500.0), away).valid);
+    CHECK_FALSE(radar.measure(0, at(500.0), away, flat).valid);
 }
 
 TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]") {

@@ -22,10 +22,11 @@ PointMass at_height(double height_m, double descent_mps) {
 }
 
 struct Still {
+    Terrain terrain{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     Atmosphere atmosphere{tests::gale_scenario().density_scale};
     Wind wind{0.0, 0.0, 0.0, Random{1, 0, Stream::wind}, Gusts{0.0, Random{1, 0, Stream::gust}}};
 
-    void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, atmosphere, wind, ground_m); }
+    void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, atmosphere, wind, terrain); }
 };
 
 } // namespace

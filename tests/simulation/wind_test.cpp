@@ -3,6 +3,7 @@
 #include "tests/support/catch.hpp"
 
 #include <cmath>
+#include <vector>
 
 using namespace aeolis::simulation;
 
@@ -23,7 +24,7 @@ Seen seen(double altitude_m, double airspeed_mps, double step_s, int lag) {
     Wind wind = gusty(3.0);
     const Horizon local = horizon(p_site);
     std::vector<double> east;
-    for (int i = 0; i < static_cast<int>(std::lround(20000.0 / step_s)); ++i) {
+    for (int i = 0; i < static_cast<int>(std::lround(8000.0 / step_s)); ++i) {
         wind.advance(p_site, wind.at(p_site, altitude_m) + airspeed_mps * local.up, altitude_m, step_s);
         east.push_back(wind.at(p_site, altitude_m).dot(local.east));
     }
@@ -66,6 +67,6 @@ TEST_CASE("a case has its own gusts, and the same ones each time", "[simulation]
             wind.advance(p_site, {0.0, 0.0, 80.0}, 1000.0, 0.005);
         return wind.at(p_site, 1000.0);
     };
-    CHECK(after_a_second(1) == after_a_second(1));
-    CHECK(after_a_second(1) != after_a_second(2));
+    CHECK((after_a_second(1) - after_a_second(1)).isZero());
+    CHECK((after_a_second(1) - after_a_second(2)).norm() > 0.1);
 }

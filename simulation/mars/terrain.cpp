@@ -1,0 +1,43 @@
+#include "simulation/mars/terrain.hpp"
+
+#include <cmath>
+
+namespace aeolis::simulation {
+
+Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(scenario.target.radius_m) {
+    const Dispersions& errors = scenario.dispersions;
+    height_m_ = scenario.ground.height_m + errors.terrain_height_m * random.normal();
+    const double rise = std::tan(scenario.ground.slope_deg * degree_rad);
+    const double azimuth_rad = scenario.ground.uphill_azimuth_deg * degree_rad;
+    const double rise_error = std::tan(errors.terrain_slope_deg * degree_rad);
+    const double east = rise * std::sin(azimuth_rad) + rise_error * random.normal();
+    const double north = rise * std::cos(azimuth_rad) + rise_error * random.normal();
+    const Horizon target = horizon(
+        place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
+    rise_M_ = east * target.east + north * target.north;
+}
+
+double Terrain::radius_m(const Vector3& p) const {
+    return landing_radius_m_ + height_m_ + landing_radius_m_ * p.dot(rise_M_) / p.norm();
+}
+
+Vector3 Terrain::normal(const Vector3& p) const {
+    const Vector3 up = p.normalized();
+    return (up - (rise_M_ - rise_M_.dot(up) * up)).normalized();
+}
+
+Terrain::Meeting Terrain::meet(const Vector3& p, const Vector3& direction_M) const {
+    const double ground_m = radius_m(p);
+    const Vector3 up = p.normalized();
+    const Vector3 upright = normal(p);
+    // |q + s d| = ground radius, the nearer root; q from the centre of the sphere that touches the ground below.
+    const Vector3 q = p + ground_m * (upright - up);
+    const double half_b = q.dot(direction_M);
+    const double distance_m = q.norm();
+    const double c = (distance_m - ground_m) * (distance_m + ground_m);
+    const double discriminant = half_b * half_b - c;
+    if (half_b >= 0.0 || discriminant < 0.0 || c < 0.0) return {};
+    return {true, c / (-half_b + std::sqrt(discriminant)), -direction_M.dot(upright)};
+}
+
+} // namespace aeolis::simulation

@@ -1,0 +1,94 @@
+#include "simulation/mars/terrain.hpp"
+
+#include "tests/simulation/gale.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/gnc_venue.hpp"
+
+#include <cmath>
+
+using namespace aeolis;
+using namespace aeolis::simulation;
+
+namespace {
+
+Scenario with_ground(const Ground& ground) {
+    Scenario scenario = tests::undisturbed_scenario();
+    scenario.ground = ground;
+    return scenario;
+}
+
+Terrain terrain_of(const Scenario& scenario, std::uint64_t case_number = 0) {
+    return {scenario, Random{1, case_number, Stream::terrain}};
+}
+
+/// Over the target, `north_m` and `east_m` away.
+Vector3 over_target(const Scenario& scenario, double height_m, double north_m = 0.0, double east_m = 0.0) {
+    const Horizon at = horizon(
+        place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
+    const Vector3 direction = scenario.target.radius_m * at.up + north_m * at.north + east_m * at.east;
+    return direction.normalized() * (scenario.target.radius_m + height_m);
+}
+
+} // namespace
+
+TEST_CASE("without height and slope the ground is the sphere of the landing radius", "[simulation][terrain]") {
+    const Scenario scenario = with_ground({});
+    const Terrain flat = terrain_of(scenario);
+    const Vector3 p = over_target(scenario, 2000.0, 7000.0, -3000.0);
+    CHECK(flat.radius_m(p) == scenario.target.radius_m);
+    CHECK(flat.height_m(p) == Approx(2000.0));
+    CHECK((flat.normal(p) - p.normalized()).isZero());
+    const auto below = flat.meet(p, -p.normalized());
+    CHECK(below.meets);
+    CHECK(below.range_m == Approx(2000.0));
+    CHECK_FALSE(flat.meet(p, p.normalized()).meets);
+}
+
+TEST_CASE("the ground rises towards its azimuth by its slope, and a ray meets it there", "[simulation][terrain]") {
+    const Scenario scenario = with_ground({-30.0, 10.0, 90.0});
+    const Terrain tilted = terrain_of(scenario);
+    const double rise = std::tan(10.0 * degree_rad);
+    CHECK(tilted.height_m(over_target(scenario, 0.0)) == Approx(30.0));
+    CHECK(tilted.height_m(over_target(scenario, 0.0, 0.0, 1000.0)) == Approx(30.0 - 1000.0 * rise).margin(0.1));
+    CHECK(tilted.height_m(over_target(scenario, 0.0, 1000.0, 0.0)) == Approx(30.0).margin(0.1));
+
+    const Vector3 p = over_target(scenario, 970.0); // 1000 m above the ground
+    const Horizon at = horizon(p);
+    CHECK(tilted.normal(p).dot(at.up) == Approx(std::cos(10.0 * degree_rad)));
+    CHECK(tilted.normal(p).dot(at.east) == Approx(-std::sin(10.0 * degree_rad)));
+    for (const double off_deg : {-50.0, -20.0, 0.0, 20.0, 50.0}) {
+        const Vector3 direction = -std::cos(off_deg * degree_rad) * at.up + std::sin(off_deg * degree_rad) * at.east;
+        const auto meeting = tilted.meet(p, direction);
+        REQUIRE(meeting.meets);
+        CHECK(std::abs(tilted.height_m(p + meeting.range_m * direction)) < 0.5);
+        CHECK(meeting.incidence_cosine == Approx(std::cos((off_deg - 10.0) * degree_rad)));
+    }
+}
+
+TEST_CASE("a case has its own height and rise, of the scenario's deviations", "[simulation][terrain]") {
+    Scenario scenario = with_ground({});
+    scenario.dispersions.terrain_height_m = 100.0;
+    scenario.dispersions.terrain_slope_deg = 2.0;
+    double heights_m2 = 0.0, rises2 = 0.0;
+    const Vector3 p = over_target(scenario, 0.0);
+    for (std::uint64_t i = 1; i <= 1000; ++i) {
+        const Terrain terrain = terrain_of(scenario, i);
+        heights_m2 += std::pow(terrain.height_m(p), 2);
+        rises2 += std::pow(terrain.normal(p).dot(horizon(p).east), 2);
+    }
+    CHECK(std::sqrt(heights_m2 / 1000.0) == Approx(100.0).epsilon(0.07));
+    CHECK(std::sqrt(rises2 / 1000.0) == Approx(std::sin(2.0 * degree_rad)).epsilon(0.07));
+}
+
+TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar tells it", "[simulation][terrain][gnc]") {
+    for (const Ground& ground : {Ground{150.0, 0.0, 0.0}, Ground{-150.0, 0.0, 0.0}, Ground{0.0, 5.0, 45.0}}) {
+        INFO(ground.height_m << " m, " << ground.slope_deg << " deg");
+        tests::GncVenue venue(with_ground(ground), 1);
+        venue.run();
+        REQUIRE(venue.world().outcome() == Outcome::touchdown);
+        const auto& touchdown = venue.world().touchdown();
+        REQUIRE(touchdown);
+        CHECK(touchdown->vertical_mps == Approx(0.75).margin(0.1));
+        CHECK(touchdown->horizontal_mps <= 0.5);
+    }
+}
