@@ -26,6 +26,18 @@ constexpr double wheels_break_horizontal_mps = 1.5; // ours
 constexpr double stage_clear_m = 50.0;              // ours: a stage that falls nearer has hit the rover
 constexpr double waits_for_cutting_s = 20.0;        // ours
 
+Imu imu(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
+    const bool a = unit == flight::Unit::a;
+    return {scenario.dispersions, Random{seed, case_number, a ? Stream::imu : Stream::imu_b},
+            Random{seed, case_number, a ? Stream::imu_mounting : Stream::imu_b_mounting}};
+}
+
+Radar radar(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
+    const bool a = unit == flight::Unit::a;
+    return {scenario.dispersions, Random{seed, case_number, a ? Stream::radar : Stream::radar_b},
+            Random{seed, case_number, a ? Stream::radar_dropout : Stream::radar_b_dropout}};
+}
+
 std::string seconds_text(double seconds) {
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.2f s", seconds);
@@ -64,10 +76,9 @@ struct World::State {
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
         : scenario(s), initial(initial_state(s, seed, case_number)),
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
-          buses(s, seed, case_number), imus{Imu{s.dispersions, Random{seed, case_number, Stream::imu}},
-                                            Imu{s.dispersions, Random{seed, case_number, Stream::imu_b}}},
-          radars{Radar{s.dispersions, Random{seed, case_number, Stream::radar}},
-                 Radar{s.dispersions, Random{seed, case_number, Stream::radar_b}}},
+          buses(s, seed, case_number), imus{imu(s, seed, case_number, flight::Unit::a),
+                                            imu(s, seed, case_number, flight::Unit::b)},
+          radars{radar(s, seed, case_number, flight::Unit::a), radar(s, seed, case_number, flight::Unit::b)},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
         events.reserve(8);
     }
@@ -107,6 +118,12 @@ struct World::State {
                 heatshield.struck()  ? "heatshield"
                 : backshell.struck() ? "backshell"
                                      : nullptr};
+    }
+
+    bool heatshield_hides(const flight::RadarBeam& beam) const {
+        if (vehicle.configuration().heatshield) return true;
+        return Radar::hides(vehicle.separated().heatshield.from(vehicle.at().p_MoB_M),
+                            vehicle.q_MB() * vector3(beam.direction_B));
     }
 
     void tell(const char* name) { events.push_back(moment(name, truth())); }
@@ -308,10 +325,10 @@ flight::NavigationShift World::disperse(std::uint64_t seed, std::uint64_t case_n
     s.initial.solution.v_MB_M_mps = array3(believed.v_MB_M + flown.v_MB_M);
 
     const Dispersions& errors = s.scenario.dispersions;
-    s.imus[0].disperse(errors, {seed, case_number, Stream::imu});
-    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b});
-    s.radars[0] = {errors, {seed, case_number, Stream::radar}};
-    s.radars[1] = {errors, {seed, case_number, Stream::radar_b}};
+    s.imus[0].disperse(errors, {seed, case_number, Stream::imu}, {seed, case_number, Stream::imu_mounting});
+    s.imus[1].disperse(errors, {seed, case_number, Stream::imu_b}, {seed, case_number, Stream::imu_b_mounting});
+    s.radars = {radar(s.scenario, seed, case_number, flight::Unit::a),
+                radar(s.scenario, seed, case_number, flight::Unit::b)};
     s.star_scanner = {errors, {seed, case_number, Stream::star_scanner}};
     s.buses.disperse(seed, case_number);
     return {array3(learnt.p_MoB_M), array3(learnt.v_MB_M), array4(s.star_scanner.error()),
@@ -335,13 +352,12 @@ flight::DeviceInputs& World::sense() {
         in.cruise_attitude = s.star_scanner.measure(s.vehicle.q_MB());
     if (s.buses.radar_was_read()) {
         const flight::Unit unit = s.buses.unit(flight::Device::radar);
-        const bool blind = s.vehicle.configuration().heatshield ||
-                           s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
+        const bool blind = s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
             flight::RadarBeam reading =
                 s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
-            if (blind) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
+            if (blind || s.heatshield_hides(reading)) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }
     }

@@ -13,15 +13,16 @@ constexpr double angle_noise_by_bias_s = 25.0;
 
 } // namespace
 
-Imu::Imu(const Dispersions& dispersions, Random random)
+Imu::Imu(const Dispersions& dispersions, Random random, Random mounting)
     : accelerometer_bias_mps2_(dispersions.imu_bias_mps2 * vector3(random.normal3())),
       accelerometer_scale_(dispersions.imu_bias_mps2 * scale_by_bias_s2pm * vector3(random.normal3())),
       gyro_bias_rps_(dispersions.gyro_bias_rps * vector3(random.normal3())),
       velocity_noise_mps_(dispersions.imu_bias_mps2 * velocity_noise_by_bias_s),
-      angle_noise_rad_(dispersions.gyro_bias_rps * angle_noise_by_bias_s), noise_(random) {}
+      angle_noise_rad_(dispersions.gyro_bias_rps * angle_noise_by_bias_s),
+      q_SensorsB_(rotation(dispersions.imu_misalignment_rad * vector3(mounting.normal3()))), noise_(random) {}
 
-void Imu::disperse(const Dispersions& dispersions, Random random) {
-    Imu other{dispersions, random};
+void Imu::disperse(const Dispersions& dispersions, Random random, Random mounting) {
+    Imu other{dispersions, random, mounting};
     other.delta_v_mps_ = delta_v_mps_;
     other.turned_ = turned_;
     *this = other;
@@ -38,9 +39,9 @@ void Imu::integrate(const Vector3& specific_force_M, const Quaternion& q_MB_star
 flight::ImuSample Imu::read(std::uint32_t count) {
     flight::ImuSample sample;
     sample.count = count;
-    Vector3 delta_v =
-        delta_v_mps_ + accelerometer_scale_.cwiseProduct(delta_v_mps_) + accelerometer_bias_mps2_ * reading_s;
-    Vector3 delta_angle = rotation_vector(turned_) + gyro_bias_rps_ * reading_s;
+    const Vector3 felt_mps = q_SensorsB_ * delta_v_mps_;
+    Vector3 delta_v = felt_mps + accelerometer_scale_.cwiseProduct(felt_mps) + accelerometer_bias_mps2_ * reading_s;
+    Vector3 delta_angle = q_SensorsB_ * rotation_vector(turned_) + gyro_bias_rps_ * reading_s;
     if (velocity_noise_mps_ > 0.0) delta_v += velocity_noise_mps_ * vector3(noise_.normal3());
     if (angle_noise_rad_ > 0.0) delta_angle += angle_noise_rad_ * vector3(noise_.normal3());
     sample.delta_v_mps = array3(delta_v);

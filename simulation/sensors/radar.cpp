@@ -1,21 +1,29 @@
 #include "simulation/sensors/radar.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace aeolis::simulation {
 namespace {
 
-constexpr double largest_range_m = 12000.0;                                                  // ours
+constexpr double least_range_m = 4.0;                                                        // ours
+constexpr std::array<double, Radar::beams> largest_range_m{12e3, 11e3, 11e3, 11e3, 9e3, 9e3}; // ours
 constexpr double largest_incidence_rad = 65.0 * degree_rad;                                  // ours
 constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 50.0, 50.0};  // [facts]
 constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0}; // ours
+constexpr double heatshield_radius_m = 2.25;                                                 // [facts]
+constexpr double half_beam_rad = 1.5 * degree_rad;                                           // [facts]
+constexpr double hides_within_m = 90.0;                                                      // ours: see the header
 constexpr std::int64_t period_grid = 80;                                                     // of 1/1600 s: 20 Hz
 constexpr std::array<std::int64_t, Radar::beams> phase_grid{0, 13, 27, 40, 53, 67};
 
 } // namespace
 
-Radar::Radar(const Dispersions& dispersions, Random random)
+Radar::Radar(const Dispersions& dispersions, Random random, Random dropouts)
     : range_scale_(1.0 + dispersions.radar_range_fraction * random.normal()),
       range_noise_fraction_(0.5 * dispersions.radar_range_fraction),
-      velocity_noise_mps_(0.5 * dispersions.radar_velocity_mps), noise_(random) {
+      velocity_noise_mps_(0.5 * dispersions.radar_velocity_mps), dropout_fraction_(dispersions.radar_dropout_fraction),
+      noise_(random), dropouts_(dropouts) {
     for (double& bias_mps : velocity_bias_mps_)
         bias_mps = dispersions.radar_velocity_mps * noise_.normal();
 }
@@ -24,6 +32,14 @@ std::array<double, 3> Radar::direction_B(std::uint32_t beam) {
     const double off_rad = off_axis_deg[beam] * degree_rad;
     const double azimuth_rad = azimuth_deg[beam] * degree_rad;
     return {std::sin(off_rad) * std::cos(azimuth_rad), std::sin(off_rad) * std::sin(azimuth_rad), std::cos(off_rad)};
+}
+
+bool Radar::hides(const Vector3& to_heatshield_M, const Vector3& direction_M) {
+    const double distance_m = to_heatshield_M.norm();
+    if (distance_m <= heatshield_radius_m) return true;
+    if (distance_m > hides_within_m) return false;
+    const double off_rad = std::acos(std::clamp(to_heatshield_M.dot(direction_M) / distance_m, -1.0, 1.0));
+    return off_rad <= std::asin(heatshield_radius_m / distance_m) + half_beam_rad;
 }
 
 flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const Quaternion& q_MB,
@@ -36,8 +52,9 @@ flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const 
     // Drawn whether valid or not: the stream stays in step.
     const double range_noise = noise_.normal();
     const double velocity_noise = noise_.normal();
-    reading.valid =
-        truth.meets && truth.range_m <= largest_range_m && truth.incidence_cosine >= std::cos(largest_incidence_rad);
+    const bool fails = dropouts_.uniform() < dropout_fraction_;
+    reading.valid = !fails && truth.meets && truth.range_m >= least_range_m && truth.range_m <= largest_range_m[beam] &&
+                    truth.incidence_cosine >= std::cos(largest_incidence_rad);
     if (!reading.valid) return reading;
     reading.range_m = truth.range_m * (range_scale_ + range_noise_fraction_ * range_noise);
     reading.range_rate_mps = -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;

@@ -54,7 +54,7 @@ TEST_CASE("the IMU gives 200 readings a second, three or four a tick, and counts
 TEST_CASE("a radar beam measures slant range and closing speed to the ground below", "[simulation][radar]") {
     const Dispersions none = tests::undisturbed_scenario().dispersions;
     constexpr double ground_m = 3391148.0;
-    Radar radar{none, Random{1, 0, Stream::radar}};
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const PointMass at{(ground_m + 2000.0) * up, -80.0 * up + 10.0 * Vector3::UnitY()};
@@ -74,7 +74,8 @@ TEST_CASE("a radar beam measures slant range and closing speed to the ground bel
 }
 
 TEST_CASE("a beam that is out of range, too flat or turned away measures nothing", "[simulation][radar]") {
-    Radar radar{Dispersions{}, Random{1, 0, Stream::radar}};
+    const Dispersions none = tests::undisturbed_scenario().dispersions;
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
     const Vector3 up = Vector3::UnitX();
     const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
@@ -85,6 +86,99 @@ TEST_CASE("a beam that is out of range, too flat or turned away measures nothing
     CHECK_FALSE(radar.measure(0, at(500.0), tilted, flat).valid);
     const Quaternion away = down * rotation({std::numbers::pi, 0.0, 0.0});
     CHECK_FALSE(radar.measure(0, at(500.0), away, flat).valid);
+}
+
+TEST_CASE("a beam measures up to its own range, and nothing nearer than four metres", "[simulation][radar]") {
+    const Dispersions none = tests::undisturbed_scenario().dispersions;
+    Radar radar{none, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
+    const Vector3 up = Vector3::UnitX();
+    const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
+    const auto measures = [&](std::uint32_t beam, double altitude_m) {
+        return radar.measure(beam, {(3391148.0 + altitude_m) * up, -80.0 * up}, down, flat).valid;
+    };
+    const double slant_20 = std::cos(20.0 * degree_rad), slant_50 = std::cos(50.0 * degree_rad);
+    CHECK(measures(1, 10900.0 * slant_20));
+    CHECK_FALSE(measures(1, 11100.0 * slant_20));
+    CHECK(measures(4, 8900.0 * slant_50));
+    CHECK_FALSE(measures(4, 9100.0 * slant_50));
+    CHECK(measures(0, 4.1));
+    CHECK_FALSE(measures(0, 3.9));
+}
+
+TEST_CASE("on a slope the beam that would graze it measures nothing, the one across from it does", "[simulation][radar]") {
+    Scenario scenario = tests::undisturbed_scenario();
+    scenario.ground.slope_deg = 18.0;
+    const Terrain slope{scenario, Random{1, 0, Stream::terrain}};
+    Radar radar{scenario.dispersions, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    const Horizon at = horizon(place(scenario.target.latitude_deg * degree_rad,
+                                     scenario.target.longitude_deg * degree_rad, scenario.target.radius_m));
+    // Beams 4 and 5 look 50° to either side; here along the rise, which is to the north.
+    Eigen::Matrix3d axes;
+    axes.col(2) = -at.up;
+    axes.col(0) = std::cos(60.0 * degree_rad) * at.north - std::sin(60.0 * degree_rad) * axes.col(2).cross(at.north);
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    const Quaternion q_MB{axes};
+    const PointMass above{(slope.radius_m(at.up) + 1000.0) * at.up, Vector3::Zero()};
+    const auto uphill = radar.measure(4, above, q_MB, slope), downhill = radar.measure(5, above, q_MB, slope);
+    CHECK(uphill.valid);
+    CHECK(uphill.range_m < 1000.0 / std::cos(50.0 * degree_rad));
+    CHECK_FALSE(downhill.valid);
+}
+
+TEST_CASE("the part of the radar's readings that the scenario says fails, and by its own draws", "[simulation][radar]") {
+    Dispersions some = tests::undisturbed_scenario().dispersions;
+    some.radar_range_fraction = 0.01;
+    const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
+    const Vector3 up = Vector3::UnitX();
+    const Quaternion down = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up);
+    const PointMass at{(3391148.0 + 1000.0) * up, -80.0 * up};
+    Radar whole{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    some.radar_dropout_fraction = 0.2;
+    Radar failing{some, Random{1, 0, Stream::radar}, Random{1, 0, Stream::radar_dropout}};
+    int failed = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const auto reading = failing.measure(0, at, down, flat), same = whole.measure(0, at, down, flat);
+        failed += !reading.valid;
+        if (reading.valid) CHECK(reading.range_m == same.range_m);
+    }
+    CHECK(failed / 2000.0 == Approx(0.2).margin(0.03));
+}
+
+TEST_CASE("the heatshield hides the beams that it stands in, until it is ninety metres off", "[simulation][radar]") {
+    const Vector3 ahead = Vector3::UnitZ();
+    const auto tilted = [](double deg) { return Vector3{std::sin(deg * degree_rad), 0.0, std::cos(deg * degree_rad)}; };
+    CHECK(Radar::hides(1.0 * ahead, tilted(50.0)));
+    CHECK(Radar::hides(5.0 * ahead, tilted(20.0)));
+    CHECK_FALSE(Radar::hides(5.0 * ahead, tilted(50.0)));
+    CHECK(Radar::hides(60.0 * ahead, ahead));
+    CHECK_FALSE(Radar::hides(60.0 * ahead, tilted(20.0)));
+    CHECK_FALSE(Radar::hides(91.0 * ahead, ahead));
+}
+
+TEST_CASE("a turned IMU tells what the vehicle feels and how it turns along its own axes", "[simulation][imu]") {
+    Dispersions turned = tests::undisturbed_scenario().dispersions;
+    turned.imu_misalignment_rad = 0.01;
+    const Random any{1, 0, Stream::imu};
+    Imu imu{turned, any, Random{1, 0, Stream::imu_mounting}};
+    const Quaternion q_MB = rotation({0.3, -0.2, 0.5});
+    const Vector3 rate_B{0.1, 0.05, -0.2}, force_B{1.0, -2.0, 3.0};
+    const Quaternion end = q_MB * rotation(0.005 * rate_B);
+    imu.integrate(q_MB * force_B, q_MB, end, 0.005);
+    const auto reading = imu.read(1);
+    const Vector3 felt = vector3(reading.delta_v_mps) / 0.005, angle = vector3(reading.delta_angle_rad) / 0.005;
+    CHECK(felt.norm() == Approx(force_B.norm()).epsilon(1e-5));
+    const double off_rad = (felt - force_B).norm() / force_B.norm();
+    CHECK(off_rad > 1e-3);
+    CHECK(off_rad < 0.04);
+    // Both are turned by the same small rotation, so the angle between them is kept.
+    const Vector3 rate_I = rate_B + q_MB.conjugate() * Vector3{0.0, 0.0, mars_spin_rps};
+    CHECK(felt.dot(angle) == Approx(force_B.dot(rate_I)).epsilon(1e-3));
+    Dispersions straight = turned;
+    straight.imu_misalignment_rad = 0.0;
+    Imu other{straight, any, Random{1, 0, Stream::imu_mounting}};
+    other.integrate(q_MB * force_B, q_MB, end, 0.005);
+    CHECK((vector3(other.read(1).delta_v_mps) / 0.005 - force_B).norm() < 2e-3);
 }
 
 TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]") {
