@@ -6,6 +6,20 @@
 
 namespace aeolis::simulation {
 
+Configuration Configuration::at_entry(const Masses& masses) {
+    Configuration configuration{masses};
+    configuration.cruise_stage = false;
+    configuration.cruise_balances = 0;
+    return configuration;
+}
+
+Configuration Configuration::at_powered_descent(const Masses& masses) {
+    Configuration configuration = at_entry(masses);
+    configuration.entry_balance_pairs = 0;
+    configuration.heatshield = configuration.backshell = false;
+    return configuration;
+}
+
 void Configuration::burn(double propellant_kg) {
     propellant_kg_ = std::max(0.0, propellant_kg_ - propellant_kg);
 }
@@ -22,6 +36,19 @@ double Configuration::total_kg() const {
     kg += cruise_balances * masses_.cruise_balance_each_kg;
     if (cruise_stage) kg += masses_.cruise_stage_kg;
     return kg;
+}
+
+Vector3 Configuration::centre_B_m() const {
+    const double entry_balances_kg = backshell ? 2 * entry_balance_pairs * masses_.entry_balance_each_kg : 0.0;
+    const double cruise_balances_kg = cruise_balances * masses_.cruise_balance_each_kg;
+    double along_kgm = Stations::balances_m * (entry_balances_kg + cruise_balances_kg);
+    if (bridle && rover_on_stage) along_kgm += Stations::rover_m * masses_.rover_kg;
+    if (backshell) along_kgm += Stations::backshell_m * masses_.backshell_and_parachute_kg;
+    if (heatshield) along_kgm += Stations::heatshield_m * masses_.heatshield_kg;
+    if (cruise_stage) along_kgm += Stations::cruise_stage_m * masses_.cruise_stage_kg;
+    // Cruise balance masses sit across from those that give the entry vehicle its lift.
+    const double across_kgm = Stations::balances_off_axis_m * (entry_balances_kg - cruise_balances_kg);
+    return Vector3{across_kgm, 0.0, along_kgm} / rigid_kg();
 }
 
 Inertia Configuration::inertia() const {

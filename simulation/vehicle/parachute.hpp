@@ -13,8 +13,9 @@ inline constexpr double first_peak_s = 1.8;
 /// 0 until line stretch, above 1 at the first peak, then 1.
 double parachute_inflation(double since_mortar_s);
 
-/// The bridles' confluence, behind the centre of mass: where the riser pulls. Ours.
-inline constexpr double riser_behind_m = 2.0;
+/// The bridles' confluence, where the riser pulls, along z from the descent stage's centre of mass: about 2 m behind that of all
+/// that hangs on it. Ours.
+inline constexpr double riser_station_m = -1.9;
 /// What friction in bridles and risers takes from the vehicle's swing below the confluence (wrist mode). [N m s] Ours.
 inline constexpr double wrist_damping_Nms = 900.0;
 

@@ -8,17 +8,17 @@
 namespace aeolis::simulation {
 
 /// Eight entry thrusters of 302 N [facts], mounted as flight/devices/effectors.hpp draws them. Pulses are rectangular;
-/// ours: a valve opens and closes 4 ms after it is told, and stays open 4 ms at least. Their propellant, about 12 kg of 3153,
-/// is not taken off the mass.
+/// ours: a valve opens and closes 4 ms after it is told, and stays open 4 ms at least. Specific impulse 220 s. [facts]
 class Thrusters {
   public:
     /// Pulses of the cycle that begins now.
     void command(const flight::ThrusterCommand& command, bool enabled, double now_s);
 
-    /// Mean over a step, in B.
+    /// Mean over a step, in B, torque about the drawing's origin; and what it burns.
     struct Push {
         Vector3 force_B = Vector3::Zero();
         Vector3 torque_B = Vector3::Zero();
+        double propellant_kg = 0.0;
     };
     Push mean(double now_s, double step_s) const;
 

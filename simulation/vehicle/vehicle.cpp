@@ -10,7 +10,10 @@ namespace {
 constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [od137] 2 rpm
 constexpr double powered_drag_area_m2 = 5.0;                     // ours: what free fall at backshell separation shows
 constexpr double air_ends_m = 250000.0;
-constexpr double heatshield_ahead_m = 1.0, backshell_ahead_m = -1.2; // ours
+
+Vector3 on_axis(const Vector3& station_B) {
+    return {0.0, 0.0, station_B.z()};
+}
 
 double dispersed(double fraction, Random random) {
     return 1.0 + fraction * random.normal();
@@ -31,7 +34,9 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
       swing_direction_rad_(2.0 * std::numbers::pi * Random{seed, case_number, Stream::swing}.uniform()),
-      configuration_(scenario.masses) {}
+      configuration_(scenario.masses), centre_B_m_(configuration_.centre_B_m()),
+      thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario.masses).centre_B_m())),
+      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario.masses).centre_B_m())) {}
 
 void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
     const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
@@ -64,14 +69,14 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         mortar_s_ = now_s;
         break;
     case PyroId::heatshield_separation:
-        let_go(separated_.heatshield, heatshield_ahead_m, masses_.heatshield_kg, heatshield_drag_area_m2);
+        let_go(separated_.heatshield, Stations::heatshield_m, masses_.heatshield_kg, heatshield_drag_area_m2);
         configuration_.heatshield = false;
         break;
     case PyroId::engine_valves:
         engines_.open_valves(now_s);
         break;
     case PyroId::backshell_separation:
-        let_go(separated_.backshell, backshell_ahead_m, masses_.backshell_and_parachute_kg,
+        let_go(separated_.backshell, Stations::backshell_m, masses_.backshell_and_parachute_kg,
                parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
         configuration_.backshell = false;
         break;
@@ -87,6 +92,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     case PyroId::coolant_vent:
         break;
     }
+    recentre();
 }
 
 void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_enabled,
@@ -97,10 +103,21 @@ void Vehicle::command(const flight::ThrusterCommand& thrusters, bool thrusters_e
     if (pay_out_bridle && !configuration_.rover_on_stage) bridle_.start(now_s);
 }
 
-void Vehicle::let_go(SeparatedBody& body, double ahead_m, double mass_kg, double drag_area_m2) const {
-    const Vector3 arm_B{0.0, 0.0, ahead_m};
-    body.release({body_.p_MoB_M + body_.q_MB * arm_B, body_.v_MB_M + body_.q_MB * body_.rate_B_rps.cross(arm_B)}, mass_kg,
-                 drag_area_m2);
+void Vehicle::let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const {
+    body.release(point_at(body_, Vector3{0.0, 0.0, station_m} - centre_B_m_), mass_kg, drag_area_m2);
+}
+
+PointMass Vehicle::point_at(const RigidBody& body, const Vector3& from_centre_B) const {
+    const Vector3 rate_B = body.rate_B_rps - body.q_MB.conjugate() * Vector3{0.0, 0.0, mars_spin_rps};
+    return {body.p_MoB_M + body.q_MB * from_centre_B, body.v_MB_M + body.q_MB * rate_B.cross(from_centre_B)};
+}
+
+void Vehicle::recentre() {
+    const Vector3 centre_B_m = configuration_.centre_B_m();
+    const PointMass moved = point_at(body_, centre_B_m - centre_B_m_);
+    body_.p_MoB_M = moved.p_MoB_M;
+    body_.v_MB_M = moved.v_MB_M;
+    centre_B_m_ = centre_B_m;
 }
 
 void Vehicle::fly_separated() {
@@ -118,11 +135,14 @@ void Vehicle::step(double now_s, double step_s) {
     step.start_s = now_s;
     step.length_s = step_s;
     step.thrusters = thrusters_.mean(now_s, step_s);
+    step.thrusters.torque_B += (thrusters_from_B_m_ - centre_B_m_).cross(step.thrusters.force_B);
+    const Vector3 engines_arm_B_m = engines_from_B_m_ - centre_B_m_;
     step.engines_start_B_N = engines_.force_B_N();
-    step.engines_start_B_Nm = engines_.torque_B_Nm();
-    const double burnt_kg = engines_.advance(now_s, step_s, configuration_.propellant_kg());
+    step.engines_start_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_start_B_N);
+    const double burnt_kg =
+        step.thrusters.propellant_kg + engines_.advance(now_s, step_s, configuration_.propellant_kg());
     step.engines_end_B_N = engines_.force_B_N();
-    step.engines_end_B_Nm = engines_.torque_B_Nm();
+    step.engines_end_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_end_B_N);
     configuration_.burn(0.5 * burnt_kg); // mass in the middle of the step
     const double mass_kg = moving_kg(now_s);
     Vector3 force_M;
@@ -187,7 +207,7 @@ void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const
         const double swing_rad = parachute_swing_rad(since_mortar_s - line_stretch_s);
         const Vector3 pull_M = -pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
                                (forward + std::tan(swing_rad) * sideways).normalized();
-        const Vector3 confluence_B{0.0, 0.0, -riser_behind_m};
+        const Vector3 confluence_B = Vector3{0.0, 0.0, riser_station_m} - centre_B_m_;
         wrench.force_M += pull_M;
         wrench.torque_B += confluence_B.cross(body.q_MB.conjugate() * pull_M) - wrist_damping_Nms * body.rate_B_rps;
     }

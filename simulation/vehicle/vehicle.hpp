@@ -20,7 +20,8 @@ namespace aeolis::simulation {
 /// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines and a
 /// bridle.
 ///
-/// Its point is the descent stage's, before separation the vehicle's. Time is in seconds since the start of the world.
+/// Its point is the centre of mass of what is rigid: with each jettison it moves to that of what flies on, and with the
+/// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds since the start of the world.
 class Vehicle {
   public:
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
@@ -71,8 +72,12 @@ class Vehicle {
         Thrusters::Push thrusters;
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
     };
-    /// A body that sits `ahead_m` along z of B is let go.
-    void let_go(SeparatedBody& body, double ahead_m, double mass_kg, double drag_area_m2) const;
+    /// A body whose station it is is let go.
+    void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const;
+    /// Where and how fast a point of it moves that is `from_centre_B` from its centre of mass.
+    PointMass point_at(const RigidBody& body, const Vector3& from_centre_B) const;
+    /// What is attached has changed: its point moves on to the centre of mass.
+    void recentre();
     double moving_kg(double now_s) const;
     Wrench wrench(const Step& step, double fraction, const RigidBody& body) const;
     void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
@@ -90,6 +95,9 @@ class Vehicle {
     double swing_direction_rad_; ///< from east, of the parachute's swing
     Thrusters thrusters_;
     Configuration configuration_;
+    Vector3 centre_B_m_; ///< the point of body_, from the stage's own centre of mass
+    /// Origins of the drawings of thrusters and engines, likewise: on the axis.
+    Vector3 thrusters_from_B_m_, engines_from_B_m_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;

@@ -1,5 +1,6 @@
 #include "simulation/vehicle/vehicle.hpp"
 
+#include "common/time.hpp"
 #include "simulation/vehicle/parachute.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
@@ -51,6 +52,56 @@ TEST_CASE("the masses of each phase are the published ones", "[simulation][vehic
     CHECK(configuration.total_kg() == Approx(2269.0));
     configuration.bridle = false;
     CHECK(configuration.total_kg() == Approx(2269.0 - 899.0));
+}
+
+TEST_CASE("the entry vehicle's centre of mass is a tenth of a metre off the axis until the balance masses are gone",
+          "[simulation][vehicle]") {
+    Configuration configuration{Masses{}};
+    CHECK(std::abs(configuration.centre_B_m().x()) < 1e-12); // the cruise balance masses hold it
+    configuration = Configuration::at_entry(Masses{});
+    CHECK(configuration.centre_B_m().x() == Approx(0.1).margin(0.001)); // [facts]
+    const double at_entry_m = configuration.centre_B_m().z();
+    configuration.entry_balance_pairs = 0;
+    CHECK(configuration.centre_B_m().x() == 0.0);
+    configuration.heatshield = false;
+    CHECK(configuration.centre_B_m().z() < at_entry_m); // it moves away from what has gone
+    configuration.backshell = false;
+    CHECK((configuration.centre_B_m() - Configuration::at_powered_descent(Masses{}).centre_B_m()).isZero());
+    configuration.rover_on_stage = false;
+    CHECK(configuration.centre_B_m().isZero());
+}
+
+TEST_CASE("a jettison gives each part its share of the momentum, and the rest flies on about its own centre of mass",
+          "[simulation][vehicle]") {
+    Vehicle vehicle = vehicle_at(400000.0, 3000.0); // above the air
+    flight::ThrusterCommand turning;
+    turning.on_s[0] = turning.on_s[4] = turning.on_s[7] = seconds_per_tick;
+    for (int i = 0; i < 64; ++i) {
+        vehicle.command(turning, true, {}, false, i * seconds_per_tick);
+        for (int step = 0; step < 4; ++step)
+            vehicle.step((i + 0.25 * step) * seconds_per_tick, 0.25 * seconds_per_tick);
+    }
+    REQUIRE(vehicle.body().rate_B_rps.norm() > 0.1);
+    const double total_kg = vehicle.configuration().total_kg();
+    const PointMass before = vehicle.at();
+    vehicle.fire(flight::PyroId::heatshield_separation, 1.0);
+    const double rest_kg = vehicle.configuration().total_kg();
+    const PointMass rest = vehicle.at(), shield = vehicle.separated().heatshield.at();
+    CHECK((rest.v_MB_M - before.v_MB_M).norm() > 0.001);
+    // Within what the propellant burnt here has moved the centre of mass: the point follows it at jettisons only.
+    CHECK((total_kg * before.v_MB_M - rest_kg * rest.v_MB_M - 385.0 * shield.v_MB_M).norm() < 1e-5 * total_kg);
+    CHECK((total_kg * before.p_MoB_M - rest_kg * rest.p_MoB_M - 385.0 * shield.p_MoB_M).norm() < 1e-4 * total_kg);
+}
+
+TEST_CASE("thruster pulses take their propellant off the mass", "[simulation][vehicle]") {
+    Vehicle vehicle = vehicle_at(400000.0, 3000.0);
+    const double before_kg = vehicle.configuration().total_kg();
+    flight::ThrusterCommand both;
+    both.on_s[0] = both.on_s[1] = 0.01;
+    vehicle.command(both, true, {}, false, 0.0);
+    fly(vehicle, 0.0, 0.1);
+    CHECK(before_kg - vehicle.configuration().total_kg() ==
+          Approx(2 * 302.0 * 0.01 / (220.0 * standard_gravity_mps2)).epsilon(1e-6));
 }
 
 TEST_CASE("under the parachute it falls at the terminal speed of its drag area", "[simulation][parachute]") {
