@@ -144,7 +144,7 @@ struct World::State {
         watch();
     }
     void fly_one_tick();
-    void touch_ground(std::int64_t grid);
+    void touch_ground(const std::optional<PointMass>& rover);
     void watch();
 };
 
@@ -219,12 +219,14 @@ void World::State::fly_one_tick() {
         const std::int64_t next = std::min(end_grid, (at / grid_per_reading + 1) * grid_per_reading);
         const double step_s = seconds(next - at);
         const Quaternion before = vehicle.q_MB();
-        Vector3 felt = -free_fall(vehicle.at().p_MoB_M, Vector3::Zero());
-        if (!stage_down) {
+        const bool stands = stage_down.has_value();
+        if (!stands) {
+            const std::optional<PointMass> rover = vehicle.rover();
             vehicle.step(seconds(at), step_s);
-            felt = vehicle.specific_force_M();
-            touch_ground(next);
+            touch_ground(rover);
         }
+        const Vector3 felt =
+            stands ? Vector3{-free_fall(vehicle.at().p_MoB_M, Vector3::Zero())} : vehicle.specific_force_M();
         imu.integrate(felt, before, vehicle.q_MB(), step_s);
         if (next % grid_per_reading == 0) {
             const flight::ImuSample sample = imu.read(static_cast<std::uint32_t>(next / grid_per_reading));
@@ -236,21 +238,21 @@ void World::State::fly_one_tick() {
     if (!stage_down) vehicle.fly_separated();
 }
 
-void World::State::touch_ground(std::int64_t grid) {
-    const double time_s = seconds(grid);
-    const PointMass& at = vehicle.at();
-    if (const auto wheels_m = vehicle.wheels_height_m(time_s); !contact && wheels_m && *wheels_m <= 0.0) {
-        const Horizon local = horizon(at.p_MoB_M);
-        const double vertical_mps = vehicle.rover_descent_mps(time_s);
-        const double horizontal_mps = std::hypot(at.v_MB_M.dot(local.east), at.v_MB_M.dot(local.north));
+// `rover` as it was a step ago: the ground has begun to slow it since its wheels touched.
+void World::State::touch_ground(const std::optional<PointMass>& rover) {
+    if (rover && !contact && vehicle.wheels_height_m() <= 0.0) {
+        const Vector3& p = rover->p_MoB_M;
+        const Horizon local = horizon(p);
+        const double vertical_mps = -rover->v_MB_M.dot(local.up);
+        const double horizontal_mps = std::hypot(rover->v_MB_M.dot(local.east), rover->v_MB_M.dot(local.north));
         const Vector3 target =
             place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0);
         const double miss_m =
             scenario.target.radius_m * std::atan2(target.cross(local.up).norm(), target.dot(local.up));
         contact = sclk() + seconds_per_tick;
-        p_MoRover_M = local.up * vehicle.terrain().radius_m(at.p_MoB_M);
-        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(at.p_MoB_M) / degree_rad,
-                                    longitude_rad(at.p_MoB_M) / degree_rad};
+        p_MoRover_M = p;
+        touchdown = TouchdownReport{vertical_mps, horizontal_mps, miss_m, latitude_rad(p) / degree_rad,
+                                    longitude_rad(p) / degree_rad};
         if (vertical_mps > wheels_break_vertical_mps || horizontal_mps > wheels_break_horizontal_mps)
             end(Outcome::impact, "the rover touched the ground too fast");
     }
@@ -454,6 +456,7 @@ World::Inspection World::inspect() const {
             .density_kgm3 = flow.density_kgm3,
             .thrust_N = s.vehicle.engines().thrust_N(),
             .bridle_m = s.vehicle.bridle().payed_out_m(s.now_s()),
+            .swing_deg = s.vehicle.swing_rad() / degree_rad,
             .q_MB = array4(s.vehicle.q_MB()),
             .rate_B_rps = array3(s.vehicle.body().rate_B_rps),
             .parachute_open = s.vehicle.parachute_open(s.now_s())};

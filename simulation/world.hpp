@@ -89,6 +89,7 @@ class World {
         double density_kgm3 = 0.0;
         double thrust_N = 0.0;
         double bridle_m = 0.0;
+        double swing_deg = 0.0; ///< of the bridle, off the vertical
         std::array<double, 4> q_MB{1, 0, 0, 0};
         std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
         bool uhf_on = false; ///< transmitter on and an antenna selected

@@ -1,6 +1,7 @@
 #include "simulation/vehicle/bridle.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace aeolis::simulation {
 namespace {
@@ -8,6 +9,10 @@ namespace {
 constexpr double ramp_s = 0.6;
 constexpr double steady_mps = Bridle::length_m / (Bridle::pay_out_s - ramp_s);
 constexpr double ramp_mps2 = steady_mps / ramp_s;
+constexpr double stowed_m = 0.2; // from the confluence to the rover, with its weight on it
+constexpr double weight_mps2 = 3.71; // [facts]
+constexpr double stretch_by_weight_m = 0.015;
+constexpr double damping_ratio = 0.3;
 
 } // namespace
 
@@ -33,17 +38,15 @@ double Bridle::speed_mps(double now_s) const {
     return std::min({steady_mps, ramp_mps2 * t, ramp_mps2 * (pay_out_s - t)});
 }
 
-double Bridle::acceleration_mps2(double now_s) const {
-    if (!started_) return 0.0;
-    const double t = now_s - start_s_;
-    if (t >= 0.0 && t < ramp_s) return ramp_mps2;
-    if (t > pay_out_s - ramp_s && t < pay_out_s) return -ramp_mps2;
-    return 0.0;
-}
-
-double Bridle::load(double now_s, double height_m) const {
-    const double slack_m = standing_height_m(now_s) - height_m;
-    return std::clamp(1.0 - slack_m / slack_to_unload_m, 0.0, 1.0);
+Vector3 Bridle::pull_N(double now_s, double rover_kg, const Vector3& offset, const Vector3& rate) const {
+    const double distance_m = offset.norm();
+    const double stretch_m = distance_m - (stowed_m - stretch_by_weight_m + payed_out_m(now_s));
+    if (stretch_m <= 0.0) return Vector3::Zero();
+    const Vector3 along = offset / distance_m;
+    const double stiffness_Npm = rover_kg * weight_mps2 / stretch_by_weight_m;
+    const double damping_Nspm = 2.0 * damping_ratio * std::sqrt(rover_kg * stiffness_Npm);
+    const double pull_N = stiffness_Npm * stretch_m + damping_Nspm * (rate.dot(along) - speed_mps(now_s));
+    return -std::max(0.0, pull_N) * along;
 }
 
 } // namespace aeolis::simulation

@@ -27,6 +27,47 @@ struct Wrench {
     Vector3 torque_B = Vector3::Zero();
 };
 
+/// How fast a rigid body's state changes, and under which force.
+struct RigidBodySlope {
+    Vector3 v, a;
+    Eigen::Vector4d q;
+    Vector3 rate;
+    Vector3 force;
+};
+
+inline RigidBodySlope slope_of(const RigidBody& body, const Wrench& by, double mass_kg, const Inertia& inertia) {
+    const Vector3& moments = inertia.moments_B;
+    const Vector3& w = body.rate_B_rps;
+    const Quaternion turning = body.q_MB * Quaternion{0.0, w.x(), w.y(), w.z()};
+    const Quaternion under_it = Quaternion{0.0, 0.0, 0.0, mars_spin_rps} * body.q_MB;
+    const Vector3 momentum = moments.cwiseProduct(w);
+    return {body.v_MB_M, free_fall(body.p_MoB_M, body.v_MB_M) + by.force_M / mass_kg,
+            0.5 * (turning.coeffs() - under_it.coeffs()), (by.torque_B - w.cross(momentum)).cwiseQuotient(moments),
+            by.force_M};
+}
+
+/// After `time_s` of an even slope; the attitude is unit again.
+inline RigidBody moved(const RigidBody& at, const RigidBodySlope& by, double time_s) {
+    RigidBody body;
+    body.p_MoB_M = at.p_MoB_M + time_s * by.v;
+    body.v_MB_M = at.v_MB_M + time_s * by.a;
+    body.q_MB = Quaternion{Eigen::Vector4d{at.q_MB.coeffs() + time_s * by.q}}.normalized();
+    body.rate_B_rps = at.rate_B_rps + time_s * by.rate;
+    return body;
+}
+
+/// The four slopes of a Runge–Kutta step in one.
+inline RigidBodySlope mean_slope(const RigidBodySlope& k1, const RigidBodySlope& k2, const RigidBodySlope& k3,
+                                 const RigidBodySlope& k4) {
+    RigidBodySlope mean;
+    mean.v = (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0;
+    mean.a = (k1.a + 2.0 * (k2.a + k3.a) + k4.a) / 6.0;
+    mean.q = (k1.q + 2.0 * (k2.q + k3.q) + k4.q) / 6.0;
+    mean.rate = (k1.rate + 2.0 * (k2.rate + k3.rate) + k4.rate) / 6.0;
+    mean.force = (k1.force + 2.0 * (k2.force + k3.force) + k4.force) / 6.0;
+    return mean;
+}
+
 /// One step of the classical fourth-order Runge–Kutta method over `step_s`; mass and inertia are constant over it.
 ///
 /// `wrench(fraction, body)` at that fraction of the step (0, 0.5, 1); the attitude it sees is unit.
@@ -35,42 +76,16 @@ struct Wrench {
 template <typename WrenchAt>
 RigidBody runge_kutta_step(const RigidBody& at, double step_s, double mass_kg, const Inertia& inertia, WrenchAt&& wrench,
                            Vector3* mean_force_M = nullptr) {
-    struct Slope {
-        Vector3 v, a;
-        Eigen::Vector4d q;
-        Vector3 rate;
-        Vector3 force;
-    };
-    const Vector3& moments = inertia.moments_B;
     const auto slope = [&](double fraction, const RigidBody& body) {
-        const Wrench by = wrench(fraction, body);
-        const Vector3& w = body.rate_B_rps;
-        const Quaternion turning = body.q_MB * Quaternion{0.0, w.x(), w.y(), w.z()};
-        const Quaternion under_it = Quaternion{0.0, 0.0, 0.0, mars_spin_rps} * body.q_MB;
-        const Vector3 momentum = moments.cwiseProduct(w);
-        return Slope{body.v_MB_M, free_fall(body.p_MoB_M, body.v_MB_M) + by.force_M / mass_kg,
-                     0.5 * (turning.coeffs() - under_it.coeffs()), (by.torque_B - w.cross(momentum)).cwiseQuotient(moments),
-                     by.force_M};
+        return slope_of(body, wrench(fraction, body), mass_kg, inertia);
     };
-    const auto moved = [&](const Slope& by, double time_s) {
-        RigidBody body;
-        body.p_MoB_M = at.p_MoB_M + time_s * by.v;
-        body.v_MB_M = at.v_MB_M + time_s * by.a;
-        body.q_MB = Quaternion{Eigen::Vector4d{at.q_MB.coeffs() + time_s * by.q}}.normalized();
-        body.rate_B_rps = at.rate_B_rps + time_s * by.rate;
-        return body;
-    };
-    const Slope k1 = slope(0.0, at);
-    const Slope k2 = slope(0.5, moved(k1, 0.5 * step_s));
-    const Slope k3 = slope(0.5, moved(k2, 0.5 * step_s));
-    const Slope k4 = slope(1.0, moved(k3, step_s));
-    if (mean_force_M != nullptr) *mean_force_M = (k1.force + 2.0 * (k2.force + k3.force) + k4.force) / 6.0;
-    Slope mean;
-    mean.v = (k1.v + 2.0 * (k2.v + k3.v) + k4.v) / 6.0;
-    mean.a = (k1.a + 2.0 * (k2.a + k3.a) + k4.a) / 6.0;
-    mean.q = (k1.q + 2.0 * (k2.q + k3.q) + k4.q) / 6.0;
-    mean.rate = (k1.rate + 2.0 * (k2.rate + k3.rate) + k4.rate) / 6.0;
-    return moved(mean, step_s);
+    const RigidBodySlope k1 = slope(0.0, at);
+    const RigidBodySlope k2 = slope(0.5, moved(at, k1, 0.5 * step_s));
+    const RigidBodySlope k3 = slope(0.5, moved(at, k2, 0.5 * step_s));
+    const RigidBodySlope k4 = slope(1.0, moved(at, k3, step_s));
+    const RigidBodySlope mean = mean_slope(k1, k2, k3, k4);
+    if (mean_force_M != nullptr) *mean_force_M = mean.force;
+    return moved(at, mean, step_s);
 }
 
 } // namespace aeolis::simulation

@@ -3,6 +3,7 @@
 #include "simulation/entry_flight.hpp"
 #include "simulation/vehicle/aeroshell.hpp"
 #include "simulation/vehicle/parachute.hpp"
+#include "simulation/vehicle/rover_wheels.hpp"
 
 namespace aeolis::simulation {
 namespace {
@@ -81,6 +82,8 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         configuration_.backshell = false;
         break;
     case PyroId::rover_separation:
+        if (configuration_.rover_on_stage)
+            rover_ = point_at(body_, Vector3{0.0, 0.0, Stations::rover_m} - centre_B_m_);
         configuration_.rover_on_stage = false;
         break;
     case PyroId::bridle_cutter:
@@ -144,20 +147,42 @@ void Vehicle::step(double now_s, double step_s) {
     step.engines_end_B_N = engines_.force_B_N();
     step.engines_end_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_end_B_N);
     configuration_.burn(0.5 * burnt_kg); // mass in the middle of the step
-    const double mass_kg = moving_kg(now_s);
+    const double mass_kg = configuration_.rigid_kg();
     Vector3 force_M;
-    body_ = runge_kutta_step(
-        body_, step_s, mass_kg, configuration_.inertia(),
-        [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
+    if (rover_hangs()) {
+        const StageAndRover both = runge_kutta_step(
+            StageAndRover{body_, rover_}, step_s, mass_kg, configuration_.inertia(), configuration_.rover_kg(),
+            [&](double fraction, const StageAndRover& at) { return loads(step, fraction, at); }, &force_M);
+        body_ = both.stage;
+        rover_ = both.rover;
+    } else {
+        body_ = runge_kutta_step(
+            body_, step_s, mass_kg, configuration_.inertia(),
+            [&](double fraction, const RigidBody& body) { return wrench(step, fraction, body); }, &force_M);
+    }
     specific_force_M_ = force_M / mass_kg;
     configuration_.burn(0.5 * burnt_kg);
 }
 
-// In the air, stage and rover fall together; once the rover stands, the stage moves alone.
-double Vehicle::moving_kg(double now_s) const {
-    const bool hanging = !configuration_.rover_on_stage && configuration_.bridle;
-    if (!hanging || bridle_.load(now_s, height_m()) >= 1.0) return configuration_.total_kg();
-    return configuration_.rigid_kg();
+PointMass Vehicle::on_bridle(const RigidBody& stage, const PointMass& rover) const {
+    const PointMass confluence = point_at(stage, Vector3{0.0, 0.0, Bridle::confluence_m} - centre_B_m_);
+    return {rover.p_MoB_M - confluence.p_MoB_M, rover.v_MB_M - confluence.v_MB_M};
+}
+
+StageAndRoverLoads Vehicle::loads(const Step& step, double fraction, const StageAndRover& both) const {
+    StageAndRoverLoads loads{wrench(step, fraction, both.stage)};
+    const double rover_kg = configuration_.rover_kg();
+    const PointMass offset = on_bridle(both.stage, both.rover);
+    const Vector3 pull_M =
+        bridle_.pull_N(step.start_s + fraction * step.length_s, rover_kg, offset.p_MoB_M, offset.v_MB_M);
+    const Vector3 arm_B = Vector3{0.0, 0.0, Bridle::confluence_m} - centre_B_m_;
+    loads.on_stage.force_M -= pull_M;
+    loads.on_stage.torque_B -= arm_B.cross(both.stage.q_MB.conjugate() * pull_M);
+    loads.on_rover_M = pull_M;
+    const Vector3& p = both.rover.p_MoB_M;
+    const double sunk_m = wheels_below_rover_m - terrain_.height_m(p);
+    if (sunk_m > 0.0) loads.on_rover_M += ground_reaction_N(rover_kg, sunk_m, terrain_.normal(p), both.rover.v_MB_M);
+    return loads;
 }
 
 Wrench Vehicle::wrench(const Step& step, double fraction, const RigidBody& body) const {
@@ -167,20 +192,7 @@ Wrench Vehicle::wrench(const Step& step, double fraction, const RigidBody& body)
     Wrench wrench{body.q_MB * push_B, step.thrusters.torque_B + step.engines_start_B_Nm +
                                           fraction * (step.engines_end_B_Nm - step.engines_start_B_Nm)};
     add_air(now_s, body, wrench);
-    add_bridle(now_s, body, wrench);
     return wrench;
-}
-
-void Vehicle::add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const {
-    if (configuration_.rover_on_stage || !configuration_.bridle) return;
-    const double rover_kg = configuration_.rover_kg();
-    const double load = bridle_.load(now_s, terrain_.height_m(body.p_MoB_M));
-    const Vector3 up = body.p_MoB_M.normalized();
-    // The rover that is let down pulls less than its weight; on the ground, soil bears what the bridle no longer does.
-    if (load >= 1.0)
-        wrench.force_M += rover_kg * bridle_.acceleration_mps2(now_s) * up;
-    else
-        wrench.force_M -= load * rover_kg * gravity(body.p_MoB_M).norm() * up;
 }
 
 void Vehicle::add_air(double now_s, const RigidBody& body, Wrench& wrench) const {
@@ -253,13 +265,15 @@ Vehicle::Flow Vehicle::flow() const {
     return flow;
 }
 
-std::optional<double> Vehicle::wheels_height_m(double now_s) const {
-    if (configuration_.rover_on_stage || !configuration_.bridle) return {};
-    return height_m() - bridle_.standing_height_m(now_s);
+double Vehicle::wheels_height_m() const {
+    return terrain_.height_m(rover_.p_MoB_M) - wheels_below_rover_m;
 }
 
-double Vehicle::rover_descent_mps(double now_s) const {
-    return -body_.v_MB_M.dot(body_.p_MoB_M.normalized()) + bridle_.speed_mps(now_s);
+double Vehicle::swing_rad() const {
+    if (!rover_hangs()) return 0.0;
+    const Vector3 offset = on_bridle(body_, rover_).p_MoB_M;
+    const Vector3 down = -body_.p_MoB_M.normalized();
+    return std::atan2(down.cross(offset).norm(), down.dot(offset));
 }
 
 } // namespace aeolis::simulation

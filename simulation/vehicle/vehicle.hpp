@@ -11,14 +11,15 @@
 #include "simulation/vehicle/engines.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
 #include "simulation/vehicle/separated_bodies.hpp"
+#include "simulation/vehicle/stage_and_rover.hpp"
 #include "simulation/vehicle/thrusters.hpp"
 
 #include <optional>
 
 namespace aeolis::simulation {
 
-/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines and a
-/// bridle.
+/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines; and once
+/// it is let down, the rover on its bridle as a second body, which swings and comes to stand.
 ///
 /// Its point is the centre of mass of what is rigid: with each jettison it moves to that of what flies on, and with the
 /// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds since the start of the world.
@@ -61,9 +62,12 @@ class Vehicle {
     Flow flow() const;
     bool parachute_open(double now_s) const;
 
-    /// Height of the rover's wheels above ground while it hangs on the bridle. [m]
-    std::optional<double> wheels_height_m(double now_s) const;
-    double rover_descent_mps(double now_s) const;
+    /// The rover while the bridle holds it off the stage: its centre of mass.
+    std::optional<PointMass> rover() const { return rover_hangs() ? std::optional{rover_} : std::nullopt; }
+    /// Height of its wheels above ground. [m]
+    double wheels_height_m() const;
+    /// How far the bridle is off the vertical. [rad]
+    double swing_rad() const;
 
   private:
     /// What pushes by itself over a step, constant or linear over it.
@@ -78,10 +82,12 @@ class Vehicle {
     PointMass point_at(const RigidBody& body, const Vector3& from_centre_B) const;
     /// What is attached has changed: its point moves on to the centre of mass.
     void recentre();
-    double moving_kg(double now_s) const;
+    bool rover_hangs() const { return !configuration_.rover_on_stage && configuration_.bridle; }
+    /// From where the bridle meets the stage to the rover, and how that changes. [m, m/s] in M
+    PointMass on_bridle(const RigidBody& stage, const PointMass& rover) const;
+    StageAndRoverLoads loads(const Step& step, double fraction, const StageAndRover& both) const;
     Wrench wrench(const Step& step, double fraction, const RigidBody& body) const;
     void add_air(double now_s, const RigidBody& body, Wrench& wrench) const;
-    void add_bridle(double now_s, const RigidBody& body, Wrench& wrench) const;
 
     Terrain terrain_;
     Masses masses_;
@@ -91,6 +97,7 @@ class Vehicle {
     Wind wind_;
 
     RigidBody body_;
+    PointMass rover_; ///< while it hangs
     Vector3 specific_force_M_ = Vector3::Zero();
     double swing_direction_rad_; ///< from east, of the parachute's swing
     Thrusters thrusters_;
