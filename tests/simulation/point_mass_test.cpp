@@ -1,5 +1,6 @@
 #include "simulation/mars/point_mass.hpp"
 
+#include "tests/simulation/jacobi.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace aeolis::simulation;
@@ -17,22 +18,11 @@ PointMass flown(PointMass at, double duration_s, double step_s) {
     return at;
 }
 
-/// Energy in the rotating frame, which gravity with J2 keeps: kinetic, gravity's and the centrifugal potential.
-/// (Jacobi)
-double jacobi_m2ps2(const PointMass& at) {
-    const Vector3& p = at.p_MoB_M;
-    const double r = p.norm();
-    const double sine2 = p.z() * p.z() / (r * r);
-    const double oblate = 0.5 * mars_j2 * std::pow(mars_equatorial_radius_m / r, 2) * (3.0 * sine2 - 1.0);
-    const double centrifugal = 0.5 * mars_spin_rps * mars_spin_rps * (p.x() * p.x() + p.y() * p.y());
-    return 0.5 * at.v_MB_M.squaredNorm() - mars_gm_m3ps2 / r * (1.0 - oblate) - centrifugal;
-}
-
 } // namespace
 
 TEST_CASE("a vehicle in vacuum keeps its energy relative to rotating Mars", "[simulation][mars]") {
-    const double before = jacobi_m2ps2(approach);
-    const double after = jacobi_m2ps2(flown(approach, 500.0, 0.25));
+    const double before = aeolis::tests::jacobi_m2ps2(approach);
+    const double after = aeolis::tests::jacobi_m2ps2(flown(approach, 500.0, 0.25));
     CHECK(std::abs(after - before) < 1e-3); // of 10 MJ/kg
 }
 
