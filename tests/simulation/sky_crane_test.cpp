@@ -1,14 +1,18 @@
 #include "simulation/vehicle/stage_and_rover.hpp"
 
 #include "common/time.hpp"
+#include "simulation/devices/load.hpp"
 #include "simulation/vehicle/bridle.hpp"
 #include "simulation/vehicle/rover_wheels.hpp"
 #include "simulation/vehicle/vehicle.hpp"
+#include "simulation/venues/gnc_alone.hpp"
+#include "simulation/world.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/gnc_venue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using namespace aeolis;
@@ -119,6 +123,43 @@ TEST_CASE("stage and rover keep their momentum together, whatever the bridle doe
     CHECK((together().v_MB_M - falls.v_MB_M).norm() < 1e-5);
 }
 
+TEST_CASE("halving the step makes the error of stage and rover together sixteen times smaller", "[simulation][sky_crane][convergence]") {
+    constexpr double stage_kg = 1100.0;
+    const Inertia inertia{{800.0, 800.0, 1000.0}};
+    Bridle bridle;
+    bridle.start(0.0);
+    const Vector3 up = Vector3::UnitX();
+    StageAndRover start;
+    start.stage.p_MoB_M = 3391200.0 * up;
+    start.stage.q_MB = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up) * rotation({0.03, 0.0, 0.0});
+    start.stage.rate_B_rps = {0.02, -0.03, 0.1};
+    start.rover = {start.stage.p_MoB_M - 7.905 * up, {0.05, 0.5, -0.3}}; // it bobs, without slack, and swings
+    const auto flown = [&](double step_s) {
+        StageAndRover both = start;
+        for (int i = 0; i < static_cast<int>(std::lround(0.32 / step_s)); ++i)
+            both = runge_kutta_step(both, step_s, stage_kg, inertia, rover_kg, [&](double, const StageAndRover& at) {
+                const Vector3 arm_B{0.0, 0.0, Bridle::confluence_m};
+                const Vector3 pull_M = bridle.pull_N(
+                    paid_out_s, rover_kg, at.rover.p_MoB_M - at.stage.p_MoB_M - at.stage.q_MB * arm_B,
+                    at.rover.v_MB_M - at.stage.v_MB_M - at.stage.q_MB * at.stage.rate_B_rps.cross(arm_B));
+                return StageAndRoverLoads{{(stage_kg + rover_kg) * weight_mps2 * up - pull_M,
+                                           -arm_B.cross(at.stage.q_MB.conjugate() * pull_M)},
+                                          pull_M};
+            });
+        return both;
+    };
+    const StageAndRover best = flown(0.00125);
+    const auto errors = [&](double step_s) {
+        const StageAndRover both = flown(step_s);
+        return std::array{(both.rover.p_MoB_M - best.rover.p_MoB_M).norm(),
+                          both.stage.q_MB.angularDistance(best.stage.q_MB)};
+    };
+    const auto coarse = errors(0.02), fine = errors(0.01);
+    CHECK(std::log2(coarse[0] / fine[0]) == Approx(4.0).margin(0.5));
+    CHECK(std::log2(coarse[1] / fine[1]) == Approx(4.0).margin(0.5));
+    CHECK(errors(0.005)[0] < 1e-5); // as it is flown
+}
+
 TEST_CASE("in a landing the rover hangs quietly, touches as slowly as the stage sinks, and takes its weight off the engines",
           "[simulation][sky_crane][gnc]") {
     tests::GncVenue venue(tests::undisturbed_scenario(620.0), 1);
@@ -137,4 +178,31 @@ TEST_CASE("in a landing the rover hangs quietly, touches as slowly as the stage 
     CHECK(thrust_before_N - thrust_after_N == Approx(rover_kg * weight_mps2).epsilon(0.1));
     CHECK(venue.world().touchdown()->vertical_mps == Approx(0.75).margin(0.05));
     CHECK(venue.world().touchdown()->horizontal_mps < 0.2);
+}
+
+TEST_CASE("GNC damps a swing that something has started, by nulling the stage's drift", "[simulation][sky_crane][gnc]") {
+    const Scenario scenario = tests::undisturbed_scenario(620.0);
+    World world{scenario, 1};
+    GncAlone gnc{load_for(scenario), world.solution(), world.sclk()};
+    flight::DeviceOutputs out;
+    double since_s = 0.0, early_deg = 0.0, late_deg = 0.0;
+    while (world.outcome() == Outcome::running) {
+        gnc.cycle(world.sense(), out);
+        const auto seen = world.inspect();
+        if (seen.bridle_m > 7.49 && !world.contact()) {
+            since_s += seconds_per_tick;
+            if (since_s < 0.7) { // two engines across from each other go astray
+                out.engines.throttle[0] += 0.1;
+                out.engines.throttle[4] -= 0.1;
+            }
+            if (since_s < 4.0) early_deg = std::max(early_deg, seen.swing_deg);
+            if (since_s > 12.0) late_deg = std::max(late_deg, seen.swing_deg);
+        }
+        world.advance(out);
+    }
+    INFO(world.outcome_reason());
+    CHECK(world.outcome() == Outcome::touchdown);
+    CHECK(early_deg > 5.0);
+    CHECK(late_deg < 0.35 * early_deg);
+    CHECK(world.touchdown()->horizontal_mps < 0.2);
 }

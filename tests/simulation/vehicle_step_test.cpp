@@ -128,7 +128,7 @@ TEST_CASE("the vehicle's step is of fourth order without air, and hanging on its
     CHECK(order(hanging, 10.2, 3.2, 0.08, apart_rad) == Approx(4.0).margin(0.5));
 }
 
-TEST_CASE("while thrust follows a throttle the step is of second order", "[simulation][vehicle][convergence]") {
+TEST_CASE("while engines burn the step is of second order: thrust goes in a straight line over it, mass is its mean", "[simulation][vehicle][convergence]") {
     Vehicle vehicle = vehicle_at(1000.0, {0.0, 0.0, -80.0});
     vehicle.fire(flight::PyroId::engine_valves, 0.0);
     vehicle.fire(flight::PyroId::heatshield_separation, 0.0);
