@@ -316,7 +316,7 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     } else if (mode() == Mode::constant_velocity) {
         push(null_drift + hold_rate_mps2(m.descent_rate_mps, constant_velocity_mps) * m.up_M, engines, out);
     } else if (mode() == Mode::constant_deceleration) {
-        deceleration_.advance(cycle_s);
+        deceleration_.advance(m.altitude_m, cycle_s);
         push(null_drift + deceleration_.acceleration_mps2(m.descent_rate_mps) * m.up_M, engines, out);
     } else if (mode() == Mode::sky_crane || mode() == Mode::touchdown) {
         const double wanted_mps = mode() == Mode::sky_crane ? sky_crane_mps : 0.0;

@@ -36,11 +36,27 @@ TEST_CASE("constant deceleration takes 120 m from 32 m/s and ends at 0.75 m/s", 
     DecelerationProfile profile;
     profile.start(start_m, 32.0);
     CHECK(profile.deceleration_mps2() == Approx(4.26));
-    double seconds = 0.0;
-    for (; profile.descent_rate_mps() > 0.75 && seconds < 20.0; seconds += 0.01)
-        profile.advance(0.01);
+    double seconds = 0.0, altitude_m = start_m;
+    for (; profile.descent_rate_mps() > 0.75 && seconds < 20.0; seconds += 0.01) {
+        altitude_m -= 0.01 * profile.descent_rate_mps();
+        profile.advance(altitude_m, 0.01);
+    }
+    CHECK(altitude_m == Approx(sky_crane_altitude_m).margin(0.2));
     CHECK(seconds == Approx(7.3).margin(0.1)); // [facts]: 400.0 → 407.3
     CHECK(profile.acceleration_mps2(0.75) == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("constant deceleration ends where it should though the radar corrects the altitude on the way", "[gnc][R27]") {
+    for (const double error_m : {-5.0, 5.0}) {
+        DecelerationProfile profile;
+        double true_m = constant_deceleration_altitude_m(32.0) - error_m, seconds = 0.0;
+        profile.start(true_m + error_m, 32.0);
+        for (; profile.descent_rate_mps() > 0.75 && seconds < 20.0; seconds += 0.01) {
+            true_m -= 0.01 * profile.descent_rate_mps();
+            profile.advance(true_m + error_m * std::exp(-seconds / 3.0), 0.01);
+        }
+        CHECK(true_m + error_m * std::exp(-seconds / 3.0) == Approx(sky_crane_altitude_m).margin(0.5));
+    }
 }
 
 TEST_CASE("absurd starts give a deceleration that engines can fly", "[gnc][R27]") {

@@ -55,13 +55,19 @@ double constant_deceleration_altitude_m(double descent_rate_mps) {
 }
 
 void DecelerationProfile::start(double altitude_m, double descent_rate_mps) {
-    const double room_m = std::max(altitude_m - sky_crane_altitude_m, 1.0);
     rate_mps_ = descent_rate_mps;
-    deceleration_mps2_ =
-        limited((descent_rate_mps * descent_rate_mps - sky_crane_mps * sky_crane_mps) / (2.0 * room_m));
+    aim(altitude_m);
 }
 
-void DecelerationProfile::advance(double dt_s) {
+void DecelerationProfile::aim(double altitude_m) {
+    const double room_m = std::max(altitude_m - sky_crane_altitude_m, 1.0);
+    deceleration_mps2_ = limited((rate_mps_ * rate_mps_ - sky_crane_mps * sky_crane_mps) / (2.0 * room_m));
+}
+
+void DecelerationProfile::advance(double altitude_m, double dt_s) {
+    // The radar brings something new once a second (R25): in the last one nothing comes that could still be flown out.
+    const double left_s = (rate_mps_ - sky_crane_mps) / deceleration_mps2_;
+    if (left_s > 1.0) aim(altitude_m);
     rate_mps_ = std::max(rate_mps_ - deceleration_mps2_ * dt_s, sky_crane_mps);
 }
 

@@ -6,7 +6,8 @@
 //
 //   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left
 //   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error
-//   constant decel.  v_ref(t) = v_start − a t, down to 0.75 m/s, a fixed at its start so as to end at h_sky_crane
+//   constant decel.  v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now: constant but
+//                    for what the radar still corrects
 //   command          a_up = a_ref + k (v − v_ref)
 //
 // Frame    h [m] of the descent stage above ground, v [m/s] and a [m/s²]: v positive down, a positive up
@@ -57,7 +58,7 @@ double constant_deceleration_altitude_m(double descent_rate_mps);
 class DecelerationProfile {
   public:
     void start(double altitude_m, double descent_rate_mps);
-    void advance(double dt_s);
+    void advance(double altitude_m, double dt_s);
     double descent_rate_mps() const { return rate_mps_; }
     double acceleration_mps2(double descent_rate_mps) const; ///< up, to command
     double deceleration_mps2() const { return deceleration_mps2_; }
@@ -68,6 +69,8 @@ class DecelerationProfile {
     }
 
   private:
+    void aim(double altitude_m);
+
     double rate_mps_ = constant_velocity_mps;
     double deceleration_mps2_ = constant_deceleration_mps2;
 };
