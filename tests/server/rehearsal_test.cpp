@@ -30,11 +30,13 @@ TEST_CASE("a landing's report is the object of the design, its real time proven 
     REQUIRE(from_json(landing_json(rehearsal, 1.0), report));
     const auto& fields = report.fields();
     for (const char* name : {"scenario", "seed", "outcome", "digest", "events", "peak_deceleration_mps2", "touchdown",
-                             "test_venue", "timepoints", "tones", "packets", "cycles", "overruns", "wall_s", "real_time_factor"}) {
+                             "heatshield_least_m", "backshell_least_m", "test_venue", "timepoints", "tones", "packets", "cycles",
+                             "overruns", "wall_s", "real_time_factor"}) {
         INFO(name);
         CHECK(fields.contains(name));
     }
-    CHECK(fields.size() == 15);
+    CHECK(fields.size() == 17);
+    CHECK(fields.at("backshell_least_m").number_value() > 10.0); // the sidestep
     CHECK(fields.at("outcome").string_value() == "touchdown");
     double previous = -1.0e9;
     for (const auto& event : fields.at("events").list_value().values()) {
