@@ -82,7 +82,7 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     double mass_kg = masses.entry_kg - 6.0 * masses.entry_balance_each_kg;
     bool heatshield = true;
     double ground_m = 0.0, since_mortar_s = -1.0;
-    const Vector3 right_M = at.v_MB_M.cross(at.p_MoB_M).normalized();
+    const Vector3 right_M = level_right(at.p_MoB_M, at.v_MB_M);
     for (double t = 0.0; t < longest_s; t += descent_step_s) {
         const double altitude_m = at.p_MoB_M.norm() - scenario.target.radius_m;
         const double speed_mps = at.v_MB_M.norm();

@@ -53,7 +53,9 @@ void EdlBg::on(const ClockTick& tick, Outbox& out) {
 void EdlBg::watch_radar(Sclk now, Outbox& out) {
     const bool wanted = now - attitude_at_ < 1.0;
     const double gap_s = now - solved_at_;
-    if (!wanted || radar_lost_ || gap_s < parameters.radar_gap_max_s) return;
+    // While the vehicle still leans far over under the parachute its beams reach no ground: the first may take its time.
+    const double most_s = solutions_ > 0 ? parameters.radar_gap_max_s : parameters.radar_patience_s;
+    if (!wanted || radar_lost_ || gap_s < most_s) return;
     radar_lost_ = true;
     out.event(evr::RADAR_LOST{.gap_s = gap_s});
 }

@@ -5,8 +5,6 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 
-#include <Eigen/Core>
-
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -45,11 +43,14 @@ class TruthFile {
         const simulation::TruthState truth = landing.truth();
         if (!rows_.is_open() || landing.outcome() != simulation::Outcome::running || truth.sclk.ticks() % 4 != 0) return;
         const simulation::Inspection seen = landing.inspect();
-        const Eigen::Vector3d p{truth.p_MoB_M_m.data()}, v{truth.v_MB_M_mps.data()};
+        const auto& p = truth.p_MoB_M_m;
+        const auto& v = truth.v_MB_M_mps;
+        const double radius_m = std::hypot(p[0], p[1], p[2]);
+        const double climb_mps = (v[0] * p[0] + v[1] * p[1] + v[2] * p[2]) / radius_m;
         constexpr double degree = std::numbers::pi / 180.0;
         rows_ << fmt::format("{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
-                             truth.altitude_m, truth.speed_mps, std::asin(v.dot(p) / (v.norm() * p.norm())) / degree,
-                             std::asin(p.z() / p.norm()) / degree, std::atan2(p.y(), p.x()) / degree, truth.sensed_mps2,
+                             truth.altitude_m, truth.speed_mps, std::asin(climb_mps / truth.speed_mps) / degree,
+                             std::asin(p[2] / radius_m) / degree, std::atan2(p[1], p[0]) / degree, truth.sensed_mps2,
                              seen.bank_deg, seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N,
                              seen.mass_kg);
     }

@@ -7,7 +7,7 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double least_range_m = 4.0;                                                        // ours
-constexpr std::array<double, Radar::beams> largest_range_m{12e3, 11e3, 11e3, 11e3, 9e3, 9e3}; // ours
+constexpr std::array<double, Radar::beams> largest_range_m{12e3, 12e3, 12e3, 12e3, 9e3, 9e3}; // ours
 constexpr double largest_incidence_rad = 65.0 * degree_rad;                                  // ours
 constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 50.0, 50.0};  // [facts]
 constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0}; // ours

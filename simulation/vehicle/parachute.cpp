@@ -1,5 +1,7 @@
 #include "simulation/vehicle/parachute.hpp"
 
+#include "simulation/mars/mars.hpp"
+
 #include <array>
 #include <cmath>
 
@@ -26,6 +28,12 @@ double parachute_inflation(double since_mortar_s) {
         return (1.0 + overshoot) * part * part;
     }
     return 1.0 + overshoot * std::exp(-(since_mortar_s - first_peak_s) / overshoot_decay_s);
+}
+
+Vector3 level_right(const Vector3& p_MoB_M, const Vector3& v_MB_M) {
+    const Vector3 right = v_MB_M.cross(p_MoB_M);
+    const double least = 1e-9 * v_MB_M.norm() * p_MoB_M.norm();
+    return right.norm() > least ? right.normalized() : Vector3{-horizon(p_MoB_M).north};
 }
 
 Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s,

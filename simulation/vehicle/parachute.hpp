@@ -24,6 +24,8 @@ inline constexpr double wrist_damping_Nms = 900.0;
 /// The parachute trims beside the wind and so lifts too: what the published trajectory shows, 0.15 when it opens, 0.13 … 0.21
 /// later [od137].
 inline constexpr double parachute_lift_to_drag = 0.17;
+/// Level, to the right of a flight; south of one that falls straight down.
+Vector3 level_right(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 /// Unit, across `forward`: up when the parachute opens, as the vehicle flew lift up, then turning about the wind to the right.
 /// `from_up_rad` is a case's own departure. `right_M` is level, to the right of the flight at the mortar. [od137] until 15 s after; that it goes on evenly is ours.
 Vector3 parachute_lift_direction(const Vector3& forward, const Vector3& right_M, double since_mortar_s,

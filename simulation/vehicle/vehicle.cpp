@@ -68,7 +68,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         break;
     case PyroId::parachute_mortar:
         mortar_s_ = now_s;
-        right_at_mortar_M_ = body_.v_MB_M.cross(body_.p_MoB_M).normalized();
+        right_at_mortar_M_ = level_right(body_.p_MoB_M, body_.v_MB_M);
         break;
     case PyroId::heatshield_separation:
         let_go(separated_.heatshield, Stations::heatshield_m, masses_.heatshield_kg, heatshield_drag_area_m2);

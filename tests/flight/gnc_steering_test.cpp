@@ -3,6 +3,8 @@
 #include "flight/gnc/attitude/attitude_control.hpp"
 #include "tests/support/catch.hpp"
 
+#include <array>
+
 using namespace aeolis;
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
@@ -17,10 +19,17 @@ struct Spinning {
     AttitudeCommand wanted{.mode = AttitudeCommand::Mode::detumble};
     AttitudeState state{.rate_B_rps = {0.1, 0.0, 0.0}};
     ThrusterCommand thrusters;
-    EngineCommand engines;
+    std::array<double, 8> throttle{0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5, 0.5};
+    EngineCommand engines{.throttle = throttle};
 
-    Spinning() { engines.throttle.fill(0.5); }
-    void steer(Steers by) { Steering{full_N}.cycle(wanted, state, inertia, by, thrusters, engines); }
+    /// Until thrusters have been owed enough for a pulse.
+    void steer(Steers by) {
+        Steering steering{full_N};
+        for (int cycle = 0; cycle < 64 && thrusters == ThrusterCommand{}; ++cycle) {
+            engines.throttle = throttle;
+            steering.cycle(wanted, state, inertia, by, thrusters, engines);
+        }
+    }
 };
 
 } // namespace
@@ -41,7 +50,7 @@ TEST_CASE("what steers takes the spin out and what does not steer is left alone"
 
 TEST_CASE("four engines steer with the four that are lit", "[gnc][R27]") {
     Spinning by_engines;
-    by_engines.engines.throttle = {0.5, 0.0, 0.5, 0.0, 0.5, 0.0, 0.5, 0.0};
+    by_engines.throttle = {0.5, 0.0, 0.5, 0.0, 0.5, 0.0, 0.5, 0.0};
     by_engines.steer(Steers::four_engines);
     for (const std::size_t off : {1, 3, 5, 7}) CHECK(by_engines.engines.throttle[off] == 0.0);
     CHECK(by_engines.engines.throttle[0] + by_engines.engines.throttle[2] + by_engines.engines.throttle[4] +

@@ -103,8 +103,8 @@ TEST_CASE("a bank reversal is flown within 20 degrees a second, in the time that
     }
     CHECK(fastest_dps < 21.0);
     CHECK(fastest_dps > 12.0);
-    CHECK(taken_s > 8.0);
-    CHECK(taken_s < 13.0); // [facts]: 10 to 12 s
+    CHECK(taken_s > 7.5); // [od137]: from -45 to 56 degrees between E+94 and 102
+    CHECK(taken_s < 12.0);
 }
 
 TEST_CASE("thrusters take the spin out and turn to the entry attitude before the air is felt", "[simulation][attitude][R27]") {

@@ -1,6 +1,11 @@
 #pragma once
 
 #include "simulation/scenario.hpp"
+#include "tests/support/catch.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <string>
 
 namespace aeolis::tests {
 
@@ -11,10 +16,12 @@ inline simulation::Scenario gale_scenario(double start_before_entry_s = 700.0) {
     scenario.title = "as simulation/scenarios/nominal.textproto";
     scenario.entry_scet = {1344229847400000};
     scenario.start_before_entry_s = start_before_entry_s;
-    scenario.density_scale = {{0, 0.98},     {2000, 0.985}, {3000, 1.02},  {4000, 1.05},  {5500, 1.09},
-                              {7000, 1.13},  {9000, 1.12},  {10000, 1.09}, {11000, 1.03}, {12000, 0.94},
-                              {14000, 0.92}, {15000, 0.9},  {17000, 0.9},  {18000, 0.95}, {21000, 0.95},
-                              {26000, 1.02}, {34000, 1.1},  {45000, 1.1},  {58000, 0.85}};
+    std::ifstream file{AEOLIS_SOURCE_DIR "/simulation/scenarios/nominal.textproto"};
+    simulation::DensityScale at;
+    for (std::string line; std::getline(file, line);)
+        if (std::sscanf(line.c_str(), "density_scale { altitude_m: %lf scale: %lf }", &at.altitude_m, &at.scale) == 2)
+            scenario.density_scale.push_back(at);
+    REQUIRE(scenario.density_scale.size() > 10);
     return scenario;
 }
 

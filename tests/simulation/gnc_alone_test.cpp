@@ -1,3 +1,4 @@
+#include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/gnc_venue.hpp"
 
@@ -9,7 +10,7 @@ using namespace aeolis::flight::gnc;
 namespace {
 
 simulation::Scenario without_errors() {
-    return simulation::undispersed({});
+    return tests::undisturbed_scenario();
 }
 
 void check_soft_landing(const simulation::World& world, double miss_max_m) {
@@ -72,7 +73,7 @@ TEST_CASE("with perfect sensors navigation stays with the truth", "[gnc][R27]") 
 }
 
 TEST_CASE("what GNC cannot know does not change what it does: only its inputs do", "[gnc][R27]") {
-    tests::GncVenue one(simulation::Scenario{}, 5), two(simulation::Scenario{}, 5);
+    tests::GncVenue one(tests::gale_scenario(), 5), two(tests::gale_scenario(), 5);
     one.run();
     two.run();
     CHECK(one.told().p_MoB_M_m == two.told().p_MoB_M_m);
@@ -84,7 +85,7 @@ namespace {
 void check_landings(std::uint64_t cases) {
     for (std::uint64_t number = 1; number <= cases; ++number) {
         INFO("case " << number);
-        tests::GncVenue venue(simulation::Scenario{}, 1, number);
+        tests::GncVenue venue(tests::gale_scenario(), 1, number);
         venue.run();
         check_soft_landing(venue.world(), 10000.0); // [facts]: 99 % ellipse 20 km long
         const auto* parachute = venue.event(Trigger::parachute);

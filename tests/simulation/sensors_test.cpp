@@ -98,8 +98,8 @@ TEST_CASE("a beam measures up to its own range, and nothing nearer than four met
         return radar.measure(beam, {(3391148.0 + altitude_m) * up, -80.0 * up}, down, flat).valid;
     };
     const double slant_20 = std::cos(20.0 * degree_rad), slant_50 = std::cos(50.0 * degree_rad);
-    CHECK(measures(1, 10900.0 * slant_20));
-    CHECK_FALSE(measures(1, 11100.0 * slant_20));
+    CHECK(measures(1, 11900.0 * slant_20));
+    CHECK_FALSE(measures(1, 12100.0 * slant_20));
     CHECK(measures(4, 8900.0 * slant_50));
     CHECK_FALSE(measures(4, 9100.0 * slant_50));
     CHECK(measures(0, 4.1));

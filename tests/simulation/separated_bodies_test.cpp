@@ -99,11 +99,8 @@ TEST_CASE("without the sidestep the backshell comes down on the stage, and the l
     flight::Load load = load_for(scenario);
     load.divert_m = 0.0;
     GncAlone gnc{load, world.solution(), world.sclk()};
-    flight::DeviceOutputs out;
-    while (world.outcome() == Outcome::running) {
-        gnc.cycle(world.sense(), out);
-        world.advance(out);
-    }
+    while (world.outcome() == Outcome::running)
+        world.advance(gnc.cycle(world.sense()));
     CHECK(world.outcome() == Outcome::lost);
     CHECK_THAT(world.outcome_reason(), Catch::StartsWith("the vehicle was struck by its backshell at E+"));
 }

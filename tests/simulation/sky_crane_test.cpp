@@ -184,10 +184,9 @@ TEST_CASE("GNC damps a swing that something has started, by nulling the stage's 
     const Scenario scenario = tests::undisturbed_scenario(620.0);
     World world{scenario, 1};
     GncAlone gnc{load_for(scenario), world.solution(), world.sclk()};
-    flight::DeviceOutputs out;
     double since_s = 0.0, early_deg = 0.0, late_deg = 0.0;
     while (world.outcome() == Outcome::running) {
-        gnc.cycle(world.sense(), out);
+        flight::DeviceOutputs out = gnc.cycle(world.sense());
         const auto seen = world.inspect();
         if (seen.bridle_m > 7.49 && !world.contact()) {
             since_s += seconds_per_tick;

@@ -124,7 +124,7 @@ TEST_CASE("the vehicle's step is of fourth order without air, and hanging on its
     Vehicle hanging = vehicle_at(5950.0, {8.0, -5.0, -95.0}); // within one layer of the air's table
     hanging.fire(flight::PyroId::parachute_mortar, 0.0);
     hanging = flown(hanging, 10.0, 0.2, 0.005);
-    CHECK(order(hanging, 10.2, 3.2, 0.32, apart_m) == Approx(4.0).margin(0.5));
+    CHECK(order(hanging, 10.2, 3.2, 0.64, apart_m) == Approx(4.0).margin(0.5));
     CHECK(order(hanging, 10.2, 3.2, 0.08, apart_rad) == Approx(4.0).margin(0.5));
 }
 
