@@ -21,8 +21,6 @@ constexpr double bank_before_guidance_rad = 77.0 * degree_rad;
 constexpr double sufr_above_parachute_mps = 48.0; // [facts]: 453 against 405 m/s
 constexpr double sufr_s = 14.0;                   // [facts]
 constexpr double free_fall_s = 3.2;               // [facts]: from backshell separation to powered approach
-constexpr double divert_m = 304.0;                // [facts]
-constexpr double divert_azimuth_rad = 112.0 * degree_rad;
 
 /// One point of the reference flight, in the plane of flight.
 struct Node {
@@ -117,7 +115,9 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     }
     const Horizon local = horizon(at.p_MoB_M);
     const double level_mps = (at.v_MB_M - at.v_MB_M.dot(local.up) * local.up).norm();
-    return ground_m + level_mps * free_fall_s + divert_m * std::cos(divert_azimuth_rad - azimuth_rad(at));
+    const flight::Load load;
+    return ground_m + level_mps * free_fall_s +
+           load.divert_m * std::cos(load.divert_azimuth_deg * degree_rad - azimuth_rad(at));
 }
 
 Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atmosphere, const PointMass& at) {

@@ -12,7 +12,7 @@
 //
 // Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
 // vertical lift-to-drag, range to go R = ∫ G dV to the end of the reference:
-//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        both nil at the end
+//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        λ at the end from the descent, μ nil
 //     ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
 // Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
 namespace aeolis::simulation {

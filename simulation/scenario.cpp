@@ -1,5 +1,7 @@
 #include "simulation/scenario.hpp"
 
+#include "simulation/mars/mars.hpp"
+
 #include <array>
 #include <bit>
 #include <cmath>
@@ -228,6 +230,20 @@ Scenario undispersed(Scenario scenario) {
     return scenario;
 }
 
+// Wider than any entry of this design reaches, so that what is refused is a mistake.
+void check_target_range(const Scenario& s, std::vector<std::string>& found) {
+    constexpr double least_km = 300.0, most_km = 1500.0; // ours; this vehicle steers within some 520 … 800 km
+    const auto direction = [](double latitude_deg, double longitude_deg) {
+        return place(latitude_deg * degree_rad, longitude_deg * degree_rad, 1.0);
+    };
+    const Vector3 entry = direction(s.entry.latitude_deg, s.entry.longitude_deg);
+    const Vector3 target = direction(s.target.latitude_deg, s.target.longitude_deg);
+    const double range_km = 1.0e-3 * s.target.radius_m * std::atan2(entry.cross(target).norm(), entry.dot(target));
+    if (!(range_km >= least_km && range_km <= most_km))
+        found.push_back("target: out of range: " + number(std::round(range_km)) + " km from entry is outside " +
+                        number(least_km) + " … " + number(most_km) + " km");
+}
+
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
     // Not within, rather than outside: a value that is no number is neither.
@@ -245,6 +261,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     if (!(scenario.radio.blackout_end_speed_mps <= scenario.radio.blackout_start_speed_mps))
         found.push_back("radio.blackout_end_speed_mps: " + number(scenario.radio.blackout_end_speed_mps) +
                         " is above the speed at which the blackout starts");
+    check_target_range(scenario, found);
     check_masses(scenario.masses, found);
     check_density_scale(scenario.density_scale, found);
     check_dispersion_moment(scenario, found);

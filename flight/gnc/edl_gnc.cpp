@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace aeolis::flight::gnc {
 
@@ -47,12 +48,17 @@ void EdlGnc::on(const CruiseAttitude& attitude) {
     take_cruise_attitude();
 }
 
-// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come just there.
+// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come there, and brought up to
+// them when it comes a little late.
 void EdlGnc::take_cruise_attitude() {
     if (!cruise_attitude_ || (navigating_ && cruise_attitude_->at > navigated_to_)) return;
-    if (!cruise_stage_gone_ && (!navigating_ || cruise_attitude_->at == navigated_to_))
-        strapdown_.set_attitude(to_quaternion(cruise_attitude_->q_MB));
-    cruise_attitude_.reset();
+    const CruiseAttitude attitude = *std::exchange(cruise_attitude_, std::nullopt);
+    const double age_s = navigating_ ? navigated_to_ - attitude.at : 0.0;
+    if (cruise_stage_gone_ || age_s > parameters.tick_apart_max_s) return;
+    const Vector3 turned = strapdown_.rate_B_rps() * age_s;
+    const double angle = turned.norm();
+    const Quaternion since = angle > 0.0 ? Quaternion{Eigen::AngleAxisd{angle, turned / angle}} : Quaternion::Identity();
+    strapdown_.set_attitude((to_quaternion(attitude.q_MB) * since).normalized());
 }
 
 void EdlGnc::on(const RadarSolution& solution) {

@@ -5,6 +5,7 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
@@ -40,8 +41,9 @@ class TruthFile {
         return state();
     }
     void add(const simulation::Landing& landing) {
+        if (!rows_.is_open() || landing.outcome() != simulation::Outcome::running) return;
         const simulation::TruthState truth = landing.truth();
-        if (!rows_.is_open() || landing.outcome() != simulation::Outcome::running || truth.sclk.ticks() % 4 != 0) return;
+        if (truth.sclk.ticks() % 4 != 0) return;
         const simulation::Inspection seen = landing.inspect();
         const auto& p = truth.p_MoB_M_m;
         const auto& v = truth.v_MB_M_mps;
@@ -49,7 +51,7 @@ class TruthFile {
         const double climb_mps = (v[0] * p[0] + v[1] * p[1] + v[2] * p[2]) / radius_m;
         constexpr double degree = std::numbers::pi / 180.0;
         rows_ << fmt::format("{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
-                             truth.altitude_m, truth.speed_mps, std::asin(climb_mps / truth.speed_mps) / degree,
+                             truth.altitude_m, truth.speed_mps, std::asin(std::clamp(climb_mps / truth.speed_mps, -1.0, 1.0)) / degree,
                              std::asin(p[2] / radius_m) / degree, std::atan2(p[1], p[0]) / degree, truth.sensed_mps2,
                              seen.bank_deg, seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N,
                              seen.mass_kg);
@@ -101,6 +103,9 @@ int rehearse(const RehearseOptions& options) {
         pipeline = std::move(*opened);
     }
     TruthFile truth;
+    for (const auto& other : {std::optional{std::filesystem::path{options.scenario}}, options.archive})
+        if (std::error_code none; options.truth && other && std::filesystem::equivalent(*options.truth, *other, none))
+            return failed(fmt::format("--truth: {} would be overwritten", options.truth->string()));
     if (options.truth)
         if (const auto opened = truth.open(*options.truth); !opened) return failed(opened.error().message);
     const auto began = std::chrono::steady_clock::now();

@@ -2,7 +2,7 @@
 
 #include "simulation/mars/mars.hpp"
 
-// A point that flies around rotating Mars, and the one integrator of the simulation.
+// A point that flies around rotating Mars, and how it is integrated.
 namespace aeolis::simulation {
 
 /// Position from Mars's centre and velocity relative to rotating Mars, in M. [m, m/s]

@@ -1,8 +1,14 @@
 #include "simulation/mars/terrain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace aeolis::simulation {
+namespace {
+
+constexpr double slope_reach_m = 30000.0; // ours: the ground is level beyond, else a slope at the site would be a mountain at entry
+
+} // namespace
 
 Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(scenario.target.radius_m) {
     const Dispersions& errors = scenario.dispersions;
@@ -18,7 +24,8 @@ Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(sc
 }
 
 double Terrain::radius_m(const Vector3& p) const {
-    return landing_radius_m_ + height_m_ + landing_radius_m_ * p.dot(rise_M_) / p.norm();
+    const double level_beyond_m = slope_reach_m * rise_M_.norm();
+    return landing_radius_m_ + height_m_ + std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
 }
 
 Vector3 Terrain::normal(const Vector3& p) const {

@@ -14,9 +14,9 @@ namespace aeolis::simulation {
 /// The landing radar: six beams in turn, each at 20 Hz.
 ///
 /// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts] Ours: their azimuths (0°, 120°, 240°; 60°, 240°), ranges of
-/// 4 m to 12, 11 and 9 km (the flatter, the weaker the echo), a largest angle of 65° between beam and the ground's normal, and
+/// 4 m to 12, 12 and 9 km (the flatter, the weaker the echo), a largest angle of 65° between beam and the ground's normal, and
 /// that a reading is as of its tick. A case has one range scale error and each beam its own velocity bias, of the scenario's
-/// deviations; half as much again is noise on each reading, and a part of them fails. The hung rover and the plume are not
+/// deviations; half as much is noise on each reading, and a part of them fails. The hung rover and the plume are not
 /// seen.
 class Radar {
   public:

@@ -57,6 +57,35 @@ TEST_CASE("an old solution is brought up to now", "[gnc][R23]") {
     CHECK((to_vector(out.p_MoB_M_m) - propagate(state, 20.0).p_MoB_M).norm() < 1e-6);
 }
 
+namespace {
+
+/// The attitude at tick 34 of a vehicle that spins at 2 rpm, told its attitude at tick 32 with the cycle of `told_tick`.
+Quaternion attitude_when_told(int told_tick) {
+    EdlGnc gnc(Load{});
+    gnc.set_solution(above_gale(), {1000.0});
+    Output out;
+    std::uint32_t count = 0;
+    const CruiseAttitude attitude{{1, 0, 0, 0}, Sclk{1000.0} + 32 * seconds_per_tick};
+    for (int tick = 1; tick <= 34; ++tick) {
+        auto in = inputs_at(Sclk{1000.0} + tick * seconds_per_tick, count, Vector3::Zero());
+        for (auto& sample : in.imu) sample.delta_angle_rad = {0.0, 0.0, 0.2094 * imu_period_s};
+        if (tick == told_tick) gnc.on(attitude);
+        gnc.cycle(in, {}, out);
+    }
+    return to_quaternion(out.q_MB);
+}
+
+} // namespace
+
+TEST_CASE("a cruise attitude is as of its own tick, whether it comes before that tick's increments or after", "[gnc][R27]") {
+    const double turned = 2.0 * seconds_per_tick * 0.2094;
+    for (const int told_tick : {31, 32, 33, 34}) {
+        INFO("told with tick " << told_tick);
+        const Quaternion q = attitude_when_told(told_tick);
+        CHECK(2.0 * std::atan2(q.z(), q.w()) == Approx(turned).margin(0.2094 * imu_period_s)); // one of the IMU's samples
+    }
+}
+
 TEST_CASE("drag starts entry guidance once, and explains it", "[gnc][R17][R38]") {
     EdlGnc gnc(Load{});
     Solution solution = above_gale();

@@ -402,12 +402,13 @@ void check_bands(int cases) {
                                 out);
     const auto json = json_of(ended.out);
     CHECK(number_at(json, {"kept"}) == cases);
-    CHECK(number_at(json, {"outcomes", "touchdown"}) >= 0.99 * cases);
+    CHECK(number_at(json, {"outcomes", "touchdown"}) >= std::floor(0.997 * static_cast<double>(cases)));
     CHECK(number_at(json, {"touchdown", "vertical_mps", "min"}) >= 0.65);
     CHECK(number_at(json, {"touchdown", "vertical_mps", "max"}) <= 0.85);
     CHECK(number_at(json, {"touchdown", "horizontal_mps", "max"}) <= 0.5);
     CHECK(number_at(json, {"touchdown", "ellipse_99", "major_km"}) < 20.0);
     CHECK(number_at(json, {"touchdown", "ellipse_99", "major_km"}) > 4.0);
+    CHECK(number_at(json, {"touchdown", "ellipse_99", "minor_km"}) < 13.0); // published 7: docs/validation.md says why not
     CHECK(number_at(json, {"parachute", "mach", "min"}) > 1.4);
     CHECK(number_at(json, {"parachute", "mach", "max"}) < 2.2);
     CHECK(number_at(json, {"parachute", "dynamic_pressure_Pa", "min"}) > 200.0);

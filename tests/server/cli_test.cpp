@@ -94,12 +94,33 @@ TEST_CASE("the entry reference is a table of falling speed, with every row a num
     CHECK(rows == static_cast<int>(aeolis::flight::EntryReference{}.rows.size()));
 }
 
+TEST_CASE("the truth of a landing is written in even rows to where it stands", "[cli]") {
+    if (program() == nullptr) return;
+    const auto file = std::filesystem::temp_directory_path() / ("aeolis-truth-" + std::to_string(getpid()) + ".csv");
+    REQUIRE(run(program(), "rehearse --scenario gnc_alone --truth " + file.string()).code == 0);
+    std::ifstream rows{file};
+    std::string line;
+    std::getline(rows, line);
+    CHECK(line.rfind("e_s,altitude_m,speed_mps,flight_path_deg,", 0) == 0);
+    double before_s = 0.0, e_s = 0.0, altitude_m = 0.0, speed_mps = 0.0;
+    for (int row = 0; std::getline(rows, line); ++row, before_s = e_s) {
+        REQUIRE(std::sscanf(line.c_str(), "%lf,%lf,%lf", &e_s, &altitude_m, &speed_mps) == 3);
+        CHECK(std::count(line.begin(), line.end(), ',') == 12);
+        if (row > 0) CHECK(e_s - before_s == Approx(1.0 / 16.0).margin(1e-5));
+    }
+    CHECK(altitude_m < 1000.0); // the stage, on its way off
+    std::filesystem::remove(file);
+}
+
 TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli]") {
     if (program() == nullptr) return;
-    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 7>{{
+    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 8>{{
              {"rehearse --scenario no_such", "no_such"},
              {"entry reference --scenario no_such", "no_such"},
              {"rehearse --scenario gnc_alone --truth /nope/truth.csv", "/nope/truth.csv"},
+             {"rehearse --scenario " AEOLIS_SOURCE_DIR "/simulation/scenarios/od137.textproto --truth " AEOLIS_SOURCE_DIR
+              "/simulation/scenarios/../scenarios/od137.textproto",
+              "would be overwritten"},
              {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
              {"campaign --scenario campaign --cases 2 --results /dev/null", "/dev/null"},
              {"campaign --scenario performance --cases 2", "performance: test_venue: "},

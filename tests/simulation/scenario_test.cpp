@@ -41,6 +41,10 @@ TEST_CASE("an impossible value is named, with its bounds", "[simulation][scenari
     CHECK(only_fault(scenario) == "masses.entry_kg: 3000 is not the sum of its parts, 3153");
 
     scenario = tests::gale_scenario();
+    scenario.target.longitude_deg = 128.0;
+    CHECK(only_fault(scenario) == "target: out of range: 86 km from entry is outside 300 … 1500 km");
+
+    scenario = tests::gale_scenario();
     scenario.density_scale = {{1000.0, 1.0}, {500.0, 1.0}};
     CHECK(only_fault(scenario) == "density_scale[1].altitude_m: 500 does not lie above the one before");
 
@@ -51,7 +55,7 @@ TEST_CASE("an impossible value is named, with its bounds", "[simulation][scenari
 
 TEST_CASE("every fault is told, not only the first", "[simulation][scenario]") {
     Scenario scenario;
-    scenario.target.latitude_deg = 91.0;
+    scenario.entry.azimuth_deg = 400.0;
     const auto found = impossible_values(scenario);
-    CHECK(found.size() == 3); // latitude, name, entry_scet
+    CHECK(found.size() == 3); // azimuth, name, entry_scet
 }

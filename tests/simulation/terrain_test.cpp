@@ -65,6 +65,15 @@ TEST_CASE("the ground rises towards its azimuth by its slope, and a ray meets it
     }
 }
 
+TEST_CASE("far from the site the ground is level: a slope there is no mountain at entry", "[simulation][terrain]") {
+    Scenario scenario = tests::undisturbed_scenario();
+    scenario.ground.slope_deg = 20.0;
+    scenario.ground.uphill_azimuth_deg = 270.0;
+    const Terrain slope{scenario, Random{1, 0, Stream::terrain}};
+    const Vector3 entry = place(scenario.entry.latitude_deg * degree_rad, scenario.entry.longitude_deg * degree_rad, 3.5222e6);
+    CHECK(slope.height_m(entry) == Approx(131052.0 - 30000.0 * std::tan(20.0 * degree_rad)).margin(100.0));
+}
+
 TEST_CASE("a case has its own height and rise, of the scenario's deviations", "[simulation][terrain]") {
     Scenario scenario = with_ground({});
     scenario.dispersions.terrain_height_m = 100.0;
