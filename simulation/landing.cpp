@@ -30,6 +30,8 @@ std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
 }
 
+} // namespace
+
 /// A link's last told state: a change is sent to Earth like everything else.
 struct LinkTeller {
     LinkId link{};
@@ -45,8 +47,6 @@ struct LinkTeller {
         return LinkState{link, x_band, ert, up, reason_now};
     }
 };
-
-} // namespace
 
 const char* name_of(Outcome outcome) {
     switch (outcome) {

@@ -258,7 +258,7 @@ class HeaderWriter {
         for (const ParameterRow& row : dictionary_.parameters)
             out_ << "    double " << row.name << " = " << double_literal(row.default_value) << ";  ///< [" << row.unit
                  << "] " << row.text << "\n";
-        out_ << "};\n\n";
+        out_ << "};\ninline constexpr ParameterDefaults parameters{};\n\n";
     }
 
     const Dictionary& dictionary_;

@@ -13,7 +13,7 @@ namespace {
 using Kind = OwnerRow::Kind;
 using Lines = std::map<std::pair<Kind, std::string>, unsigned>;
 
-std::optional<Kind> read_kind(RowReader& cells) {
+std::optional<Kind> read_owned_kind(RowReader& cells) {
     const std::string& kind = cells.text("kind");
     if (kind == "action") return Kind::action;
     if (kind == "device") return Kind::device;
@@ -78,7 +78,7 @@ std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const Ow
         row.name = cells.identifier("name");
         row.module = cells.identifier("module");
         row.note = cells.text("note");
-        if (const auto kind = read_kind(cells)) {
+        if (const auto kind = read_owned_kind(cells)) {
             row.kind = *kind;
             if (!row.name.empty()) check_owned(cells, *kind, row.name, context);
             const auto [first, added] = lines.emplace(std::pair{*kind, row.name}, row.line);

@@ -6,7 +6,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned depth_max = 16; // of base containers: ours; a longer chain can only be a cycle
+constexpr unsigned base_depth_max = 16; // of base containers: ours; a longer chain can only be a cycle
 constexpr unsigned bits_max = static_cast<unsigned>(packet_octets_max - packet_crc_octets) * 8;
 
 } // namespace
@@ -47,7 +47,7 @@ void Layouts::read_base(const Symbol& container, Layout& layout, unsigned depth)
         layout.sound = false;
         return;
     }
-    if (depth == depth_max) {
+    if (depth == base_depth_max) {
         report_.fault(base, "container " + in_quotes(name_of(container.element)) + " is based on itself, or too deep");
         layout.sound = false;
         return;

@@ -13,7 +13,7 @@ constexpr std::int64_t apid_max = 0x7FE; // 7FF is idle [ccsds-133.0-b-2]
 constexpr std::int64_t event_id_max = 0xFFFF;
 constexpr unsigned header_bits = static_cast<unsigned>(tm_data_offset_octets) * 8;
 
-constexpr std::array levels{std::pair{"FATAL", EventLevel::fatal},
+constexpr std::array event_levels{std::pair{"FATAL", EventLevel::fatal},
                             std::pair{"WARNING_HI", EventLevel::warning_hi},
                             std::pair{"WARNING_LO", EventLevel::warning_lo},
                             std::pair{"COMMAND", EventLevel::command},
@@ -147,8 +147,8 @@ class PacketReader {
                                        " is taken, first in line " + std::to_string(first->second));
         Event event{event_id, packet.name, EventLevel::diagnostic, ancillary(element, "format"), result.packets.size()};
         const std::string word = ancillary(element, "level");
-        const auto level = std::ranges::find(levels, word, [](const auto& l) { return std::string{l.first}; });
-        if (level == levels.end())
+        const auto level = std::ranges::find(event_levels, word, [](const auto& l) { return std::string{l.first}; });
+        if (level == event_levels.end())
             report_.fault(element, "event " + in_quotes(packet.name) + ": level " + in_quotes(word) + " is unknown");
         else
             event.level = level->second;

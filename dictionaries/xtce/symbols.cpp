@@ -3,7 +3,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned depth_max = 8; // of nested SpaceSystems: ours, so that a hostile file cannot exhaust the stack
+constexpr unsigned system_depth_max = 8; // of nested SpaceSystems: ours, so that a hostile file cannot exhaust the stack
 
 } // namespace
 
@@ -12,8 +12,8 @@ Symbols::Symbols(const Document& document, Reporter& report) {
 }
 
 void Symbols::read_space_system(pugi::xml_node system, const std::string& outer, unsigned depth, Reporter& report) {
-    if (depth == depth_max) {
-        report.fault(system, "SpaceSystems are nested deeper than " + std::to_string(depth_max));
+    if (depth == system_depth_max) {
+        report.fault(system, "SpaceSystems are nested deeper than " + std::to_string(system_depth_max));
         return;
     }
     report.expect(system, {"LongDescription", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},

@@ -22,7 +22,7 @@ void DescentEngines::on(const EngineReply& reply, Outbox& out) {
 }
 
 void DescentEngines::on(const BridleReply& reply, Outbox& out) {
-    if (!payed_out_ && reply.payed_out_m >= ParameterDefaults{}.bridle_length_m - bridle_tolerance_m) {
+    if (!payed_out_ && reply.payed_out_m >= parameters.bridle_length_m - bridle_tolerance_m) {
         payed_out_ = true;
         out.send(ModuleId::edl, ActionReply{ReplyKind::bridle, 0});
     }

@@ -5,7 +5,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr auto device = static_cast<std::uint8_t>(Device::thrusters);
+constexpr auto thrusters_device = static_cast<std::uint8_t>(Device::thrusters);
 
 }  // namespace
 
@@ -18,11 +18,11 @@ void Thrusters::on(const EnableThrusters& command, Outbox&) {
 }
 
 void Thrusters::on(const ThrusterReply& reply, Outbox& out) {
-    if (!awaited_ || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device_number = device});
+    if (!awaited_ || reply.unit != unit_) return out.event(evr::REPLY_UNEXPECTED{.device_number = thrusters_device});
     // The answer to a command that a newer one has overtaken: the newer one's is still due.
     if (!reply.refused && reply.enabled != *awaited_) return;
     awaited_.reset();
-    if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = device});
+    if (reply.refused) return out.event(evr::DEVICE_REFUSED{.device_number = thrusters_device});
     out.send(ModuleId::edl, ActionReply{ReplyKind::thrusters, 0});
 }
 

@@ -1,25 +1,22 @@
 #include "flight/edl/decisions.hpp"
 
 #include "flight/explanation/explanation.hpp"
+#include "flight/gnc/mars.hpp"
 
 #include <cmath>
 
 namespace aeolis::flight {
 namespace {
 
-constexpr double standard_gravity_mps2 = 9.80665;
-constexpr double peak_is_real_above_mps2 = ParameterDefaults{}.peak_deceleration_min_g * standard_gravity_mps2;
-constexpr double peak_has_passed_at = ParameterDefaults{}.peak_deceleration_passed;
-
-float f(double value) {
-    return static_cast<float>(value);
-}
+using gnc::standard_gravity_mps2;
+constexpr double peak_is_real_above_mps2 = parameters.peak_deceleration_min_g * standard_gravity_mps2;
+constexpr double peak_has_passed_at = parameters.peak_deceleration_passed;
 
 template <typename Evr>
 Evr at_state(const gnc::Output& gnc) {
     Evr evr;
-    evr.altitude_m = f(gnc.altitude_m);
-    evr.speed_mps = f(gnc.speed_mps);
+    evr.altitude_m = single(gnc.altitude_m);
+    evr.speed_mps = single(gnc.speed_mps);
     return evr;
 }
 
@@ -73,7 +70,7 @@ void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
     switch (trigger) {
     case gnc::Trigger::guidance_start: {
         auto evr = at_state<evr::GUIDANCE_START>(gnc);
-        evr.drag_mps2 = f(gnc.drag_mps2);
+        evr.drag_mps2 = single(gnc.drag_mps2);
         return out.event(evr);
     }
     case gnc::Trigger::heading_alignment:
@@ -82,14 +79,14 @@ void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
     case gnc::Trigger::sufr_start: return out.event(at_state<evr::SUFR_START>(gnc));
     case gnc::Trigger::parachute: {
         auto evr = at_state<evr::PARACHUTE_DEPLOY>(gnc);
-        evr.mach = f(gnc.mach);
-        evr.dynamic_pressure_Pa = f(gnc.dynamic_pressure_Pa);
+        evr.mach = single(gnc.mach);
+        evr.dynamic_pressure_Pa = single(gnc.dynamic_pressure_Pa);
         return out.event(evr);
     }
     case gnc::Trigger::heatshield: return out.event(at_state<evr::HEATSHIELD_SEPARATION>(gnc));
     case gnc::Trigger::radar_lock:
         request_tone(out, tone::radar_lock);
-        return out.event(evr::RADAR_LOCK{.radar_altitude_m = f(gnc.altitude_m), .beams = gnc.radar_beams});
+        return out.event(evr::RADAR_LOCK{.radar_altitude_m = single(gnc.altitude_m), .beams = gnc.radar_beams});
     case gnc::Trigger::engine_priming: return out.event(at_state<evr::ENGINE_PRIMING>(gnc));
     case gnc::Trigger::backshell: return out.event(at_state<evr::BACKSHELL_SEPARATION>(gnc));
     case gnc::Trigger::powered_approach: return out.event(at_state<evr::POWERED_APPROACH_START>(gnc));
@@ -101,21 +98,21 @@ void announce(gnc::Trigger trigger, const gnc::Output& gnc, Outbox& out) {
         return out.event(at_state<evr::CONSTANT_DECELERATION_START>(gnc));
     case gnc::Trigger::sky_crane: {
         auto evr = at_state<evr::SKY_CRANE_START>(gnc);
-        evr.propellant_kg = f(gnc.propellant_kg);
+        evr.propellant_kg = single(gnc.propellant_kg);
         return out.event(evr);
     }
     case gnc::Trigger::rover_separation: return out.event(at_state<evr::ROVER_SEPARATION>(gnc));
     case gnc::Trigger::touchdown:
-        return out.event(evr::TOUCHDOWN{.descent_rate_mps = f(gnc.descent_rate_mps),
-                                        .horizontal_speed_mps = f(gnc.horizontal_speed_mps),
-                                        .propellant_kg = f(gnc.propellant_kg)});
+        return out.event(evr::TOUCHDOWN{.descent_rate_mps = single(gnc.descent_rate_mps),
+                                        .horizontal_speed_mps = single(gnc.horizontal_speed_mps),
+                                        .propellant_kg = single(gnc.propellant_kg)});
     }
 }
 
 void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
     auto evr = at_state<evr::BANK_REVERSAL>(gnc);
     evr.number = gnc.bank_reversal;
-    evr.bank_deg = f(gnc.bank_command_deg);
+    evr.bank_deg = single(gnc.bank_command_deg);
     out.event(evr);
     request_tone(out, tone::bank_reversal);
 }
@@ -130,7 +127,7 @@ void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
 }
 
 void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out) {
-    const double worth_telling_after_s = ParameterDefaults{}.held_worth_telling_after_s;
+    const double worth_telling_after_s = parameters.held_worth_telling_after_s;
     const Sclk now = out.now();
     FixedVector<gnc::Condition, 2> conditions;
     if (const auto waiting = timeline.waiting(); waiting && now - waiting->triggered >= worth_telling_after_s) {
@@ -145,7 +142,6 @@ void explain_held(const Timeline& timeline, HeldExplanations& held, Outbox& out)
 }
 
 void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out) {
-    constexpr ParameterDefaults parameters{};
     const double now_s = out.now().seconds;
     FixedVector<gnc::Condition, 4> conditions;
     conditions.push_back(is(Quantity::parameters_received, refused == CommandRefusal::no_parameters ? 0.0 : 1.0, 1.0));
@@ -170,9 +166,9 @@ void PeakDeceleration::watch(const gnc::Output& gnc, Outbox& out) {
         speed_mps_ = gnc.speed_mps;
     } else if (largest_mps2_ > peak_is_real_above_mps2 && sensed_mps2 < peak_has_passed_at * largest_mps2_) {
         passed_ = true;
-        out.event(evr::PEAK_DECELERATION{.deceleration_g = f(largest_mps2_ / standard_gravity_mps2),
-                                         .altitude_m = f(altitude_m_),
-                                         .speed_mps = f(speed_mps_)});
+        out.event(evr::PEAK_DECELERATION{.deceleration_g = single(largest_mps2_ / standard_gravity_mps2),
+                                         .altitude_m = single(altitude_m_),
+                                         .speed_mps = single(speed_mps_)});
         request_tone(out, tone::peak_deceleration);
     }
 }

@@ -9,7 +9,6 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr ParameterDefaults parameters{};
 
 void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});

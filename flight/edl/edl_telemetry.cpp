@@ -1,5 +1,7 @@
 #include "flight/edl/edl_main.hpp"
 
+#include "flight/gnc/mars.hpp"
+
 #include <cmath>
 #include <numbers>
 
@@ -8,17 +10,13 @@ namespace aeolis::flight {
 namespace {
 
 constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-constexpr double standard_gravity_mps2 = 9.80665;
+using gnc::standard_gravity_mps2;
 constexpr double parts_in_percent = 100.0;
-constexpr auto held_every_s = static_cast<std::int64_t>(ParameterDefaults{}.parameters_held_every_s);
+constexpr auto held_every_s = static_cast<std::int64_t>(parameters.parameters_held_every_s);
 
 /// Whether a packet of `hz` (a power of two up to 64) is due in this cycle.
 bool due(Sclk now, std::int64_t hz) {
     return at_resolution(now, hz) == now;
-}
-
-float f(double value) {
-    return static_cast<float>(value);
 }
 
 std::optional<double> seconds(MaybeTime time) {
@@ -30,50 +28,50 @@ packet::GncNavigation navigation(const gnc::Output& gnc) {
     return {.nav_position_x_m = gnc.p_MoB_M_m[0],
             .nav_position_y_m = gnc.p_MoB_M_m[1],
             .nav_position_z_m = gnc.p_MoB_M_m[2],
-            .nav_velocity_x_mps = f(gnc.v_MB_M_mps[0]),
-            .nav_velocity_y_mps = f(gnc.v_MB_M_mps[1]),
-            .nav_velocity_z_mps = f(gnc.v_MB_M_mps[2]),
-            .altitude_m = f(gnc.altitude_m),
-            .speed_mps = f(gnc.speed_mps),
-            .descent_rate_mps = f(gnc.descent_rate_mps),
-            .flight_path_deg = f(gnc.flight_path_deg),
-            .horizontal_speed_mps = f(gnc.horizontal_speed_mps),
-            .bank_deg = f(gnc.bank_deg),
-            .angle_of_attack_deg = f(gnc.angle_of_attack_deg)};
+            .nav_velocity_x_mps = single(gnc.v_MB_M_mps[0]),
+            .nav_velocity_y_mps = single(gnc.v_MB_M_mps[1]),
+            .nav_velocity_z_mps = single(gnc.v_MB_M_mps[2]),
+            .altitude_m = single(gnc.altitude_m),
+            .speed_mps = single(gnc.speed_mps),
+            .descent_rate_mps = single(gnc.descent_rate_mps),
+            .flight_path_deg = single(gnc.flight_path_deg),
+            .horizontal_speed_mps = single(gnc.horizontal_speed_mps),
+            .bank_deg = single(gnc.bank_deg),
+            .angle_of_attack_deg = single(gnc.angle_of_attack_deg)};
 }
 
 packet::GncEntry entry_guidance(const gnc::Output& gnc) {
-    return {.drag_mps2 = f(gnc.drag_mps2),
-            .range_to_go_m = f(gnc.range_to_go_m),
-            .crossrange_m = f(gnc.crossrange_m),
-            .bank_command_deg = f(gnc.bank_command_deg),
-            .predicted_range_m = f(gnc.predicted_range_m),
-            .lift_to_drag_command = f(gnc.lift_to_drag_command),
+    return {.drag_mps2 = single(gnc.drag_mps2),
+            .range_to_go_m = single(gnc.range_to_go_m),
+            .crossrange_m = single(gnc.crossrange_m),
+            .bank_command_deg = single(gnc.bank_command_deg),
+            .predicted_range_m = single(gnc.predicted_range_m),
+            .lift_to_drag_command = single(gnc.lift_to_drag_command),
             .reversal_count = gnc.reversals,
-            .dynamic_pressure_Pa = f(gnc.dynamic_pressure_Pa),
-            .mach = f(gnc.mach)};
+            .dynamic_pressure_Pa = single(gnc.dynamic_pressure_Pa),
+            .mach = single(gnc.mach)};
 }
 
 packet::GncImu imu(const gnc::Output& gnc) {
     const auto& a = gnc.acceleration_B_mps2;
     const auto& w = gnc.rate_B_rps;
-    return {.acceleration_x_mps2 = f(a[0]),
-            .acceleration_y_mps2 = f(a[1]),
-            .acceleration_z_mps2 = f(a[2]),
-            .sensed_deceleration_g = f(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) / standard_gravity_mps2),
-            .rate_x_dps = f(w[0] * degrees_per_radian),
-            .rate_y_dps = f(w[1] * degrees_per_radian),
-            .rate_z_dps = f(w[2] * degrees_per_radian)};
+    return {.acceleration_x_mps2 = single(a[0]),
+            .acceleration_y_mps2 = single(a[1]),
+            .acceleration_z_mps2 = single(a[2]),
+            .sensed_deceleration_g = single(std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) / standard_gravity_mps2),
+            .rate_x_dps = single(w[0] * degrees_per_radian),
+            .rate_y_dps = single(w[1] * degrees_per_radian),
+            .rate_z_dps = single(w[2] * degrees_per_radian)};
 }
 
 packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
     const auto& throttle = gnc.engines.throttle;
     double sum = 0.0;
     for (const double one : throttle) sum += one;
-    const auto percent = [&](std::size_t engine) { return f(throttle[engine] * parts_in_percent); };
+    const auto percent = [&](std::size_t engine) { return single(throttle[engine] * parts_in_percent); };
     return {.descent_mode = static_cast<GncMode>(gnc.mode),
-            .thrust_command_N = f(gnc.thrust_command_N),
-            .throttle_mean_percent = f(sum / static_cast<double>(throttle.size()) * parts_in_percent),
+            .thrust_command_N = single(gnc.thrust_command_N),
+            .throttle_mean_percent = single(sum / static_cast<double>(throttle.size()) * parts_in_percent),
             .throttle_1_percent = percent(0),
             .throttle_2_percent = percent(1),
             .throttle_3_percent = percent(2),
@@ -82,15 +80,15 @@ packet::GncDescent descent(const gnc::Output& gnc, double bridle_m) {
             .throttle_6_percent = percent(5),
             .throttle_7_percent = percent(6),
             .throttle_8_percent = percent(7),
-            .mass_estimate_kg = f(gnc.mass_kg),
-            .propellant_kg = f(gnc.propellant_kg),
-            .bridle_m = f(bridle_m)};
+            .mass_estimate_kg = single(gnc.mass_kg),
+            .propellant_kg = single(gnc.propellant_kg),
+            .bridle_m = single(bridle_m)};
 }
 
 /// A load for benchmarks and nothing else: thirty slow waves of known phase, no quantity of the vehicle.
 packet::Wideband wideband(Sclk now) {
     const auto wave = [&](int channel) {
-        return f(std::sin(0.1 * channel * std::remainder(now.seconds, 20.0 * std::numbers::pi / channel)));
+        return single(std::sin(0.1 * channel * std::remainder(now.seconds, 20.0 * std::numbers::pi / channel)));
     };
     return {.wideband_01 = wave(1),
             .wideband_02 = wave(2),

@@ -32,7 +32,6 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
 /// Whether GNC can fly from there. Each argument of a command is inside its own range already; these are what only several
 /// together show, and what the moment does.
 inline bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
-    constexpr ParameterDefaults parameters{};
     const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
     const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);
     return radius_m >= parameters.solution_radius_min_m && radius_m <= parameters.solution_radius_max_m &&

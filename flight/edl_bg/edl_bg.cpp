@@ -5,7 +5,6 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr ParameterDefaults parameters{};
 
 }  // namespace
 

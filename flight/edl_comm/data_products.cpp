@@ -9,10 +9,6 @@ namespace {
 
 constexpr std::size_t part_octets = std::tuple_size_v<decltype(packet::DataProduct::content)>;
 
-float f(double value) {
-    return static_cast<float>(value);
-}
-
 Apid row_apid(ProductKind kind) {
     return kind == ProductKind::as_flown ? packet::TimepointFired::apid : packet::ImuIncrements::apid;
 }
@@ -38,12 +34,12 @@ void ImuBurst::on(const ImuReadings& readings) {
         std::ranges::fill(octets, std::uint8_t{0});
         BitWriter writer{octets};
         packet::ImuIncrements{.imu_count = sample.count,
-                              .delta_v_x_mps = f(sample.delta_v_mps[0]),
-                              .delta_v_y_mps = f(sample.delta_v_mps[1]),
-                              .delta_v_z_mps = f(sample.delta_v_mps[2]),
-                              .delta_angle_x_rad = f(sample.delta_angle_rad[0]),
-                              .delta_angle_y_rad = f(sample.delta_angle_rad[1]),
-                              .delta_angle_z_rad = f(sample.delta_angle_rad[2])}
+                              .delta_v_x_mps = single(sample.delta_v_mps[0]),
+                              .delta_v_y_mps = single(sample.delta_v_mps[1]),
+                              .delta_v_z_mps = single(sample.delta_v_mps[2]),
+                              .delta_angle_x_rad = single(sample.delta_angle_rad[0]),
+                              .delta_angle_y_rad = single(sample.delta_angle_rad[1]),
+                              .delta_angle_z_rad = single(sample.delta_angle_rad[2])}
             .encode(writer);
     }
 }

@@ -17,7 +17,6 @@ namespace aeolis::flight::gnc {
 namespace {
 
 constexpr double cycle_s = seconds_per_tick;
-constexpr ParameterDefaults parameters{};
 constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg * degree;
 
 } // namespace

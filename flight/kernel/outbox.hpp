@@ -9,6 +9,11 @@
 
 namespace aeolis::flight {
 
+/// As packets and events hold it.
+constexpr float single(double value) {
+    return static_cast<float>(value);
+}
+
 /// Where a module puts what it sends while it handles one message. Sending returns nothing (R6): an outbox or a mailbox
 /// that is full is counted and reported by the executive.
 class Outbox {

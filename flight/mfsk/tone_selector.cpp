@@ -70,7 +70,7 @@ void ToneSelector::on(const StandBy&, Outbox& out) {
 void ToneSelector::on(const ClockTick& tick, Outbox& out) {
     if (silent_) return;
     drop_expired(tick.now, out);
-    if (sending_ && tick.now - sending_->started >= ParameterDefaults{}.tone_duration_s) {
+    if (sending_ && tick.now - sending_->started >= parameters.tone_duration_s) {
         sending_.reset();
         out.bus().tone.reset();
     }

@@ -13,7 +13,6 @@ namespace {
 
 using Point = CampaignResults::Point;
 
-constexpr double km = 1.0e-3;
 // [facts] Dispersed landings
 constexpr double mach_from = 1.4, mach_to = 2.2, pressure_from_Pa = 200.0, pressure_to_Pa = 750.0;
 constexpr double vertical_from_mps = 0.65, vertical_to_mps = 0.85, horizontal_to_mps = 0.5;

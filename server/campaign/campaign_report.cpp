@@ -9,7 +9,6 @@
 namespace aeolis::server::campaign {
 namespace {
 
-constexpr double km = 1.0e-3;
 
 std::string spread_json(const Spread& spread) {
     JsonObject object;

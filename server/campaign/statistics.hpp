@@ -5,6 +5,8 @@
 
 namespace aeolis::server::campaign {
 
+inline constexpr double km = 1.0e-3; ///< metres times this are kilometres
+
 /// Mean and deviation of numbers as they come, without keeping them. Source: [welford-1962].
 class Moments {
   public:

@@ -10,7 +10,7 @@ constexpr double ramp_s = 0.6;
 constexpr double steady_mps = Bridle::length_m / (Bridle::pay_out_s - ramp_s);
 constexpr double ramp_mps2 = steady_mps / ramp_s;
 constexpr double stowed_m = 0.2; // from the confluence to the rover, with its weight on it
-constexpr double weight_mps2 = 3.71; // [facts]
+constexpr double bridle_weight_mps2 = 3.71; // [facts]
 constexpr double stretch_by_weight_m = 0.015;
 constexpr double damping_ratio = 0.3;
 
@@ -43,7 +43,7 @@ Vector3 Bridle::pull_N(double now_s, double rover_kg, const Vector3& offset, con
     const double stretch_m = distance_m - (stowed_m - stretch_by_weight_m + payed_out_m(now_s));
     if (stretch_m <= 0.0) return Vector3::Zero();
     const Vector3 along = offset / distance_m;
-    const double stiffness_Npm = rover_kg * weight_mps2 / stretch_by_weight_m;
+    const double stiffness_Npm = rover_kg * bridle_weight_mps2 / stretch_by_weight_m;
     const double damping_Nspm = 2.0 * damping_ratio * std::sqrt(rover_kg * stiffness_Npm);
     const double pull_N = stiffness_Npm * stretch_m + damping_Nspm * (rate.dot(along) - speed_mps(now_s));
     return -std::max(0.0, pull_N) * along;

@@ -14,7 +14,7 @@ constexpr double throttle_lag_s = 0.06;
 constexpr double shutdown_lag_s = 0.03;
 constexpr double least_impulse_s = 204.0;
 constexpr double most_impulse_s = 223.0;
-constexpr auto mounted = flight::descent_engines();
+constexpr auto engine_mounts = flight::descent_engines();
 
 } // namespace
 
@@ -48,9 +48,9 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
         const double impulse_s = least_impulse_s + (most_impulse_s - least_impulse_s) * thrust_N_[i] / largest_thrust_N;
         burnt_kg += 0.5 * (before_N + thrust_N_[i]) * step_s / (impulse_s * standard_gravity_mps2);
         thrust_sum_N_ += thrust_N_[i];
-        const Vector3 force_B_N = thrust_N_[i] * vector3(mounted[i].direction_B);
+        const Vector3 force_B_N = thrust_N_[i] * vector3(engine_mounts[i].direction_B);
         force_B_N_ += force_B_N;
-        torque_B_Nm_ += vector3(mounted[i].position_B_m).cross(force_B_N);
+        torque_B_Nm_ += vector3(engine_mounts[i].position_B_m).cross(force_B_N);
     }
     return burnt_kg;
 }

@@ -18,7 +18,7 @@ using flight::gnc::Mode;
 using flight::gnc::Trigger;
 using Attitude = flight::gnc::AttitudeCommand::Mode;
 
-constexpr flight::ParameterDefaults parameters{};
+using flight::parameters;
 constexpr double sufr_mps = 453.0; // [od137]
 constexpr double priming_above_backshell_m = 1340.0;
 constexpr double approach_end_m = 150.0, slow_below_m = 32.0;

@@ -24,7 +24,7 @@ std::string code_of(const std::string& line) {
 } // namespace
 
 TEST_CASE("each parameter of parameters.csv is used in flight", "[dictionary][R48]") {
-    // Members are named behind a dot: ParameterDefaults{}.name.
+    // Members are named behind a dot: parameters.name.
     static const std::regex member{R"(\.([A-Za-z_][A-Za-z0-9_]*))"};
     std::set<std::string> used;
     for (const std::string& file : flight_sources())
@@ -67,6 +67,6 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
         }
     }
     CHECK(seen >= 9);
-    INFO("put the value in parameters.csv and take it from ParameterDefaults\n" << tuning);
+    INFO("put the value in parameters.csv and take it from flight::parameters\n" << tuning);
     CHECK(tuning.empty());
 }

@@ -18,7 +18,7 @@ struct Fixture {
     }
 };
 
-command::EDL_SET_PARAMETERS parameters() {
+command::EDL_SET_PARAMETERS possible_parameters() {
     command::EDL_SET_PARAMETERS p;
     p.epoch_sclk = 900.0;
     p.entry_sclk = 2000.0;
@@ -31,25 +31,25 @@ command::EDL_SET_PARAMETERS parameters() {
 
 TEST_CASE("parameters go on to Edl when they are possible together", "[edl_bg][R25]") {
     Fixture f;
-    f.handle(SetParametersCommand{{}, parameters()}, 1000.0);
+    f.handle(SetParametersCommand{{}, possible_parameters()}, 1000.0);
     CHECK(f.recorder.sent<ParametersUpdate>().size() == 1);
 }
 
 TEST_CASE("parameters that cannot be true are refused: under the ground, entry in the past", "[edl_bg][R23]") {
     Fixture f;
-    auto underground = parameters();
+    auto underground = possible_parameters();
     underground.position_x_m = 1.0e6;
     f.handle(SetParametersCommand{{}, underground}, 1000.0);
     CHECK(f.recorder.sent<ParametersUpdate>().empty());
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
-    f.handle(SetParametersCommand{{}, parameters()}, 2000.0);
+    f.handle(SetParametersCommand{{}, possible_parameters()}, 2000.0);
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 
 TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle", "[edl_bg][R23]") {
     Fixture f;
-    constexpr double solution_age_max_s = ParameterDefaults{}.solution_age_max_s;
-    auto old = parameters();
+    constexpr double solution_age_max_s = parameters.solution_age_max_s;
+    auto old = possible_parameters();
     old.entry_sclk = old.epoch_sclk + 2.0 * solution_age_max_s;
     f.handle(SetParametersCommand{{}, old}, old.epoch_sclk + solution_age_max_s);
     CHECK(f.recorder.sent<ParametersUpdate>().size() == 1);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double entry_s = 100'000.0;
 
-command::EDL_SET_PARAMETERS parameters() {
+command::EDL_SET_PARAMETERS possible_parameters() {
     command::EDL_SET_PARAMETERS p;
     p.solution_id = 7;
     p.epoch_sclk = entry_s - 1200.0;
@@ -36,7 +36,7 @@ struct Fixture {
         recorder.begin(ModuleId::edl, Sclk{at_s});
         edl.on(message, recorder.out);
     }
-    void set_parameters(double at_s) { handle(ParametersUpdate{{}, parameters()}, at_s); }
+    void set_parameters(double at_s) { handle(ParametersUpdate{{}, possible_parameters()}, at_s); }
     std::optional<CommandRefusal> do_edl(double at_s) {
         handle(DoEdlCommand{}, at_s);
         REQUIRE(recorder.sent<CommandOutcome>().size() == 1);
@@ -71,7 +71,7 @@ TEST_CASE("a turn of another time is reported and confirmed, and nothing is flow
 
 TEST_CASE("parameters that cannot be flown are refused by who flies them, too", "[edl][R23]") {
     Fixture f;
-    auto impossible = parameters();
+    auto impossible = possible_parameters();
     impossible.epoch_sclk = 0.0;
     f.handle(ParametersUpdate{{}, impossible}, entry_s - 1190);
     REQUIRE(f.recorder.sent<CommandOutcome>().size() == 1);
@@ -82,7 +82,7 @@ TEST_CASE("parameters that cannot be flown are refused by who flies them, too", 
 TEST_CASE("do edl is possible in late cruise only", "[edl][R23]") {
     Fixture f;
     f.set_parameters(entry_s - 40'000);
-    const double late_cruise_s = entry_s - ParameterDefaults{}.late_cruise_before_entry_s;
+    const double late_cruise_s = entry_s - parameters.late_cruise_before_entry_s;
     CHECK(f.do_edl(late_cruise_s - 1.0 / 64) == CommandRefusal::too_early);
     CHECK_FALSE(f.do_edl(late_cruise_s).has_value());
 }

@@ -8,7 +8,7 @@ using namespace aeolis::flight::gnc;
 namespace {
 
 constexpr Sclk now{1000.0};
-constexpr double interval_s = flight::ParameterDefaults{}.reversal_interval_min_s;
+constexpr double interval_s = flight::parameters.reversal_interval_min_s;
 
 } // namespace
 

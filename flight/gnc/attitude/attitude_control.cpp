@@ -8,7 +8,6 @@
 namespace aeolis::flight::gnc {
 namespace {
 
-constexpr ParameterDefaults parameters{};
 
 constexpr TurnLimits bank_limits{parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2 * degree,
                                  parameters.bank_deadband_deg * degree, parameters.bank_gain_per_s};

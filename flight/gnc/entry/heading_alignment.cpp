@@ -6,7 +6,7 @@
 namespace aeolis::flight::gnc {
 
 double heading_alignment_bank_rad(const TargetGeometry& geometry) {
-    constexpr double gain = ParameterDefaults{}.heading_alignment_gain;
+    constexpr double gain = parameters.heading_alignment_gain;
     return std::clamp(gain * std::atan2(geometry.crossrange_m, geometry.downrange_m), -heading_alignment_limit_rad,
                       heading_alignment_limit_rad);
 }

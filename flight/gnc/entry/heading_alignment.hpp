@@ -11,8 +11,8 @@
 // Source   [facts] Guidance: gain 100, limit 30°, start at 1100 m/s
 namespace aeolis::flight::gnc {
 
-inline constexpr double heading_alignment_speed_mps = ParameterDefaults{}.heading_alignment_speed_mps;
-inline constexpr double heading_alignment_limit_rad = ParameterDefaults{}.heading_alignment_bank_max_deg * degree;
+inline constexpr double heading_alignment_speed_mps = parameters.heading_alignment_speed_mps;
+inline constexpr double heading_alignment_limit_rad = parameters.heading_alignment_bank_max_deg * degree;
 
 double heading_alignment_bank_rad(const TargetGeometry& geometry);
 

@@ -6,9 +6,9 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double deadband_0_m = ParameterDefaults{}.crossrange_deadband_m;
-constexpr double deadband_2_s2pm = ParameterDefaults{}.crossrange_deadband_s2pm;
-constexpr double reversal_interval_min_s = ParameterDefaults{}.reversal_interval_min_s;
+constexpr double deadband_0_m = parameters.crossrange_deadband_m;
+constexpr double deadband_2_s2pm = parameters.crossrange_deadband_s2pm;
+constexpr double reversal_interval_min_s = parameters.reversal_interval_min_s;
 
 } // namespace
 

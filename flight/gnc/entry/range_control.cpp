@@ -7,8 +7,8 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr double saturation = ParameterDefaults{}.guidance_saturation;
-constexpr double sensitivity_min_m = ParameterDefaults{}.guidance_sensitivity_min_m;
+constexpr double saturation = parameters.guidance_saturation;
+constexpr double sensitivity_min_m = parameters.guidance_sensitivity_min_m;
 
 double between(double a, double b, double part) {
     return a + part * (b - a);

@@ -17,7 +17,7 @@
 // Valid    within the reference's velocities; held at its ends
 namespace aeolis::flight::gnc {
 
-inline constexpr double overcontrol_gain = ParameterDefaults{}.guidance_gain; ///< K
+inline constexpr double overcontrol_gain = parameters.guidance_gain; ///< K
 
 /// The reference at a velocity, linear between its rows, held at its ends. An empty reference gives a row of zeros.
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps);

@@ -13,11 +13,11 @@
 // limit Source   [facts] Timeline: burn of 6.66 s, stage falls ≥ 450 m away; phases, pitch and azimuth (north) are ours
 namespace aeolis::flight::gnc::flyaway {
 
-inline constexpr double clear_s = ParameterDefaults{}.flyaway_clear_s;
-inline constexpr double upright_s = ParameterDefaults{}.flyaway_upright_s;
-inline constexpr double pitch_time_s = ParameterDefaults{}.flyaway_pitch_time_s;
-inline constexpr double pitch_rad = ParameterDefaults{}.flyaway_pitch_deg * degree;
-inline constexpr double azimuth_rad = ParameterDefaults{}.flyaway_azimuth_deg * degree;
+inline constexpr double clear_s = parameters.flyaway_clear_s;
+inline constexpr double upright_s = parameters.flyaway_upright_s;
+inline constexpr double pitch_time_s = parameters.flyaway_pitch_time_s;
+inline constexpr double pitch_rad = parameters.flyaway_pitch_deg * degree;
+inline constexpr double azimuth_rad = parameters.flyaway_azimuth_deg * degree;
 
 struct Command {
     Vector3 direction_M = Vector3::UnitX(); ///< unit, of thrust

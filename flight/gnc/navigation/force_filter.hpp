@@ -31,12 +31,12 @@ class ForceFilter {
     double lift_to_drag(double otherwise) const {
         if (slow_drag_mps2_ < enough_drag_mps2) return otherwise;
         const double ratio = lift_mps2_ / slow_drag_mps2_;
-        return std::clamp(ratio, ParameterDefaults{}.lift_to_drag_min, ParameterDefaults{}.lift_to_drag_max);
+        return std::clamp(ratio, parameters.lift_to_drag_min, parameters.lift_to_drag_max);
     }
 
-    static constexpr double drag_time_s = ParameterDefaults{}.drag_filter_time_s;
-    static constexpr double lift_time_s = ParameterDefaults{}.lift_filter_time_s;
-    static constexpr double enough_drag_mps2 = ParameterDefaults{}.lift_to_drag_felt_mps2;
+    static constexpr double drag_time_s = parameters.drag_filter_time_s;
+    static constexpr double lift_time_s = parameters.lift_filter_time_s;
+    static constexpr double enough_drag_mps2 = parameters.lift_to_drag_felt_mps2;
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

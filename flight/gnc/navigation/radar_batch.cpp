@@ -7,7 +7,6 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr ParameterDefaults parameters{};
 
 std::int64_t quarter_of(Sclk time) {
     return static_cast<std::int64_t>(std::floor(time.seconds * radar_bins_per_second));

@@ -56,7 +56,7 @@ class RadarBatch {
         Vector3 right = Vector3::Zero();
         std::uint16_t beams = 0;
     };
-    std::array<Bin, static_cast<std::size_t>(ParameterDefaults{}.radar_average_s * radar_bins_per_second)> bins_{};
+    std::array<Bin, static_cast<std::size_t>(parameters.radar_average_s * radar_bins_per_second)> bins_{};
 };
 
 } // namespace aeolis::flight::gnc

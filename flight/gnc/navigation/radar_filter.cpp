@@ -7,7 +7,6 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr ParameterDefaults parameters{};
 constexpr auto refused_max = static_cast<std::uint32_t>(parameters.radar_refused_max);
 
 } // namespace

@@ -10,7 +10,7 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-constexpr auto bias_samples_max = static_cast<std::uint32_t>(ParameterDefaults{}.imu_bias_samples_max);
+constexpr auto bias_samples_max = static_cast<std::uint32_t>(parameters.imu_bias_samples_max);
 
 /// The rotation by a small vector, to third order; its caller keeps the angle below 0.1 rad.
 Quaternion small_rotation(const Vector3& angle) {

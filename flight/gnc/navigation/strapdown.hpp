@@ -21,7 +21,7 @@
 namespace aeolis::flight::gnc {
 
 inline constexpr double imu_period_s = 1.0 / 200.0; ///< [facts] Vehicle
-inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(ParameterDefaults{}.imu_gap_max);
+inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(parameters.imu_gap_max);
 
 struct NavigatedState {
     Vector3 p_MoB_M = Vector3::Zero(); ///< [m]

@@ -9,8 +9,8 @@ namespace aeolis::flight::gnc::powered_descent {
 
 namespace {
 
-constexpr double velocity_gain_per_s = ParameterDefaults{}.divert_velocity_gain_per_s;
-constexpr double position_gain_per_s2 = ParameterDefaults{}.divert_position_gain_per_s2;
+constexpr double velocity_gain_per_s = parameters.divert_velocity_gain_per_s;
+constexpr double position_gain_per_s2 = parameters.divert_position_gain_per_s2;
 
 } // namespace
 

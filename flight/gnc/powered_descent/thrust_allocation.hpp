@@ -14,9 +14,9 @@
 // Source   [facts] Vehicle: each engine 400 … 3060 N used; the tilt limit is ours
 namespace aeolis::flight::gnc::powered_descent {
 
-inline constexpr double engine_used_min_N = ParameterDefaults{}.engine_used_min_N;
-inline constexpr double engine_used_max_N = ParameterDefaults{}.engine_used_max_N;
-inline constexpr double tilt_max_rad = ParameterDefaults{}.tilt_max_deg * degree;
+inline constexpr double engine_used_min_N = parameters.engine_used_min_N;
+inline constexpr double engine_used_max_N = parameters.engine_used_max_N;
+inline constexpr double tilt_max_rad = parameters.tilt_max_deg * degree;
 
 struct Thrust {
     Vector3 direction_M = Vector3::UnitX(); ///< unit

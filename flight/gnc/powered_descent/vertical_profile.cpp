@@ -9,8 +9,8 @@ namespace aeolis::flight::gnc::powered_descent {
 
 namespace {
 
-constexpr double deceleration_min_mps2 = ParameterDefaults{}.profile_deceleration_min_mps2;
-constexpr double deceleration_max_mps2 = ParameterDefaults{}.profile_deceleration_max_mps2;
+constexpr double deceleration_min_mps2 = parameters.profile_deceleration_min_mps2;
+constexpr double deceleration_max_mps2 = parameters.profile_deceleration_max_mps2;
 
 double limited(double deceleration_mps2) {
     return std::clamp(deceleration_mps2, deceleration_min_mps2, deceleration_max_mps2);

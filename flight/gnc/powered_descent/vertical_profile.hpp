@@ -17,17 +17,17 @@ namespace aeolis::flight::gnc::powered_descent {
 
 /// The bridle, and from its end to the wheels.
 inline constexpr double stage_height_at_touchdown_m =
-    ParameterDefaults{}.bridle_length_m + ParameterDefaults{}.stage_above_bridle_m;
-inline constexpr double constant_velocity_mps = ParameterDefaults{}.constant_velocity_mps;
-inline constexpr double sky_crane_mps = ParameterDefaults{}.sky_crane_descent_rate_mps;
+    parameters.bridle_length_m + parameters.stage_above_bridle_m;
+inline constexpr double constant_velocity_mps = parameters.constant_velocity_mps;
+inline constexpr double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
 inline constexpr double approach_end_altitude_m =
-    ParameterDefaults{}.powered_approach_end_altitude_m + stage_height_at_touchdown_m;
-inline constexpr double sky_crane_altitude_m = ParameterDefaults{}.sky_crane_altitude_m + stage_height_at_touchdown_m;
-inline constexpr double approach_deceleration_mps2 = ParameterDefaults{}.approach_deceleration_mps2;
-inline constexpr double constant_deceleration_mps2 = ParameterDefaults{}.constant_deceleration_mps2;
+    parameters.powered_approach_end_altitude_m + stage_height_at_touchdown_m;
+inline constexpr double sky_crane_altitude_m = parameters.sky_crane_altitude_m + stage_height_at_touchdown_m;
+inline constexpr double approach_deceleration_mps2 = parameters.approach_deceleration_mps2;
+inline constexpr double constant_deceleration_mps2 = parameters.constant_deceleration_mps2;
 /// From backshell separation to powered approach.
-inline constexpr double free_fall_s = ParameterDefaults{}.powered_approach_delay_s;
-inline constexpr double rate_gain_per_s = ParameterDefaults{}.descent_rate_gain_per_s;
+inline constexpr double free_fall_s = parameters.powered_approach_delay_s;
+inline constexpr double rate_gain_per_s = parameters.descent_rate_gain_per_s;
 
 /// Altitude that free fall and the approach use up by design, from a descent rate at backshell separation.
 double altitude_used_until_constant_velocity_m(double descent_rate_mps);

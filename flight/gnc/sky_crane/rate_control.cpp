@@ -8,7 +8,6 @@ namespace aeolis::flight::gnc::sky_crane {
 
 namespace {
 
-constexpr ParameterDefaults parameters{};
 constexpr double proportional_per_s = parameters.sky_crane_proportional_per_s;
 constexpr double integral_per_s2 = parameters.sky_crane_integral_per_s2;
 constexpr double integral_max_mps2 = parameters.sky_crane_integral_max_mps2;

@@ -16,8 +16,8 @@
 // Valid    while the stage hovers upright at a steady rate
 namespace aeolis::flight::gnc::sky_crane {
 
-inline constexpr auto touchdown_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.touchdown_settle_s / seconds_per_tick);
-inline constexpr double thrust_tolerance = ParameterDefaults{}.touchdown_thrust_tolerance;
+inline constexpr auto touchdown_cycles = static_cast<std::uint32_t>(parameters.touchdown_settle_s / seconds_per_tick);
+inline constexpr double thrust_tolerance = parameters.touchdown_thrust_tolerance;
 
 class TouchdownLogic {
   public:

@@ -11,8 +11,8 @@
 // Source   [facts] Timeline: lasts 14.00 s; the rate is ours, half of what the thrusters can [facts] Vehicle
 namespace aeolis::flight::gnc::sufr {
 
-inline constexpr double duration_s = ParameterDefaults{}.sufr_duration_s;
-inline constexpr double roll_rate_rps = ParameterDefaults{}.sufr_roll_rate_dps * degree;
+inline constexpr double duration_s = parameters.sufr_duration_s;
+inline constexpr double roll_rate_rps = parameters.sufr_roll_rate_dps * degree;
 
 double bank_rad(double since_start_s, double bank_at_start_rad);
 

@@ -26,7 +26,7 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-constexpr double near_fraction = ParameterDefaults{}.held_near_fraction; // of the bound
+constexpr double near_fraction = parameters.held_near_fraction; // of the bound
 
 } // namespace
 
@@ -60,7 +60,7 @@ Conditions sufr_start(const InAir& at, double deceleration_mps2, const Parachute
     if (all_hold(low)) return low;
     const double to_parachute_s = (at.speed_mps - bounds.speed_mps) / std::max(deceleration_mps2, 1.0e-3);
     return list(at_most(Quantity::time_to_parachute_s, to_parachute_s, sufr_lead_s),
-                at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + ParameterDefaults{}.sufr_near_mps));
+                at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps + parameters.sufr_near_mps));
 }
 
 bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {

@@ -13,14 +13,14 @@
 // Source   [facts] Timeline; bounds that ground may change come with its solution
 namespace aeolis::flight::gnc::triggers {
 
-inline constexpr double guidance_start_drag_mps2 = ParameterDefaults{}.guidance_start_drag_mps2;
-inline constexpr double sufr_lead_s = ParameterDefaults{}.sufr_lead_s; ///< before the parachute
-inline constexpr auto parachute_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.parachute_cycles);
-inline constexpr auto backshell_cycles = static_cast<std::uint32_t>(ParameterDefaults{}.backshell_cycles);
-inline constexpr double heatshield_delay_s = ParameterDefaults{}.heatshield_delay_min_s; ///< after the mortar
-inline constexpr double priming_lead_s = ParameterDefaults{}.priming_lead_s;             ///< before backshell separation
-inline constexpr double radar_patience_s = ParameterDefaults{}.radar_patience_s; ///< after heatshield separation
-inline constexpr double sky_crane_settling_s = ParameterDefaults{}.sky_crane_settle_s; ///< to rover separation
+inline constexpr double guidance_start_drag_mps2 = parameters.guidance_start_drag_mps2;
+inline constexpr double sufr_lead_s = parameters.sufr_lead_s; ///< before the parachute
+inline constexpr auto parachute_cycles = static_cast<std::uint32_t>(parameters.parachute_cycles);
+inline constexpr auto backshell_cycles = static_cast<std::uint32_t>(parameters.backshell_cycles);
+inline constexpr double heatshield_delay_s = parameters.heatshield_delay_min_s; ///< after the mortar
+inline constexpr double priming_lead_s = parameters.priming_lead_s;             ///< before backshell separation
+inline constexpr double radar_patience_s = parameters.radar_patience_s; ///< after heatshield separation
+inline constexpr double sky_crane_settling_s = parameters.sky_crane_settle_s; ///< to rover separation
 
 /// Counts how long a condition has held without a break.
 class Persistence {
