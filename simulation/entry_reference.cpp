@@ -17,10 +17,6 @@ constexpr double step_s = 0.25;
 constexpr double descent_step_s = 0.05; // a parachute that opens a step later lands 20 m farther
 constexpr double longest_s = 900.0;
 constexpr double least_deceleration_mps2 = 0.5; // below it velocity is no clock
-constexpr double bank_before_guidance_rad = 77.0 * degree_rad;
-constexpr double sufr_above_parachute_mps = 48.0; // [facts]: 453 against 405 m/s
-constexpr double sufr_s = 14.0;                   // [facts]
-constexpr double free_fall_s = 3.2;               // [facts]: from backshell separation to powered approach
 
 /// One point of the reference flight, in the plane of flight.
 struct Node {
@@ -86,11 +82,11 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
         const double speed_mps = at.v_MB_M.norm();
         if (altitude_m <= scenario.backshell_altitude_m) break;
         if (since_mortar_s < 0.0 && speed_mps <= scenario.parachute_speed_mps) since_mortar_s = 0.0;
-        if (heatshield && since_mortar_s >= 20.0 && speed_mps <= scenario.heatshield_speed_mps) {
+        if (heatshield && since_mortar_s >= EntryPlan::heatshield_after_mortar_s && speed_mps <= scenario.heatshield_speed_mps) {
             heatshield = false;
             mass_kg -= masses.heatshield_kg;
         }
-        const double straight = std::min(t / sufr_s, 1.0);
+        const double straight = std::min(t / EntryPlan::sufr_duration_s, 1.0);
         const auto force = [&](double, const Vector3& p, const Vector3& v) -> Vector3 {
             const Air air = atmosphere.at(p.norm() - scenario.target.radius_m);
             const double v_mps = v.norm();
@@ -116,7 +112,7 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
     const Horizon local = horizon(at.p_MoB_M);
     const double level_mps = (at.v_MB_M - at.v_MB_M.dot(local.up) * local.up).norm();
     const flight::Load load;
-    return ground_m + level_mps * free_fall_s +
+    return ground_m + level_mps * EntryPlan::free_fall_s +
            load.divert_m * std::cos(load.divert_azimuth_deg * degree_rad - azimuth_rad(at));
 }
 
@@ -134,13 +130,13 @@ Costate range_slopes_after_entry(const Scenario& scenario, const Atmosphere& atm
 
 Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere& atmosphere, double held_rad) {
     Flight result;
-    const double end_mps = scenario.parachute_speed_mps + sufr_above_parachute_mps;
+    const double end_mps = scenario.parachute_speed_mps + EntryPlan::sufr_above_parachute_mps;
     PointMass at = nominal_entry(scenario);
     double ground_m = 0.0;
     bool slowing = false;
     for (double t = 0.0; t < longest_s; t += step_s) {
         const double speed_mps = at.v_MB_M.norm();
-        const double bank_rad = slowing ? reference_bank_rad(speed_mps, held_rad) : bank_before_guidance_rad;
+        const double bank_rad = slowing ? reference_bank_rad(speed_mps, held_rad) : EntryPlan::bank_before_guidance_deg * degree_rad;
         const Sensed sensed = flight.sensed(at);
         const double climb_mps2 = free_fall(at.p_MoB_M, at.v_MB_M).dot(at.v_MB_M) / speed_mps;
         slowing = slowing || sensed.drag_mps2 - climb_mps2 >= least_deceleration_mps2;
@@ -216,10 +212,10 @@ std::vector<double> row_measure(const std::vector<Node>& nodes) {
 
 double reference_bank_rad(double velocity_mps, double held_rad) {
     constexpr double early_mps = 5300.0, held_from_mps = 4400.0, held_to_mps = 1100.0, up_at_mps = 980.0;
-    if (velocity_mps >= early_mps) return bank_before_guidance_rad;
+    if (velocity_mps >= early_mps) return EntryPlan::bank_before_guidance_deg * degree_rad;
     if (velocity_mps >= held_from_mps) {
         const double part = (velocity_mps - held_from_mps) / (early_mps - held_from_mps);
-        return held_rad + part * (bank_before_guidance_rad - held_rad);
+        return held_rad + part * (EntryPlan::bank_before_guidance_deg * degree_rad - held_rad);
     }
     if (velocity_mps >= held_to_mps) return held_rad;
     return held_rad * std::max(velocity_mps - up_at_mps, 0.0) / (held_to_mps - up_at_mps);

@@ -17,6 +17,15 @@
 // Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
 namespace aeolis::simulation {
 
+/// What it takes flight to do, for nobody in the world may look into flight's parameters: a test holds them against those.
+struct EntryPlan {
+    static constexpr double bank_before_guidance_deg = 77.0; // [facts]
+    static constexpr double sufr_above_parachute_mps = 48.0; // [facts]: 453 against 405 m/s
+    static constexpr double sufr_duration_s = 14.0;          // [facts]
+    static constexpr double free_fall_s = 3.203125;          // [od137]: from backshell separation to powered approach
+    static constexpr double heatshield_after_mortar_s = 20.0; // at least, by the timeline
+};
+
 /// Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. About 15 ms.
 /// A target out of reach gives the reference of the bank that comes nearest.
 flight::EntryReference make_entry_reference(const Scenario& scenario);

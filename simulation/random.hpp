@@ -32,6 +32,8 @@ enum class Stream : std::uint64_t {
     radar_b_dropout,
     gust,
     terrain,
+    mass,
+    slow_drag,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

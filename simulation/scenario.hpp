@@ -2,6 +2,7 @@
 
 #include "common/time.hpp"
 #include "flight/devices/device_messages.hpp"
+#include "flight/devices/effectors.hpp"
 #include "flight/load.hpp"
 
 #include <array>
@@ -41,6 +42,32 @@ struct Masses {
     double rover_kg = 899.0;
 };
 
+/// Radii of gyration by what is attached: about z, and about any axis across it. What flight takes them for is
+/// flight/devices/effectors.hpp; a scenario may have others, which then are an error that the vehicle flies with.
+struct Gyration {
+    double with_cruise_stage_across_m = flight::gyration_with_cruise_stage.across_m;
+    double with_cruise_stage_along_m = flight::gyration_with_cruise_stage.along_z_m;
+    double entry_vehicle_across_m = flight::gyration_of_entry_vehicle.across_m;
+    double entry_vehicle_along_m = flight::gyration_of_entry_vehicle.along_z_m;
+    double without_heatshield_across_m = flight::gyration_without_heatshield.across_m;
+    double without_heatshield_along_m = flight::gyration_without_heatshield.along_z_m;
+    double stage_with_rover_across_m = flight::gyration_of_stage_with_rover.across_m;
+    double stage_with_rover_along_m = flight::gyration_of_stage_with_rover.along_z_m;
+    double stage_across_m = flight::gyration_of_stage.across_m;
+    double stage_along_m = flight::gyration_of_stage.along_z_m;
+};
+
+/// Where the parts' centres of mass sit along z, from the descent stage's own; and how far off the axis the balance masses,
+/// which give the 0.1 m of the entry vehicle [facts] (L). Not published: all ours.
+struct Stations {
+    double rover_m = 0.4;
+    double heatshield_m = 1.0;
+    double backshell_m = -1.1;
+    double cruise_stage_m = -1.6;
+    double balances_m = 0.5;
+    double balances_off_axis_m = 2.1;
+};
+
 /// One standard deviation of each seeded error; 0 switches it off.
 struct Dispersions {
     double delivery_flight_path_deg = 0.0167;
@@ -61,7 +88,13 @@ struct Dispersions {
     double radar_dropout_fraction = 0.01; ///< no deviation: the part of the radar's readings that fail. Ours
     double terrain_height_m = 0.0;
     double terrain_slope_deg = 0.0; ///< of the rise towards east and towards north
-    double parachute_plane_deg = 30.0; ///< of the plane in which the parachute begins to lift, off up. Ours
+    double parachute_plane_deg = 30.0;    ///< of the plane in which the parachute begins to lift, off up. Ours
+    double mass_fraction = 0.001;           ///< of all parts alike
+    double slow_drag_fraction = 0.033;      ///< of drag and lift at low Mach numbers; drag_fraction is for high ones
+    double imu_scale_fraction = 1.0e-4;     ///< of each accelerometer. Ours
+    double gyro_scale_fraction = 1.0e-5;    ///< of each gyro. Ours
+    double imu_noise_mps = 5.0e-5;          ///< of each accelerometer, a reading. Ours
+    double gyro_noise_rad = 2.0e-6;         ///< of each gyro, a reading. Ours
 };
 
 /// The ground around the target, over the sphere of its radius; a case adds its own (Dispersions). Ours.
@@ -145,6 +178,8 @@ struct Scenario {
     Target target;
     Ground ground;
     Masses masses;
+    Gyration gyration;
+    Stations stations;
     Dispersions dispersions;
     std::vector<DensityScale> density_scale;
     double parachute_drag_area_m2 = 205.0; ///< CD·S at terminal speed

@@ -63,6 +63,13 @@ std::string event_rows(const Summary& summary) {
     return text;
 }
 
+std::string margin_rows(const Summary& summary) {
+    std::string text = heading("timeline margin s");
+    for (const MarginSpread& margin : summary.margins)
+        text += row(margin.timepoint, margin.margin_s, 3);
+    return text;
+}
+
 std::string failure_rows(const Summary& summary, const Call& call) {
     std::string text;
     for (const Failure& failure : summary.failures)
@@ -96,6 +103,9 @@ std::string campaign_json(const Summary& summary, const Call& call) {
             .text("again", again(summary, call, failure.number))
             .str();
     };
+    const auto margin_of = [](const MarginSpread& margin) {
+        return JsonObject{}.text("timepoint", margin.timepoint).raw("margin_s", spread_json(margin.margin_s)).str();
+    };
     const auto margin_json = !summary.least_margin ? std::string{"null"}
                                                    : JsonObject{}
                                                          .number("margin_s", summary.least_margin->margin_s)
@@ -124,7 +134,7 @@ std::string campaign_json(const Summary& summary, const Call& call) {
                               .str())
         .raw("peak_deceleration_mps2", spread_json(summary.peak_deceleration_mps2))
         .raw("propellant_kg", spread_json(summary.propellant_kg))
-        .raw("least_margin_s", spread_json(summary.least_margin_s))
+        .raw("timeline_margins", json_array(summary.margins, margin_of))
         .raw("least_margin", margin_json)
         .raw("heatshield_least_m", spread_json(summary.heatshield_least_m))
         .raw("backshell_least_m", spread_json(summary.backshell_least_m))
@@ -151,9 +161,8 @@ std::string campaign_table(const Summary& summary, const Call& call) {
             row("parachute Mach", summary.parachute_mach, 3) +
             row("parachute dynamic pressure Pa", summary.parachute_pressure_Pa, 1) +
             row("propellant left kg", summary.propellant_kg, 1) +
-            row("least timeline margin s", summary.least_margin_s, 3) +
             row("heatshield nearest m", summary.heatshield_least_m, 1) +
-            row("backshell nearest m", summary.backshell_least_m, 1) + '\n';
+            row("backshell nearest m", summary.backshell_least_m, 1) + '\n' + margin_rows(summary) + '\n';
     const Ellipse& ellipse = summary.ellipse;
     text += fmt::format("99 % ellipse {:.2f} x {:.2f} km, major axis at azimuth {:.1f} deg, centre {:+.2f} km east, "
                         "{:+.2f} km north of the target\n",

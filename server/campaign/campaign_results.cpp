@@ -34,7 +34,8 @@ Result<CampaignResults> CampaignResults::open(const std::filesystem::path& file,
     auto database = Database::open(file.string(), Mode::read_write_create);
     if (!database) return database.error();
     const auto views = fmt::format("CREATE TEMP VIEW flown AS SELECT * FROM cases WHERE number <= {0};"
-                                   "CREATE TEMP VIEW moments AS SELECT * FROM events WHERE case_number <= {0};",
+                                   "CREATE TEMP VIEW moments AS SELECT * FROM events WHERE case_number <= {0};"
+                                   "CREATE TEMP VIEW allowances AS SELECT * FROM margins WHERE case_number <= {0};",
                                    cases);
     if (const auto made = database->execute(views.c_str()); !made) return made.error();
     return CampaignResults{std::move(*database), cases};
@@ -87,7 +88,7 @@ Result<Summary> CampaignResults::summary() {
     if (const auto read = read_outcomes(summary); !read) return read.error();
     if (const auto read = read_events(summary); !read) return read.error();
     if (const auto read = read_spreads(summary); !read) return read.error();
-    if (const auto read = read_margin(summary); !read) return read.error();
+    if (const auto read = read_margins(summary); !read) return read.error();
     if (const auto read = read_recontacts(summary); !read) return read.error();
     PlaneMoments plane;
     if (const auto read = each_touchdown_m([&](Point at) { plane.add(at.x, at.y); }); !read) return read.error();
@@ -146,7 +147,6 @@ Result<void> CampaignResults::read_spreads(Summary& into) {
           Wanted{"parachute_mach", all, &into.parachute_mach},
           Wanted{"parachute_pressure_Pa", all, &into.parachute_pressure_Pa},
           Wanted{"peak_deceleration_mps2", all, &into.peak_deceleration_mps2},
-          Wanted{"least_margin_s", all, &into.least_margin_s},
           Wanted{"heatshield_least_m", all, &into.heatshield_least_m},
           Wanted{"backshell_least_m", all, &into.backshell_least_m}}) {
         const auto found = spread(wanted.column, wanted.source);
@@ -156,9 +156,20 @@ Result<void> CampaignResults::read_spreads(Summary& into) {
     return {};
 }
 
-Result<void> CampaignResults::read_margin(Summary& into) {
-    auto least = database_.prepare("SELECT least_margin_s, least_margin_timepoint, number FROM flown"
-                                   " WHERE least_margin_s IS NOT NULL ORDER BY least_margin_s, number LIMIT 1");
+Result<void> CampaignResults::read_margins(Summary& into) {
+    auto timepoints = database_.prepare("SELECT timepoint FROM allowances GROUP BY timepoint ORDER BY avg(place)");
+    if (!timepoints) return timepoints.error();
+    const auto read = each_row(*timepoints, [&](const Statement& row) {
+        into.margins.push_back({std::string{row.text(0)}, {}});
+    });
+    if (!read) return read;
+    for (MarginSpread& margin : into.margins) {
+        const auto found = spread("margin_s", "allowances WHERE timepoint = ?", margin.timepoint);
+        if (!found) return found.error();
+        margin.margin_s = *found;
+    }
+    auto least = database_.prepare("SELECT margin_s, timepoint, case_number FROM allowances"
+                                   " ORDER BY margin_s, case_number LIMIT 1");
     if (!least) return least.error();
     return each_row(*least, [&](const Statement& row) {
         into.least_margin =

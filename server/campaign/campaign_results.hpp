@@ -32,6 +32,11 @@ struct Failure {
     std::uint64_t end_cycle = 0;
 };
 
+struct MarginSpread {
+    std::string timepoint;
+    Spread margin_s;
+};
+
 struct LeastMargin {
     double margin_s = 0.0;
     std::string timepoint;
@@ -49,9 +54,10 @@ struct Summary {
     Spread vertical_mps, horizontal_mps, miss_m, latitude_deg, longitude_deg;
     Ellipse ellipse;
     Spread parachute_mach, parachute_pressure_Pa;
-    Spread peak_deceleration_mps2, propellant_kg, least_margin_s;
+    Spread peak_deceleration_mps2, propellant_kg;
     Spread heatshield_least_m, backshell_least_m; ///< of the cases in which the vehicle came nearer to it again
     std::uint64_t recontacts = 0;
+    std::vector<MarginSpread> margins; ///< in the order of the timeline
     std::optional<LeastMargin> least_margin;
     std::vector<Failure> failures; ///< the first `failures_max`
     std::uint64_t failed = 0;
@@ -85,7 +91,7 @@ class CampaignResults {
     Result<void> read_outcomes(Summary& into);
     Result<void> read_events(Summary& into);
     Result<void> read_spreads(Summary& into);
-    Result<void> read_margin(Summary& into);
+    Result<void> read_margins(Summary& into);
     Result<void> read_recontacts(Summary& into);
 
     archive::sqlite::Database database_;

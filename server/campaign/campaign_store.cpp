@@ -10,7 +10,7 @@ using archive::sqlite::Database;
 using archive::sqlite::Mode;
 using archive::sqlite::Transaction;
 
-constexpr std::int64_t schema_version = 2;
+constexpr std::int64_t schema_version = 3;
 constexpr std::int64_t application_id = 0x4165436d; // "AeCm"
 
 const char* const pragmas = "PRAGMA journal_mode = WAL;"
@@ -22,12 +22,15 @@ const char* const schema =
     "CREATE TABLE cases (number INTEGER PRIMARY KEY, outcome TEXT NOT NULL, reason TEXT NOT NULL,"
     " end_cycle INTEGER NOT NULL, vertical_mps REAL, horizontal_mps REAL, miss_m REAL, latitude_deg REAL,"
     " longitude_deg REAL, east_m REAL, north_m REAL, peak_deceleration_mps2 REAL, parachute_mach REAL,"
-    " parachute_pressure_Pa REAL, propellant_kg REAL, least_margin_s REAL, least_margin_timepoint TEXT,"
+    " parachute_pressure_Pa REAL, propellant_kg REAL,"
     " heatshield_least_m REAL, backshell_least_m REAL, struck_by TEXT) STRICT;"
     "CREATE TABLE events (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
     " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL,"
     " PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
-    "CREATE INDEX events_by_name ON events (name);";
+    "CREATE INDEX events_by_name ON events (name);"
+    "CREATE TABLE margins (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
+    " timepoint TEXT NOT NULL, margin_s REAL NOT NULL, PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
+    "CREATE INDEX margins_by_timepoint ON margins (timepoint);";
 
 /// The first line in which two texts differ, both versions.
 std::string difference(const std::string& before, const std::string& now) {
@@ -113,13 +116,16 @@ Result<void> CampaignStore::check(const Identity& identity) {
 Result<void> CampaignStore::prepare() {
     auto has = database_.prepare("SELECT 1 FROM cases WHERE number = ?");
     if (!has) return has.error();
-    auto add_case = database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    auto add_case = database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (!add_case) return add_case.error();
     auto add_event = database_.prepare("INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
     if (!add_event) return add_event.error();
+    auto add_margin = database_.prepare("INSERT INTO margins VALUES (?, ?, ?, ?)");
+    if (!add_margin) return add_margin.error();
     has_ = std::move(*has);
     add_case_ = std::move(*add_case);
     add_event_ = std::move(*add_event);
+    add_margin_ = std::move(*add_margin);
     return {};
 }
 
@@ -151,15 +157,11 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
         add_case_.bind(12, result.peak_deceleration_mps2).bind_null(13).bind_null(14).bind(15, result.propellant_kg);
         if (result.parachute)
             add_case_.bind(13, result.parachute->mach).bind(14, result.parachute->dynamic_pressure_Pa);
-        add_case_.bind_null(16).bind_null(17);
-        if (result.least_margin)
-            add_case_.bind(16, result.least_margin->margin_s)
-                .bind(17, std::string_view{result.least_margin->timepoint});
-        add_case_.bind_null(18).bind_null(19).bind_null(20);
+        add_case_.bind_null(16).bind_null(17).bind_null(18);
         const auto& [heatshield_least_m, backshell_least_m, struck] = result.separation;
-        if (heatshield_least_m) add_case_.bind(18, *heatshield_least_m);
-        if (backshell_least_m) add_case_.bind(19, *backshell_least_m);
-        if (struck != nullptr) add_case_.bind(20, std::string_view{struck});
+        if (heatshield_least_m) add_case_.bind(16, *heatshield_least_m);
+        if (backshell_least_m) add_case_.bind(17, *backshell_least_m);
+        if (struck != nullptr) add_case_.bind(18, std::string_view{struck});
         if (const auto added = add_case_.run(); !added) return added.error();
         std::int64_t place = 0;
         for (const CaseEvent& event : result.events) {
@@ -170,6 +172,14 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
                 .bind(5, event.altitude_m)
                 .bind(6, event.speed_mps);
             if (const auto added = add_event_.run(); !added) return added.error();
+        }
+        place = 0;
+        for (const TimelineMargin& margin : result.margins) {
+            add_margin_.bind(1, number)
+                .bind(2, place++)
+                .bind(3, std::string_view{margin.timepoint})
+                .bind(4, margin.margin_s);
+            if (const auto added = add_margin_.run(); !added) return added.error();
         }
     }
     return transaction->commit();

@@ -47,7 +47,7 @@ class CampaignStore {
 
     archive::WriterLock lock_; // released last
     archive::sqlite::Database database_;
-    archive::sqlite::Statement has_, add_case_, add_event_;
+    archive::sqlite::Statement has_, add_case_, add_event_, add_margin_;
 };
 
 } // namespace aeolis::server::campaign

@@ -99,23 +99,22 @@ void CaseFlights::summarise(const Flight& flight, CaseResult& result) const {
     result.separation = landing.separation();
     result.peak_deceleration_mps2 = landing.peak_deceleration_mps2();
     result.propellant_kg = landing.inspect().propellant_kg;
-    result.least_margin = least_margin(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
+    result.margins = timeline_margins(flight.firings.all(), dictionary_, dispersion_sclk(scenario_));
     result.events = flight.events;
     std::ranges::sort(result.events, {}, [](const CaseEvent& event) { return std::tie(event.e_s, event.name); });
 }
 
-std::optional<TimelineMargin> least_margin(const std::vector<RecordedFiring>& firings,
-                                           const dictionary::Dictionary& dictionary, double after_sclk) {
-    std::optional<TimelineMargin> least;
+std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
+                                             const dictionary::Dictionary& dictionary, double after_sclk) {
+    std::vector<TimelineMargin> margins;
     for (std::size_t i = 1; i < firings.size(); ++i) {
         const RecordedFiring& firing = firings[i];
         if (firing.row >= dictionary.timeline.size() || firing.triggered_sclk < after_sclk) continue;
         const auto& row = dictionary.timeline[firing.row];
         if (!row.minimum_offset_s || !begins_after_another_anchor(dictionary, firing.row)) continue;
-        const double margin_s = firing.triggered_sclk - (firings[i - 1].fired_sclk + *row.minimum_offset_s);
-        if (!least || margin_s < least->margin_s) least = TimelineMargin{firing.name, margin_s};
+        margins.push_back({firing.name, firing.triggered_sclk - (firings[i - 1].fired_sclk + *row.minimum_offset_s)});
     }
-    return least;
+    return margins;
 }
 
 } // namespace aeolis::server::campaign

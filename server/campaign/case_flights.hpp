@@ -46,11 +46,10 @@ class CaseFlights {
     std::unique_ptr<const Flight> common_; ///< none: each case is flown from the start
 };
 
-/// Of the timepoints at which the timeline passes from one anchor to the next, and that were fired after `after_sclk`,
-/// the one triggered soonest after its minimum offset permitted it: nought is one that the timeline held up. Within an
-/// anchor's own sequence the margins are the timeline's design and say nothing of the case. Minimum offsets are the
-/// dictionary's.
-std::optional<TimelineMargin> least_margin(const std::vector<RecordedFiring>& firings,
-                                           const dictionary::Dictionary& dictionary, double after_sclk);
+/// Of each timepoint at which the timeline passes from one anchor to the next, and that was fired after `after_sclk`, how
+/// long after its minimum offset permitted it was it triggered: nought is one that the timeline held up. Within an anchor's
+/// own sequence the margins are the timeline's design and say nothing of the case. Minimum offsets are the dictionary's.
+std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
+                                             const dictionary::Dictionary& dictionary, double after_sclk);
 
 } // namespace aeolis::server::campaign

@@ -31,7 +31,7 @@ struct CaseResult {
     simulation::SeparationReport separation;
     double peak_deceleration_mps2 = 0.0;
     double propellant_kg = 0.0; ///< left at the end, after fly-away
-    std::optional<TimelineMargin> least_margin;
+    std::vector<TimelineMargin> margins; ///< in the order of the timeline
     std::vector<CaseEvent> events;
 };
 

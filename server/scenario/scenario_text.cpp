@@ -53,6 +53,26 @@ const Bindings<simulation::Masses> mass_fields = {
     AEOLIS_BIND(Masses, powered_descent_kg), AEOLIS_BIND(Masses, propellant_kg),
     AEOLIS_BIND(Masses, rover_kg),
 };
+const Bindings<simulation::Gyration> gyration_fields = {
+    AEOLIS_BIND(Gyration, with_cruise_stage_across_m),
+    AEOLIS_BIND(Gyration, with_cruise_stage_along_m),
+    AEOLIS_BIND(Gyration, entry_vehicle_across_m),
+    AEOLIS_BIND(Gyration, entry_vehicle_along_m),
+    AEOLIS_BIND(Gyration, without_heatshield_across_m),
+    AEOLIS_BIND(Gyration, without_heatshield_along_m),
+    AEOLIS_BIND(Gyration, stage_with_rover_across_m),
+    AEOLIS_BIND(Gyration, stage_with_rover_along_m),
+    AEOLIS_BIND(Gyration, stage_across_m),
+    AEOLIS_BIND(Gyration, stage_along_m),
+};
+const Bindings<simulation::Stations> station_fields = {
+    AEOLIS_BIND(Stations, rover_m),
+    AEOLIS_BIND(Stations, heatshield_m),
+    AEOLIS_BIND(Stations, backshell_m),
+    AEOLIS_BIND(Stations, cruise_stage_m),
+    AEOLIS_BIND(Stations, balances_m),
+    AEOLIS_BIND(Stations, balances_off_axis_m),
+};
 const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, delivery_flight_path_deg),
     AEOLIS_BIND(Dispersions, delivery_position_m),
@@ -73,6 +93,12 @@ const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, radar_dropout_fraction),
     AEOLIS_BIND(Dispersions, terrain_height_m),
     AEOLIS_BIND(Dispersions, terrain_slope_deg),
+    AEOLIS_BIND(Dispersions, mass_fraction),
+    AEOLIS_BIND(Dispersions, slow_drag_fraction),
+    AEOLIS_BIND(Dispersions, imu_scale_fraction),
+    AEOLIS_BIND(Dispersions, gyro_scale_fraction),
+    AEOLIS_BIND(Dispersions, imu_noise_mps),
+    AEOLIS_BIND(Dispersions, gyro_noise_rad),
 };
 const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, light_time_s),
@@ -246,6 +272,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.target(), target_fields, scenario.target);
     read(message.ground(), ground_fields, scenario.ground);
     read(message.masses(), mass_fields, scenario.masses);
+    read(message.gyration(), gyration_fields, scenario.gyration);
+    read(message.stations(), station_fields, scenario.stations);
     read(message.dispersions(), dispersion_fields, scenario.dispersions);
     read(message.radio(), radio_fields, scenario.radio);
     read(message.triggers(), trigger_fields, scenario);
@@ -296,6 +324,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.target, target_fields, *message.mutable_target());
     write(scenario.ground, ground_fields, *message.mutable_ground());
     write(scenario.masses, mass_fields, *message.mutable_masses());
+    write(scenario.gyration, gyration_fields, *message.mutable_gyration());
+    write(scenario.stations, station_fields, *message.mutable_stations());
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
     write(scenario.radio, radio_fields, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
@@ -365,6 +395,14 @@ Result<std::string> text_of(const std::filesystem::path& file) {
     return text;
 }
 
+/// A list that a file has stands for the whole list of the one that it is like.
+void clear_lists_of(const v1::Scenario& message, v1::Scenario& base) {
+    std::vector<const google::protobuf::FieldDescriptor*> fields;
+    message.GetReflection()->ListFields(message, &fields);
+    for (const auto* field : fields)
+        if (field->is_repeated()) base.GetReflection()->ClearField(&base, field);
+}
+
 /// What it is like merged in, and what that is like.
 Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
     const auto text = text_of(file);
@@ -379,6 +417,7 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
     auto base = whole(file.parent_path() / (like + file.extension().string()), further - 1);
     if (!base) return refused(base.error().message);
     base->clear_name(); // a name is nobody else's
+    clear_lists_of(*message, *base);
     base->MergeFrom(*message);
     return base;
 }

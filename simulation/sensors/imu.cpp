@@ -6,20 +6,16 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double reading_s = 1.0 / 200.0; // [facts]
-// ours, see the header
-constexpr double scale_by_bias_s2pm = 0.3;
-constexpr double velocity_noise_by_bias_s = 0.15;
-constexpr double angle_noise_by_bias_s = 25.0;
 
 } // namespace
 
 Imu::Imu(const Dispersions& dispersions, Random random, Random mounting)
     : accelerometer_bias_mps2_(dispersions.imu_bias_mps2 * vector3(random.normal3())),
-      accelerometer_scale_(dispersions.imu_bias_mps2 * scale_by_bias_s2pm * vector3(random.normal3())),
+      accelerometer_scale_(dispersions.imu_scale_fraction * vector3(random.normal3())),
       gyro_bias_rps_(dispersions.gyro_bias_rps * vector3(random.normal3())),
-      velocity_noise_mps_(dispersions.imu_bias_mps2 * velocity_noise_by_bias_s),
-      angle_noise_rad_(dispersions.gyro_bias_rps * angle_noise_by_bias_s),
-      q_SensorsB_(rotation(dispersions.imu_misalignment_rad * vector3(mounting.normal3()))), noise_(random) {}
+      velocity_noise_mps_(dispersions.imu_noise_mps), angle_noise_rad_(dispersions.gyro_noise_rad),
+      q_SensorsB_(rotation(dispersions.imu_misalignment_rad * vector3(mounting.normal3()))),
+      gyro_scale_(dispersions.gyro_scale_fraction * vector3(mounting.normal3())), noise_(random) {}
 
 void Imu::disperse(const Dispersions& dispersions, Random random, Random mounting) {
     Imu other{dispersions, random, mounting};
@@ -41,7 +37,8 @@ flight::ImuSample Imu::read(std::uint32_t count) {
     sample.count = count;
     const Vector3 felt_mps = q_SensorsB_ * delta_v_mps_;
     Vector3 delta_v = felt_mps + accelerometer_scale_.cwiseProduct(felt_mps) + accelerometer_bias_mps2_ * reading_s;
-    Vector3 delta_angle = q_SensorsB_ * rotation_vector(turned_) + gyro_bias_rps_ * reading_s;
+    const Vector3 turned_rad = q_SensorsB_ * rotation_vector(turned_);
+    Vector3 delta_angle = turned_rad + gyro_scale_.cwiseProduct(turned_rad) + gyro_bias_rps_ * reading_s;
     if (velocity_noise_mps_ > 0.0) delta_v += velocity_noise_mps_ * vector3(noise_.normal3());
     if (angle_noise_rad_ > 0.0) delta_angle += angle_noise_rad_ * vector3(noise_.normal3());
     sample.delta_v_mps = array3(delta_v);

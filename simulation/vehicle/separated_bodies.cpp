@@ -19,9 +19,10 @@ void SeparatedBody::release(const PointMass& at, double mass_kg, double drag_are
     drag_area_m2_ = drag_area_m2;
 }
 
-void SeparatedBody::tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, const Wind& wind,
-                         const Terrain& terrain) {
+void SeparatedBody::tick(const Vector3& p_MoB_M, const std::optional<PointMass>& rover, const Atmosphere& atmosphere,
+                         const Wind& wind, const Terrain& terrain) {
     if (!released_) return;
+    since_release_s_ += seconds_per_tick;
     since_step_s_ += seconds_per_tick;
     if (since_step_s_ >= step_ticks * seconds_per_tick) {
         if (!down_) fly(since_step_s_, atmosphere, wind, terrain);
@@ -29,6 +30,7 @@ void SeparatedBody::tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, c
     }
     const double before_m = distance_m_;
     distance_m_ = from(p_MoB_M).norm();
+    if (rover) distance_m_ = std::min(distance_m_, from(rover->p_MoB_M).norm());
     clear_ = clear_ || distance_m_ >= clear_m_;
     if (clear_ && distance_m_ < before_m) least_m_ = std::min(least_m_.value_or(distance_m_), distance_m_);
 }

@@ -12,24 +12,26 @@
 namespace aeolis::simulation {
 
 /// A body that the vehicle has let go: a point with drag in the vehicle's air and wind, until it lies on the ground; and how
-/// near the vehicle comes to it once it has got clear.
+/// near the vehicle, or the rover on its bridle, comes to it once it has got clear.
 ///
 /// Rate     a step each 1/16 s of its own time, told of the vehicle each 1/64 s           Memory   none beyond itself
 /// Left out lift, tumbling, what the one does to the other's air
 class SeparatedBody {
   public:
-    /// It is clear of the vehicle at `clear_m`, and strikes it when it comes within `size_m` after that.
+    /// It is clear of the vehicle at `clear_m`, and strikes it when it comes within `size_m` after that, or does not get
+    /// clear within `clear_within_s`.
     SeparatedBody(double size_m, double clear_m) : size_m_(size_m), clear_m_(clear_m) {}
 
     /// Let go at `at`. Once.
     void release(const PointMass& at, double mass_kg, double drag_area_m2);
-    /// A tick has passed; the vehicle is now at `p_MoB_M`.
-    void tick(const Vector3& p_MoB_M, const Atmosphere& atmosphere, const Wind& wind, const Terrain& terrain);
+    /// A tick has passed; the vehicle is now at `p_MoB_M`, and the rover, if it hangs on its bridle, where it is.
+    void tick(const Vector3& p_MoB_M, const std::optional<PointMass>& rover, const Atmosphere& atmosphere, const Wind& wind, const Terrain& terrain);
 
     bool released() const { return released_; }
     /// How near the vehicle has come to it again; none: it never came nearer once it was clear.
     std::optional<double> least_m() const { return least_m_; }
-    bool struck() const { return least_m_ && *least_m_ < size_m_; }
+    bool struck() const { return (least_m_ && *least_m_ < size_m_) || (!clear_ && since_release_s_ > clear_within_s); }
+    static constexpr double clear_within_s = 10.0; ///< ours
     /// As of the last step, at most 3/64 s ago.
     const PointMass& at() const { return at_; }
     /// To where it is now, from the vehicle. [m] in M
@@ -41,7 +43,7 @@ class SeparatedBody {
     double size_m_, clear_m_;
     double mass_kg_ = 1.0, drag_area_m2_ = 0.0;
     PointMass at_;
-    double since_step_s_ = 0.0;
+    double since_release_s_ = 0.0, since_step_s_ = 0.0;
     bool released_ = false, down_ = false, clear_ = false;
     double distance_m_ = 0.0;
     std::optional<double> least_m_;

@@ -23,28 +23,34 @@ double dispersed(double fraction, Random random) {
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
                  std::uint64_t case_number)
-    : terrain_(scenario, Random{seed, case_number, Stream::terrain}), masses_(scenario.masses),
+    : terrain_(scenario, Random{seed, case_number, Stream::terrain}),
       parachute_area_m2_(scenario.parachute_drag_area_m2 * dispersed(scenario.dispersions.parachute_drag_fraction,
                                                                      Random{seed, case_number, Stream::parachute})),
       parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
                            Random{seed, case_number, Stream::swing}.normal()),
-      aeroshell_factor_(dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag})),
+      aeroshell_factors_{dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
+                         dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
       atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind},
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
       body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
-      configuration_(scenario.masses), centre_B_m_(configuration_.centre_B_m()),
-      thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario.masses).centre_B_m())),
-      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario.masses).centre_B_m())) {}
+      configuration_(scenario),
+      thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario).centre_B_m())),
+      engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())) {
+    configuration_.weigh(scenario.masses,
+                         dispersed(scenario.dispersions.mass_fraction, Random{seed, case_number, Stream::mass}));
+    centre_B_m_ = configuration_.centre_B_m();
+}
 
 void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number) {
     const Vehicle drawn{scenario, at, q_MB(), seed, case_number};
     terrain_ = drawn.terrain_;
     parachute_area_m2_ = drawn.parachute_area_m2_;
     parachute_plane_rad_ = drawn.parachute_plane_rad_;
-    aeroshell_factor_ = drawn.aeroshell_factor_;
+    aeroshell_factors_ = drawn.aeroshell_factors_;
+    configuration_.weigh(drawn.configuration_.masses(), 1.0);
     atmosphere_ = drawn.atmosphere_;
     wind_ = drawn.wind_;
     body_.p_MoB_M = at.p_MoB_M;
@@ -53,6 +59,11 @@ void Vehicle::disperse(const Scenario& scenario, const PointMass& at, std::uint6
 
 void Vehicle::fire(flight::PyroId pyro, double now_s) {
     using flight::PyroId;
+    const auto bit = static_cast<std::size_t>(pyro);
+    if (fired_.test(bit)) return;
+    fired_.set(bit);
+    const Masses& masses = configuration_.masses();
+    const Stations& stations = configuration_.stations();
     switch (pyro) {
     case PyroId::cruise_stage_separation:
         configuration_.cruise_stage = false;
@@ -71,20 +82,19 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         right_at_mortar_M_ = level_right(body_.p_MoB_M, body_.v_MB_M);
         break;
     case PyroId::heatshield_separation:
-        let_go(separated_.heatshield, Stations::heatshield_m, masses_.heatshield_kg, heatshield_drag_area_m2);
+        let_go(separated_.heatshield, stations.heatshield_m, masses.heatshield_kg, heatshield_drag_area_m2);
         configuration_.heatshield = false;
         break;
     case PyroId::engine_valves:
         engines_.open_valves(now_s);
         break;
     case PyroId::backshell_separation:
-        let_go(separated_.backshell, Stations::backshell_m, masses_.backshell_and_parachute_kg,
+        let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg,
                parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
         configuration_.backshell = false;
         break;
     case PyroId::rover_separation:
-        if (configuration_.rover_on_stage)
-            rover_ = point_at(body_, Vector3{0.0, 0.0, Stations::rover_m} - centre_B_m_);
+        rover_ = point_at(body_, Vector3{0.0, 0.0, stations.rover_m} - centre_B_m_);
         configuration_.rover_on_stage = false;
         break;
     case PyroId::bridle_cutter:
@@ -126,7 +136,13 @@ void Vehicle::recentre() {
 
 void Vehicle::fly_separated() {
     for (SeparatedBody* body : {&separated_.heatshield, &separated_.backshell})
-        body->tick(body_.p_MoB_M, atmosphere_, wind_, terrain_);
+        body->tick(body_.p_MoB_M, rover(), atmosphere_, wind_, terrain_);
+}
+
+double Vehicle::aeroshell_factor(double mach) const {
+    constexpr double slow_below_mach = 3.0, fast_above_mach = 8.0; // ours
+    const double fast = std::clamp((mach - slow_below_mach) / (fast_above_mach - slow_below_mach), 0.0, 1.0);
+    return aeroshell_factors_[1] + fast * (aeroshell_factors_[0] - aeroshell_factors_[1]);
 }
 
 bool Vehicle::parachute_open(double now_s) const {
@@ -226,7 +242,7 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     const Vector3 z_M = body.q_MB * Vector3::UnitZ();
     const double cosine = std::clamp(z_M.dot(forward), -1.0, 1.0);
     const AeroCoefficients coefficients = aeroshell_coefficients(mach, std::acos(cosine));
-    const double area_N = pressure_Pa * aeroshell_area_m2 * aeroshell_factor_ * (1.0 - inflation);
+    const double area_N = pressure_Pa * aeroshell_area_m2 * aeroshell_factor(mach) * (1.0 - inflation);
     wrench.force_M -= area_N * coefficients.drag * forward;
     const Vector3 lean = z_M - cosine * forward;
     const double sine = lean.norm();

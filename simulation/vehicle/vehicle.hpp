@@ -15,6 +15,7 @@
 #include "simulation/vehicle/stage_and_rover.hpp"
 #include "simulation/vehicle/thrusters.hpp"
 
+#include <bitset>
 #include <optional>
 
 namespace aeolis::simulation {
@@ -29,7 +30,7 @@ class Vehicle {
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
             std::uint64_t case_number);
 
-    /// A case of a campaign begins: drag, parachute, air and wind are drawn anew, and it is where it truly is.
+    /// A case of a campaign begins: masses, drag, parachute, air and wind are drawn anew, and it is where it truly is.
     void disperse(const Scenario& scenario, const PointMass& at, std::uint64_t seed, std::uint64_t case_number);
 
     /// What a pyro does to it. Firing one twice does nothing.
@@ -89,13 +90,13 @@ class Vehicle {
     PointMass on_bridle(const RigidBody& stage, const PointMass& rover) const;
     StageAndRoverLoads loads(Step& step, double fraction, const StageAndRover& both) const;
     Wrench wrench(Step& step, double fraction, const RigidBody& body) const;
+    double aeroshell_factor(double mach) const;
     void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
 
     Terrain terrain_;
-    Masses masses_;
     double parachute_area_m2_; ///< with this case's own drag
     double parachute_plane_rad_; ///< this case's own, from up, in which its lift begins
-    double aeroshell_factor_;  ///< this case's own drag and lift
+    std::array<double, 2> aeroshell_factors_; ///< this case's own drag and lift, at high and at low Mach numbers
     Atmosphere atmosphere_;
     Wind wind_;
 
@@ -104,6 +105,7 @@ class Vehicle {
     Vector3 specific_force_M_ = Vector3::Zero();
     Thrusters thrusters_;
     Configuration configuration_;
+    std::bitset<32> fired_; ///< by PyroId
     Vector3 centre_B_m_; ///< the point of body_, from the stage's own centre of mass
     /// Origins of the drawings of thrusters and engines, likewise: on the axis.
     Vector3 thrusters_from_B_m_, engines_from_B_m_;

@@ -123,7 +123,7 @@ TEST_CASE("a scenario file that cannot be read is named", "[scenario]") {
     CHECK(scenario_from_file("/tmp").error().message == "/tmp: is a directory, not a scenario");
 }
 
-TEST_CASE("a scenario file may be like another: what it sets counts, its lists come after", "[scenario]") {
+TEST_CASE("a scenario file may be like another: what it sets counts, its lists replace", "[scenario]") {
     const auto folder = std::filesystem::temp_directory_path() / fmt::format("aeolis_like_{}", ::getpid());
     std::filesystem::create_directories(folder);
     const auto file = [&](const std::string& name, const std::string& text) {
@@ -139,9 +139,11 @@ TEST_CASE("a scenario file may be like another: what it sets counts, its lists c
     CHECK(like->radio.light_time_s == 7.0);
     CHECK(like->radio.uhf_rate_bps == 9000.0);
     CHECK(like->test_venue == simulation::TestVenue::all_but_gnc);
-    REQUIRE(like->system_faults.size() == 2);
-    CHECK(like->system_faults[1].begin_before_entry_s == 3.0);
-    CHECK(file("third", "name: \"third\" like: \"other\"")->radio.light_time_s == 7.0);
+    REQUIRE(like->system_faults.size() == 1);
+    CHECK(like->system_faults[0].begin_before_entry_s == 3.0);
+    const auto third = file("third", "name: \"third\" like: \"other\"");
+    CHECK(third->radio.light_time_s == 7.0);
+    CHECK(third->system_faults.size() == 1);
 
     CHECK_THAT(file("nameless", "like: \"base\"").error().message, Catch::EndsWith("name: missing"));
     CHECK_THAT(file("lost", "name: \"l\" like: \"nobody\"").error().message, Catch::EndsWith("cannot be opened"));

@@ -1,3 +1,4 @@
+#include "generated/dictionary_flight.hpp"
 #include "simulation/entry_flight.hpp"
 #include "simulation/entry_reference.hpp"
 #include "tests/support/catch.hpp"
@@ -80,6 +81,12 @@ TEST_CASE("the reference is in the order that guidance needs, and ends at the ta
     // OD137: 14.5 km to go at E+239 and 453 m/s; 243 km at 5114 m/s [od137]
     CHECK(reference.rows[0].velocity_mps == Approx(453.0).margin(1.0));
     CHECK(reference.rows[0].range_to_go_m == Approx(14500.0).margin(1500.0));
+}
+
+TEST_CASE("what the reference takes flight to do is what flight does", "[gnc][R27]") {
+    CHECK(EntryPlan::bank_before_guidance_deg == flight::parameters.bank_before_guidance_deg);
+    CHECK(EntryPlan::sufr_duration_s == flight::parameters.sufr_duration_s);
+    CHECK(EntryPlan::free_fall_s == flight::parameters.powered_approach_delay_s);
 }
 
 TEST_CASE("its peak of drag is that of the published entry within five percent", "[gnc][R27]") {

@@ -181,6 +181,23 @@ TEST_CASE("a turned IMU tells what the vehicle feels and how it turns along its 
     CHECK((vector3(other.read(1).delta_v_mps) / 0.005 - force_B).norm() < 2e-3);
 }
 
+TEST_CASE("a gyro's scale error grows with the turn, along each axis by its own", "[simulation][imu]") {
+    Dispersions scaled = tests::undisturbed_scenario().dispersions;
+    scaled.gyro_scale_fraction = 0.01;
+    const Random any{1, 0, Stream::imu};
+    const auto error_rad = [&](double rate_rps) {
+        Imu imu{scaled, any, Random{1, 0, Stream::imu_mounting}};
+        const Vector3 inertial_rate_B{rate_rps, rate_rps, rate_rps};
+        const Vector3 rate_B = inertial_rate_B - Vector3{0.0, 0.0, mars_spin_rps};
+        imu.integrate(Vector3::Zero(), Quaternion::Identity(), rotation(0.005 * rate_B), 0.005);
+        return Vector3{vector3(imu.read(1).delta_angle_rad) - 0.005 * inertial_rate_B};
+    };
+    const Vector3 once = error_rad(0.1), twice = error_rad(0.2);
+    CHECK(once.norm() > 1.0e-6);
+    CHECK((twice - 2.0 * once).norm() < 0.01 * once.norm());
+    CHECK(once.x() != once.y());
+}
+
 TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]") {
     for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
         int count = 0;

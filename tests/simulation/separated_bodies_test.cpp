@@ -26,7 +26,7 @@ struct Still {
     Atmosphere atmosphere{tests::gale_scenario().density_scale};
     Wind wind{0.0, 0.0, 0.0, Random{1, 0, Stream::wind}, Gusts{0.0, Random{1, 0, Stream::gust}}};
 
-    void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, atmosphere, wind, terrain); }
+    void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, {}, atmosphere, wind, terrain); }
 };
 
 } // namespace
@@ -47,6 +47,32 @@ TEST_CASE("a backshell under its parachute comes down at the terminal speed of i
     fly(60.0);
     CHECK(backshell.at().p_MoB_M.norm() == Approx(ground_m));
     CHECK(backshell.at().v_MB_M.isZero());
+}
+
+TEST_CASE("a body that does not get clear in time has struck the vehicle", "[simulation][separated]") {
+    const Still air;
+    SeparatedBody stuck{10.0, 40.0};
+    stuck.release(at_height(1660.0, 79.0), 349.0, 205.0);
+    for (double t = 0.0; t < SeparatedBody::clear_within_s; t += seconds_per_tick) {
+        CHECK_FALSE(stuck.struck());
+        air.tick(stuck, stuck.at().p_MoB_M);
+    }
+    air.tick(stuck, stuck.at().p_MoB_M);
+    CHECK(stuck.struck());
+}
+
+TEST_CASE("the rover on its bridle is watched as the stage is", "[simulation][separated]") {
+    const Still air;
+    SeparatedBody backshell{10.0, 40.0};
+    backshell.release(at_height(1660.0, 79.0), 349.0, 205.0);
+    const auto tick = [&](double stage_m, std::optional<PointMass> rover) {
+        backshell.tick(backshell.at().p_MoB_M + stage_m * up, rover, air.atmosphere, air.wind, air.terrain);
+    };
+    for (int i = 0; i < 64; ++i)
+        tick(100.0, {});
+    CHECK_FALSE(backshell.struck());
+    tick(99.0, backshell.at());
+    CHECK(backshell.struck());
 }
 
 TEST_CASE("steps of a sixteenth of a second fly a separated body as steps of a tick do, within a centimetre",

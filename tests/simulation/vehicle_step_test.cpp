@@ -109,7 +109,7 @@ TEST_CASE("a pulse adds its impulse to the momentum, and its moment about the ce
         const double kg = start.configuration().total_kg();
         const Vector3 gained = kg * (start.q_MB().conjugate() * (pushed.at().v_MB_M - coasts.at().v_MB_M));
         CHECK((gained - impulse_B).norm() < 0.02 * impulse_B.norm()); // it spins at 2 rpm meanwhile
-        const Vector3 drawn_from{0.0, 0.0, Configuration::at_entry(Masses{}).centre_B_m().z()};
+        const Vector3 drawn_from{0.0, 0.0, Configuration::at_entry(Scenario{}).centre_B_m().z()};
         const Vector3 arm = vector3(mounted.position_B_m) + drawn_from - start.configuration().centre_B_m();
         const Vector3 turned = start.q_MB().conjugate() * (spin_Nms(pushed, 0.0) - spin_Nms(coasts, 0.0));
         CHECK((turned - arm.cross(impulse_B)).norm() < 0.02 * arm.cross(impulse_B).norm());

@@ -39,7 +39,7 @@ void fly(Vehicle& vehicle, double from_s, double until_s) {
 } // namespace
 
 TEST_CASE("the masses of each phase are the published ones", "[simulation][vehicle]") {
-    Configuration configuration{Masses{}};
+    Configuration configuration{Scenario{}};
     CHECK(configuration.total_kg() == Approx(3153.0 + 150.0 + 539.0));
     configuration.cruise_stage = false;
     configuration.cruise_balances = 0;
@@ -56,9 +56,9 @@ TEST_CASE("the masses of each phase are the published ones", "[simulation][vehic
 
 TEST_CASE("the entry vehicle's centre of mass is a tenth of a metre off the axis until the balance masses are gone",
           "[simulation][vehicle]") {
-    Configuration configuration{Masses{}};
+    Configuration configuration{Scenario{}};
     CHECK(std::abs(configuration.centre_B_m().x()) < 1e-12); // the cruise balance masses hold it
-    configuration = Configuration::at_entry(Masses{});
+    configuration = Configuration::at_entry(Scenario{});
     CHECK(configuration.centre_B_m().x() == Approx(0.1).margin(0.001)); // [facts]
     const double at_entry_m = configuration.centre_B_m().z();
     configuration.entry_balance_pairs = 0;
@@ -66,9 +66,37 @@ TEST_CASE("the entry vehicle's centre of mass is a tenth of a metre off the axis
     configuration.heatshield = false;
     CHECK(configuration.centre_B_m().z() < at_entry_m); // it moves away from what has gone
     configuration.backshell = false;
-    CHECK((configuration.centre_B_m() - Configuration::at_powered_descent(Masses{}).centre_B_m()).isZero());
+    CHECK((configuration.centre_B_m() - Configuration::at_powered_descent(Scenario{}).centre_B_m()).isZero());
     configuration.rover_on_stage = false;
     CHECK(configuration.centre_B_m().isZero());
+}
+
+TEST_CASE("a vehicle weighed anew keeps what has gone gone and what was burnt burnt", "[simulation][vehicle]") {
+    const Scenario scenario;
+    Configuration configuration = Configuration::at_powered_descent(scenario);
+    configuration.burn(100.0);
+    configuration.weigh(scenario.masses, 1.01);
+    CHECK(configuration.propellant_kg() == Approx(1.01 * 387.0 - 100.0));
+    CHECK(configuration.total_kg() == Approx(1.01 * 2269.0 - 100.0));
+    CHECK(configuration.rover_kg() == Approx(1.01 * 899.0));
+}
+
+TEST_CASE("inertia and stations are the scenario's", "[simulation][vehicle][scenario]") {
+    Scenario scenario;
+    scenario.gyration.entry_vehicle_along_m = 2.0;
+    scenario.stations.balances_off_axis_m = 4.2;
+    const Configuration entry = Configuration::at_entry(scenario);
+    CHECK(entry.inertia().moments_B.z() == Approx(4.0 * 3153.0));
+    CHECK(entry.centre_B_m().x() == Approx(2.0 * Configuration::at_entry(Scenario{}).centre_B_m().x()));
+}
+
+TEST_CASE("a pyro fired twice has fired once", "[simulation][vehicle]") {
+    Vehicle vehicle{tests::undisturbed_scenario(), {{3.5e6, 0.0, 0.0}, {0.0, 100.0, 0.0}}, Quaternion::Identity(), 1, 0};
+    for (int twice = 0; twice < 2; ++twice)
+        for (const auto pyro : {flight::PyroId::cruise_balance_1, flight::PyroId::entry_balance_2})
+            vehicle.fire(pyro, 1.0 + twice);
+    CHECK(vehicle.configuration().cruise_balances == 1);
+    CHECK(vehicle.configuration().entry_balance_pairs == 2);
 }
 
 TEST_CASE("a jettison gives each part its share of the momentum, and the rest flies on about its own centre of mass",
