@@ -62,8 +62,8 @@ struct Metadata {
     bool closure_requested = false;
     Checksum checksum = Checksum::modular;
     std::uint32_t file_octets = 0;
-    std::string_view source_name;      ///< 255 octets at most, of any content
-    std::string_view destination_name; ///< the same
+    std::string_view source_name{};      ///< 255 octets at most, of any content
+    std::string_view destination_name{}; ///< the same
 };
 struct Eof {
     Condition condition = Condition::no_error;

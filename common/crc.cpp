@@ -38,8 +38,8 @@ constexpr auto tables32 = make_tables32();
 
 }  // namespace
 
-std::uint16_t crc16(std::span<const std::uint8_t> octets) {
-    std::uint16_t word = 0xFFFF;
+std::uint16_t crc16(std::span<const std::uint8_t> octets, std::uint16_t start) {
+    std::uint16_t word = start;
     for (const std::uint8_t octet : octets)
         word = static_cast<std::uint16_t>((word << 8) ^ table16[static_cast<std::uint8_t>((word >> 8) ^ octet)]);
     return word;

@@ -46,6 +46,11 @@ TEST_CASE("CRC-32 of Proximity-1 is the remainder of long division, whatever the
     }
 }
 
+TEST_CASE("a CRC-16 goes on from that of what stood before", "[common]") {
+    for (std::size_t cut = 0; cut <= check.size(); ++cut)
+        CHECK(crc16(std::span{check}.subspan(cut), crc16(std::span{check}.first(cut))) == 0x29B1);
+}
+
 TEST_CASE("published CRC-16 values", "[common]") {
     CHECK(crc16(std::vector<std::uint8_t>{0x06, 0x00, 0x0c, 0xf0, 0x00, 0x04, 0x00, 0x55, 0x88, 0x73, 0xc9, 0x00, 0x00,
                                           0x05, 0x21}) == 0x75FB);
