@@ -50,6 +50,11 @@ std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> o
     return header;
 }
 
+std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets) {
+    if (octets.size() < primary_header_octets || octets[0] >> 5 != 0) return std::nullopt;
+    return primary_header_octets + (std::size_t{octets[4]} << 8) + octets[5] + 1;
+}
+
 std::optional<TmHeader> read_tm_packet(std::span<const std::uint8_t> packet) {
     const auto primary = read_primary_header(packet);
     if (!primary || primary->telecommand || !primary->secondary_header || packet.size() < tm_overhead_octets ||

@@ -31,6 +31,12 @@ struct PrimaryHeader {
     constexpr auto operator<=>(const PrimaryHeader&) const = default;
 };
 
+/// Octets of the space packet that begins `octets`, whoever wrote it, segmented or not; none when its header is not there
+/// whole or of another version.
+std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets);
+inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 65536;
+inline constexpr std::uint16_t idle_apid = 0x7FF;
+
 struct TmHeader {
     PrimaryHeader primary;
     Sclk time;                     ///< CUC 4+2 octets, agency epoch; 1/65536 s holds 1/64 s exactly

@@ -29,3 +29,30 @@ TEST_CASE("octets followed by their own CRC-16 leave a remainder of zero", "[com
     octets.push_back(static_cast<std::uint8_t>(crc & 0xFF));
     CHECK(crc16(octets) == 0);
 }
+
+TEST_CASE("CRC-32 of Proximity-1 is the remainder of long division, whatever the length", "[common]") {
+    CHECK(crc32_proximity(std::vector<std::uint8_t>{0x12, 0x34, 0x56, 0x78}) == 0x34D74CB3);
+    std::uint32_t noise = 1;
+    for (std::size_t size = 0; size < 70; ++size) {
+        std::vector<std::uint8_t> octets(size);
+        std::uint32_t remainder = 0;
+        for (auto& octet : octets) {
+            octet = static_cast<std::uint8_t>((noise = noise * 1664525U + 1013904223U) >> 24);
+            remainder ^= std::uint32_t{octet} << 24;
+            for (int bit = 0; bit < 8; ++bit)
+                remainder = (remainder & 0x80000000U) != 0 ? (remainder << 1) ^ 0x00A00805U : remainder << 1;
+        }
+        CHECK(crc32_proximity(octets) == remainder);
+    }
+}
+
+TEST_CASE("a CRC-16 goes on from that of what stood before", "[common]") {
+    for (std::size_t cut = 0; cut <= check.size(); ++cut)
+        CHECK(crc16(std::span{check}.subspan(cut), crc16(std::span{check}.first(cut))) == 0x29B1);
+}
+
+TEST_CASE("published CRC-16 values", "[common]") {
+    CHECK(crc16(std::vector<std::uint8_t>{0x06, 0x00, 0x0c, 0xf0, 0x00, 0x04, 0x00, 0x55, 0x88, 0x73, 0xc9, 0x00, 0x00,
+                                          0x05, 0x21}) == 0x75FB);
+    CHECK(crc16(std::vector<std::uint8_t>{0x01, 0x92, 0xFE, 0x00, 0x11, 0x82, 0x5A}) == 0x0EA3);
+}

@@ -53,6 +53,16 @@ TEST_CASE("every one-bit error in a packet is found", "[common]") {
     }
 }
 
+TEST_CASE("the length of any mission's packet is in its header, segmented or not", "[common]") {
+    const std::array<std::uint8_t, 6> first_segment{0x0D, 0x91, 0x40, 0x00, 0x01, 0x29};
+    CHECK(space_packet_octets(first_segment) == 6 + 0x129 + 1);
+    CHECK_FALSE(space_packet_octets(std::span{first_segment}.first(5)));
+    const std::array<std::uint8_t, 6> other_version{0xED, 0x91, 0x40, 0x00, 0xFF, 0xFF};
+    CHECK_FALSE(space_packet_octets(other_version));
+    const std::array<std::uint8_t, 6> longest{0x0D, 0x91, 0x40, 0x00, 0xFF, 0xFF};
+    CHECK(space_packet_octets(longest) == space_packet_octets_max);
+}
+
 TEST_CASE("any octets at all are read as a packet or as none", "[common]") {
     std::mt19937 random{7};
     for (int round = 0; round < 20000; ++round) {

@@ -8,6 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::span octets{data, size};
     (void)aeolis::read_tm_packet(octets);
     (void)aeolis::read_tc_packet(octets);
+    (void)aeolis::space_packet_octets(octets);
 
     aeolis::telemetry::PacketStream stream{octets};
     std::size_t read = 0;

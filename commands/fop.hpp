@@ -1,0 +1,112 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "common/tc_frame.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace aeolis::commands {
+
+/// FOP-1 without timers: telecommand frames of one virtual channel, sent again until the vehicle says that it took
+/// them. [ccsds-232.1-b-2]
+///
+/// In       data to send, each with a tag of the caller's; CLCWs as they come; repeat() when the caller has waited for
+///          long enough (a light time there and back, and more)
+/// Out      frames to radiate, one by one; for each tag, once, what is known of it
+/// Limit    `frames_max` wait or are outstanding; a frame is radiated `transmissions_max` times at most
+/// Faults   lockout, a report that contradicts what was sent, or too many transmissions halt the service: what was
+///          radiated and not acknowledged is reported so, what was not radiated waits for restart()
+class Fop {
+  public:
+    static constexpr std::size_t frames_max = 1024; ///< ours: far more than a person sends
+
+    struct Settings {
+        std::uint16_t spacecraft = 0;
+        std::uint8_t virtual_channel = 0;
+        std::uint8_t window = 32; ///< outstanding at most; less than half of the receiver's window
+        unsigned transmissions_max = 8;
+    };
+    enum class Service {
+        sequence_controlled, ///< AD: in order, acknowledged, sent again
+        expedited,           ///< BD: once, without acknowledgement
+    };
+    enum class State {
+        active,
+        retransmitting, ///< asked to; the same request is not followed twice
+        waiting,        ///< the vehicle has no room
+        halted,         ///< nothing in sequence goes out until restart()
+        restarting,     ///< the receiver is being told which sequence comes next
+    };
+    enum class Halt { none, lockout, contradiction, too_many_transmissions };
+    enum class Fate {
+        acknowledged,
+        radiated,           ///< by the expedited service: nobody will say more
+        never_acknowledged, ///< radiated; the vehicle may have taken it or not
+    };
+    struct Report {
+        std::uint64_t tag = 0;
+        Fate fate{};
+        unsigned transmissions = 0;
+        bool operator==(const Report&) const = default;
+    };
+    struct Outgoing {
+        std::vector<std::uint8_t> frame;
+        std::optional<std::uint64_t> tag; ///< none: a control command to the receiver of frames
+        unsigned transmission = 1;
+    };
+
+    explicit Fop(const Settings& settings);
+
+    /// Takes `data` (1 … 1017 octets) to be sent. Fails when it does not fit a frame or too many wait.
+    Result<void> send(std::uint64_t tag, std::span<const std::uint8_t> data, Service service);
+
+    /// The next frame to be radiated; none when there is nothing to send, or the window is full.
+    std::optional<Outgoing> next();
+
+    void on(const Clcw& clcw);
+
+    /// No CLCW has acknowledged what is outstanding in the time it takes: it is sent again, or given up.
+    void repeat();
+
+    /// Unlocks the receiver and tells it the next sequence; what waits is sent once it has said so.
+    void restart();
+
+    /// What became known since the last call, in order.
+    std::vector<Report> take_reports();
+
+    State state() const { return state_; }
+    Halt why_halted() const { return why_halted_; }
+    std::size_t outstanding() const { return outstanding_.size(); }
+    std::size_t waiting() const { return waiting_.size() + expedited_.size(); }
+
+  private:
+    struct Item {
+        std::uint64_t tag = 0;
+        std::vector<std::uint8_t> data;
+        std::uint8_t sequence = 0;
+        unsigned transmissions = 0;
+        bool due = true; ///< to be radiated, again
+    };
+
+    Outgoing radiate(Item& item, bool bypass);
+    Outgoing control(std::vector<std::uint8_t> command) const;
+    std::vector<std::uint8_t> frame_of(const TcFrameHeader& header, std::span<const std::uint8_t> data) const;
+    void acknowledge(std::size_t frames);
+    void send_again();
+    void halt(Halt why);
+    std::uint8_t first_outstanding() const;
+
+    Settings settings_;
+    std::deque<Item> expedited_, waiting_, outstanding_;
+    std::deque<std::vector<std::uint8_t>> controls_;
+    std::vector<Report> reports_;
+    std::uint8_t next_sequence_ = 0; ///< V(S)
+    State state_ = State::active;
+    Halt why_halted_ = Halt::none;
+};
+
+} // namespace aeolis::commands

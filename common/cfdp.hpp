@@ -1,0 +1,122 @@
+#pragma once
+
+#include "common/fixed_vector.hpp"
+#include "common/parsed.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+
+/// Protocol data units of CFDP, class 2: files that arrive whole over links that lose. [ccsds-727.0-b-5]
+///
+///   header: version 3 (001) | file data 1 | toward sender 1 | unacknowledged 1 | CRC 1 | large file 1 |
+///           octets behind the header, with the CRC 16 | segmentation control 1 | octets of an entity id less one 3 |
+///           segment metadata 1 | octets of a sequence number less one 3 | source | sequence number | destination
+///   then file data: offset 32 | octets;  or a directive: code 8 | its parameters;  then a CRC-16 when the flag is set
+/// Read: ids of 1 … 8 octets, also the version bits 000 of before B-5. Written: entity ids of 2 octets, sequence
+/// numbers of 4, version 001. Not read: large files (64-bit offsets), segment metadata.
+namespace aeolis::cfdp {
+
+inline constexpr std::size_t written_header_octets = 12;
+inline constexpr std::size_t nak_requests_max = 64; ///< ours: of one PDU; the rest is asked for in the next
+
+struct Header {
+    bool toward_sender = false;
+    bool unacknowledged = false; ///< class 1
+    bool crc = false;
+    std::uint64_t source = 0;
+    std::uint64_t sequence = 0;
+    std::uint64_t destination = 0;
+
+    constexpr bool operator==(const Header&) const = default;
+};
+
+enum class Directive : std::uint8_t { eof = 4, finished = 5, ack = 6, metadata = 7, nak = 8, prompt = 9, keep_alive = 12 };
+
+enum class Condition : std::uint8_t {
+    no_error = 0,
+    ack_limit_reached = 1,
+    keep_alive_limit_reached = 2,
+    invalid_transmission_mode = 3,
+    filestore_rejection = 4,
+    file_checksum_failure = 5,
+    file_size_error = 6,
+    nak_limit_reached = 7,
+    inactivity_detected = 8,
+    invalid_file_structure = 9,
+    check_limit_reached = 10,
+    unsupported_checksum_type = 11,
+    suspend_received = 14,
+    cancel_received = 15,
+};
+
+enum class Checksum : std::uint8_t { modular = 0, null = 15 };
+
+struct FileData {
+    std::uint32_t offset = 0;
+    std::span<const std::uint8_t> octets;
+};
+struct Metadata {
+    bool closure_requested = false;
+    Checksum checksum = Checksum::modular;
+    std::uint32_t file_octets = 0;
+    std::string_view source_name{};      ///< 255 octets at most, of any content
+    std::string_view destination_name{}; ///< the same
+};
+struct Eof {
+    Condition condition = Condition::no_error;
+    std::uint32_t checksum = 0;
+    std::uint32_t file_octets = 0;
+};
+struct Finished {
+    Condition condition = Condition::no_error;
+    bool complete = true;
+    std::uint8_t file_status = 2; ///< 0 discarded, 1 rejected by the filestore, 2 retained, 3 not reported
+};
+struct Ack {
+    Directive of = Directive::eof; ///< eof or finished
+    Condition condition = Condition::no_error;
+    std::uint8_t transaction_status = 1; ///< 0 undefined, 1 active, 2 terminated, 3 unrecognised
+};
+/// From `start` up to but without `end`; {0, 0} asks for the metadata.
+struct Range {
+    std::uint32_t start = 0;
+    std::uint32_t end = 0;
+    constexpr bool operator==(const Range&) const = default;
+    constexpr std::uint32_t octets() const { return end - start; }
+};
+struct Nak {
+    Range scope;
+    FixedVector<Range, nak_requests_max> requests; ///< of a longer one that was read, the first
+};
+struct Prompt {
+    bool keep_alive = false; ///< else: send a NAK
+};
+struct KeepAlive {
+    std::uint32_t progress_octets = 0;
+};
+
+using Content = std::variant<FileData, Metadata, Eof, Finished, Ack, Nak, Prompt, KeepAlive>;
+
+struct Pdu {
+    Header header;
+    Content content;
+};
+
+/// One whole PDU; spans and names point into `octets`. too_short, too_long, other_version, bad_checksum; bad_field for
+/// a directive, condition or flag that is not read here.
+Parsed<Pdu> read(std::span<const std::uint8_t> octets);
+
+/// Octets that write() makes of it.
+std::size_t octets_of(const Pdu& pdu);
+/// Writes the PDU and returns its octets; `into` has room for them.
+std::size_t write(const Pdu& pdu, std::span<std::uint8_t> into);
+
+/// The part of the modular checksum that `octets` at `offset` of the file contribute: the sum, modulo 2^32, of the
+/// file's 32-bit words, each beginning at a multiple of four, the last filled up with zeros. The file's checksum is
+/// the sum over parts that cover it once, in any order.
+std::uint32_t modular_checksum(std::uint32_t offset, std::span<const std::uint8_t> octets);
+
+}  // namespace aeolis::cfdp

@@ -1,0 +1,50 @@
+#include "telemetry/link_counters.hpp"
+
+#include "common/check.hpp"
+
+#include <algorithm>
+
+namespace aeolis::telemetry {
+namespace {
+
+constexpr std::int64_t microseconds_a_second = 1'000'000;
+
+std::int64_t whole_seconds(Ert at) {
+    return at.microseconds / microseconds_a_second;
+}
+
+} // namespace
+
+std::uint32_t SequenceGaps::next(std::uint32_t sequence, std::uint32_t modulus, LinkCounters& counters) {
+    AEOLIS_CHECK(modulus > 0 && (modulus & (modulus - 1)) == 0);
+    const std::uint32_t missing = begun_ ? (sequence - expected_) & (modulus - 1) : 0;
+    if (missing == modulus - 1 && modulus > 2) {
+        ++counters.repeated_frames;
+        return 0;
+    }
+    begun_ = true;
+    expected_ = (sequence + 1) & (modulus - 1);
+    if (missing == 0) return 0;
+    ++counters.gaps;
+    counters.missing_frames += missing;
+    return missing;
+}
+
+void RateMeter::add(Ert at, std::uint64_t amount) {
+    const std::int64_t now_s = std::max(whole_seconds(at), newest_s_);
+    const auto passed = std::min<std::int64_t>(now_s - newest_s_, places);
+    for (std::int64_t i = 0; i < passed; ++i) amounts_[static_cast<std::size_t>(now_s - i) % places] = 0;
+    newest_s_ = now_s;
+    amounts_[static_cast<std::size_t>(now_s) % places] += amount;
+}
+
+double RateMeter::per_second(Ert now) const {
+    const std::int64_t now_s = std::max(whole_seconds(now), newest_s_);
+    std::uint64_t sum = 0;
+    for (std::int64_t second = now_s - seconds; second < now_s; ++second)
+        if (second >= 0 && second <= newest_s_ && newest_s_ - second < static_cast<std::int64_t>(places))
+            sum += amounts_[static_cast<std::size_t>(second) % places];
+    return static_cast<double>(sum) / static_cast<double>(seconds);
+}
+
+} // namespace aeolis::telemetry

@@ -1,0 +1,112 @@
+#include "telemetry/frame_receiver.hpp"
+#include "common/randomiser.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/octets.hpp"
+
+#include <algorithm>
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+constexpr std::size_t length = 120;
+
+Octets frame_octets(FrameStream::Kind kind, unsigned count, std::mt19937& random) {
+    const bool tm = kind == FrameStream::Kind::tm;
+    const auto data = test::random_octets(random, length - (tm ? 8 : 10));
+    TransferFrame frame;
+    frame.spacecraft = 76;
+    frame.virtual_channel = static_cast<std::uint8_t>(count % 2);
+    frame.count = count / 2;
+    frame.data = data;
+    Octets octets(length);
+    if (tm)
+        write_tm_frame(frame, static_cast<std::uint8_t>(count), true, octets);
+    else
+        write_aos_frame(frame, true, octets);
+    return octets;
+}
+
+void append(Octets& to, std::span<const std::uint8_t> octets) { to.insert(to.end(), octets.begin(), octets.end()); }
+
+std::size_t frames_in(FrameReceiver& receiver, std::span<const std::uint8_t> stream, std::mt19937& random) {
+    std::size_t frames = 0;
+    while (!stream.empty()) {
+        const std::size_t now = std::min<std::size_t>(1 + random() % 300, stream.size());
+        receiver.receive(stream.first(now));
+        stream = stream.subspan(now);
+        while (receiver.next()) ++frames;
+    }
+    receiver.end();
+    return frames;
+}
+
+} // namespace
+
+TEST_CASE("CADUs are found between any octets, randomised or not, TM or AOS", "[telemetry]") {
+    std::mt19937 random{1};
+    for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos})
+        for (const bool randomised : {false, true}) {
+            Octets stream;
+            for (unsigned i = 0; i < 600; ++i) {
+                append(stream, test::random_octets(random, random() % 30));
+                Octets frame = frame_octets(kind, i, random);
+                if (randomised) randomise_tm(frame);
+                append(stream, attached_sync_marker);
+                append(stream, frame);
+            }
+            FrameReceiver receiver{{.kind = kind, .frame_octets = length, .randomised = randomised}};
+            CHECK(frames_in(receiver, stream, random) == 600);
+            CHECK(receiver.counters().gaps == 0);
+            CHECK(receiver.counters().octets == receiver.counters().skipped_octets + 600 * (length + 4));
+        }
+}
+
+TEST_CASE("a damaged CADU is counted and missed in its virtual channel; the next one is found", "[telemetry]") {
+    std::mt19937 random{2};
+    Octets stream;
+    for (unsigned i = 0; i < 100; ++i) {
+        Octets frame = frame_octets(FrameStream::Kind::tm, i, random);
+        if (i == 50) frame[60] ^= 0x10;
+        if (i == 60) frame.erase(frame.begin() + 30, frame.begin() + 40);
+        append(stream, attached_sync_marker);
+        append(stream, frame);
+    }
+    FrameReceiver receiver{{.frame_octets = length}};
+    CHECK(frames_in(receiver, stream, random) == 98);
+    CHECK(receiver.counters().bad_crc == 2);
+    CHECK(receiver.counters().missing_frames == 2);
+}
+
+TEST_CASE("frames without marker stand one after another, each behind its prefix", "[telemetry]") {
+    std::mt19937 random{3};
+    Octets stream;
+    for (unsigned i = 0; i < 100; ++i) {
+        append(stream, test::hex("60f06060"));
+        append(stream, frame_octets(FrameStream::Kind::aos, i, random));
+    }
+    stream[4 + 10] ^= 1;
+    FrameReceiver receiver{
+        {.kind = FrameStream::Kind::aos, .frame_octets = length, .marker = false, .prefix_octets = 4}};
+    CHECK(frames_in(receiver, stream, random) == 99);
+    CHECK(receiver.counters().bad_crc == 1);
+}
+
+TEST_CASE("the length of frames is found from the markers, and from the CRC where there are none", "[telemetry]") {
+    std::mt19937 random{4};
+    Octets cadus = test::random_octets(random, 17), bare;
+    for (unsigned i = 0; i < 20; ++i) {
+        const Octets frame = frame_octets(FrameStream::Kind::tm, i, random);
+        append(cadus, attached_sync_marker);
+        append(cadus, frame);
+        append(bare, test::hex("0102"));
+        append(bare, frame);
+    }
+    CHECK(cadu_frame_octets(cadus) == length);
+    CHECK_FALSE(cadu_frame_octets(std::span{cadus}.first(100)));
+    CHECK(crc_frame_octets(bare, 2) == length);
+    CHECK(crc_frame_octets(std::span{bare}.first(length + 2), 2) == length);
+    CHECK_FALSE(crc_frame_octets(std::span{bare}.first(length), 2));
+}

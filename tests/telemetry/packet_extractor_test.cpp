@@ -1,0 +1,152 @@
+#include "telemetry/packet_extractor.hpp"
+#include "common/space_packet.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/octets.hpp"
+
+#include <algorithm>
+#include <set>
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+Octets packet_of(std::size_t data_octets, std::uint16_t count) {
+    Octets packet(tm_overhead_octets + data_octets, 0x5A);
+    seal_tm_packet(packet, Apid{0x20}, count, Sclk{1.0}, 1);
+    return packet;
+}
+
+struct Stream {
+    std::vector<Octets> packets;
+    std::vector<Octets> zones; ///< what each frame carries
+    std::vector<std::uint16_t> pointers;
+};
+
+/// Random packets one after another, cut into zones of one length.
+Stream stream_of(std::mt19937& random, std::size_t packets, std::size_t zone) {
+    Stream stream;
+    Octets octets;
+    std::set<std::size_t> starts;
+    for (std::size_t i = 0; i < packets || octets.size() % zone != 0; ++i) {
+        // The last ones fill up to a whole zone.
+        const std::size_t left = zone - octets.size() % zone;
+        const bool last = i + 1 >= packets && left > tm_overhead_octets + 1;
+        const std::size_t size = last ? left - tm_overhead_octets : random() % 400;
+        stream.packets.push_back(packet_of(size, static_cast<std::uint16_t>(i & 0x3FFF)));
+        starts.insert(octets.size());
+        octets.insert(octets.end(), stream.packets.back().begin(), stream.packets.back().end());
+    }
+    for (std::size_t at = 0; at < octets.size(); at += zone) {
+        const auto first = octets.begin() + static_cast<std::ptrdiff_t>(at);
+        stream.zones.emplace_back(first, first + static_cast<std::ptrdiff_t>(zone));
+        const auto next = starts.lower_bound(at);
+        stream.pointers.push_back(next != starts.end() && *next < at + zone ? static_cast<std::uint16_t>(*next - at)
+                                                                            : no_packet_begins);
+    }
+    return stream;
+}
+
+TransferFrame frame_of(const Stream& stream, std::size_t index) {
+    TransferFrame frame;
+    frame.first_header_pointer = stream.pointers[index];
+    frame.data = stream.zones[index];
+    return frame;
+}
+
+std::vector<Octets> all(PacketExtractor& extractor) {
+    std::vector<Octets> found;
+    while (const auto packet = extractor.next()) found.push_back(test::copy_of(*packet));
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("packets come whole out of frames of any length, also much shorter than a packet", "[telemetry]") {
+    std::mt19937 random{1};
+    for (const std::size_t zone : {3U, 5U, 7U, 20U, 100U, 1000U}) {
+        const Stream stream = stream_of(random, 200, zone);
+        PacketExtractor extractor;
+        std::vector<Octets> found;
+        for (std::size_t i = 0; i < stream.zones.size(); ++i) {
+            extractor.add(frame_of(stream, i), false);
+            for (auto& packet : all(extractor)) found.push_back(std::move(packet));
+        }
+        CHECK(found == stream.packets);
+        CHECK(extractor.counters() == PacketCounters{.packets = stream.packets.size()});
+    }
+}
+
+TEST_CASE("a missing frame costs the packets that it carries a part of, and no other", "[telemetry]") {
+    std::mt19937 random{2};
+    const Stream stream = stream_of(random, 300, 150);
+    for (std::size_t lost = 1; lost + 1 < stream.zones.size(); ++lost) {
+        PacketExtractor extractor;
+        std::vector<Octets> found;
+        for (std::size_t i = 0; i < stream.zones.size(); ++i) {
+            if (i == lost) continue;
+            extractor.add(frame_of(stream, i), i == lost + 1);
+            for (auto& packet : all(extractor)) found.push_back(std::move(packet));
+        }
+        std::size_t at = 0;
+        std::vector<Octets> expected;
+        for (const Octets& packet : stream.packets) {
+            const bool touched = at < (lost + 1) * 150 && at + packet.size() > lost * 150;
+            if (!touched) expected.push_back(packet);
+            at += packet.size();
+        }
+        REQUIRE(found == expected);
+    }
+}
+
+TEST_CASE("a pointer that contradicts the packet before it ends that packet and is followed", "[telemetry]") {
+    const Octets a = packet_of(100, 1), b = packet_of(10, 2);
+    PacketExtractor extractor;
+    TransferFrame frame;
+    frame.first_header_pointer = 0;
+    frame.data = std::span{a}.first(50);
+    extractor.add(frame, false);
+    Octets second(5 + b.size(), 0xEE);
+    std::ranges::copy(b, second.begin() + 5);
+    frame.first_header_pointer = 5;
+    frame.data = second;
+    extractor.add(frame, false);
+    CHECK(all(extractor) == std::vector<Octets>{b});
+    CHECK(extractor.counters() == PacketCounters{.packets = 1, .cut_packets = 1, .unreadable_octets = 55});
+}
+
+TEST_CASE("fill is not given out: idle frames, idle packets", "[telemetry]") {
+    Octets idle(20);
+    seal_tm_packet(idle, Apid{idle_apid}, 0, Sclk{0.0}, 0);
+    PacketExtractor extractor;
+    TransferFrame frame;
+    frame.first_header_pointer = 0;
+    frame.data = idle;
+    extractor.add(frame, false);
+    frame.first_header_pointer = only_idle_data;
+    extractor.add(frame, false);
+    CHECK(all(extractor).empty());
+    CHECK(extractor.counters() == PacketCounters{.idle_packets = 1});
+}
+
+TEST_CASE("frames of any content: nothing outside them is read, and it goes on with the next pointer", "[telemetry]") {
+    std::mt19937 random{3};
+    PacketExtractor extractor;
+    for (int round = 0; round < 5000; ++round) {
+        const auto data = test::random_octets(random, 1 + random() % 60);
+        TransferFrame frame;
+        frame.data = data;
+        frame.first_header_pointer =
+            static_cast<std::uint16_t>(random() % 3 == 0 ? no_packet_begins : random() % data.size());
+        extractor.add(frame, random() % 5 == 0);
+        (void)all(extractor);
+    }
+    const Octets good = packet_of(10, 2);
+    TransferFrame frame;
+    frame.data = good;
+    frame.first_header_pointer = 0;
+    extractor.add(frame, true);
+    CHECK(all(extractor) == std::vector<Octets>{good});
+}
