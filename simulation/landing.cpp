@@ -85,7 +85,7 @@ struct Landing::State {
     InFlight<ReceivedTone> tones;
     InFlight<LinkState> links;
     LinkTeller uhf_told{.link = LinkId::uhf_live}, x_band_told{.x_band = true}, relay_told{.link = LinkId::relay};
-    std::vector<UhfLink::Delivered> uhf_delivered;
+    InFlight<ReceivedOctets> octets;
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -127,7 +127,7 @@ struct Landing::State {
     /// The commands of this cycle that go out on the buses; none: nobody runs them.
     const flight::DeviceOutputs* run_computers(bool skipped);
     const flight::DeviceOutputs* run_gnc_alone();
-    void radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us);
+    void radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     void note_parachute();
@@ -207,15 +207,12 @@ const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
     return &commands;
 }
 
-void Landing::State::radiate(std::span<const std::uint8_t> octets, std::int64_t cycle_start_us) {
+void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
-    uhf.offer(octets);
-    uhf_delivered.clear();
-    uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()}, uhf_delivered);
-    for (UhfLink::Delivered& packet : uhf_delivered) {
-        const Ert ert{cycle_start_us + packet.left_us + light_time_us};
-        packets.send(ert.microseconds, {LinkId::uhf_live, ert, std::move(packet.octets)});
-    }
+    uhf.offer(pltus);
+    const auto arrived = uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()});
+    const Ert ert{cycle_start_us + microseconds(seconds_per_tick) + light_time_us};
+    if (!arrived.empty()) octets.send(ert.microseconds, {LinkId::uhf_live, ert, {arrived.begin(), arrived.end()}});
     tell(uhf_told, uhf.up(), uhf.reason(), cycle_start_us);
 }
 
@@ -295,6 +292,7 @@ const CycleReport& Landing::step() {
     s.report.ticks_skipped = 0;
     s.report.recorded = {};
     s.report.radiated = {};
+    s.report.octets.clear();
     s.report.packets.clear();
     s.report.tones.clear();
     s.report.links.clear();
@@ -308,6 +306,7 @@ const CycleReport& Landing::step() {
     s.relay_recording(cycle_start_us);
 
     const std::int64_t now_us = s.now_us();
+    s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) { s.report.octets.push_back(std::move(o)); });
     s.packets.arrive(now_us, [&](std::int64_t, ReceivedPacket&& p) { s.report.packets.push_back(std::move(p)); });
     s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { s.report.tones.push_back(t); });
     s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
@@ -365,7 +364,7 @@ std::string Landing::outcome_reason() const {
 
 bool Landing::finished() const {
     const State& s = *state_;
-    return !s.computer_on && s.recording_down() && s.packets.empty() && s.tones.empty() && s.links.empty();
+    return !s.computer_on && s.recording_down() && s.octets.empty() && s.packets.empty() && s.tones.empty() && s.links.empty();
 }
 
 std::optional<TouchdownReport> Landing::touchdown() const {

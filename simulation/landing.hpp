@@ -38,6 +38,13 @@ struct ReceivedPacket {
     std::vector<std::uint8_t> octets;
 };
 
+/// Octets of a link as they reach Earth, in order; what they are is for ground to find out.
+struct ReceivedOctets {
+    LinkId link{};
+    Ert ert; ///< of the last
+    std::vector<std::uint8_t> octets;
+};
+
 /// A tone decision of the receiver (statistical model: drawn from the exact symbol error at the scenario's C/N0).
 struct ReceivedTone {
     Ert start, end;             ///< of the symbol; 10 s
@@ -108,8 +115,9 @@ struct TouchdownReport {
 struct CycleReport {
     int ticks_skipped = 0;                  ///< that went by in it beyond its own; nil but for a venue's real-time clock
     std::span<const std::uint8_t> recorded; ///< whole packets appended to NVM in this cycle
-    std::span<const std::uint8_t> radiated; ///< whole packets given to the UHF transmitter
-    std::vector<ReceivedPacket> packets;    ///< that reach Earth by the end of this cycle
+    std::span<const std::uint8_t> radiated; ///< PLTUs given to the UHF transmitter
+    std::vector<ReceivedOctets> octets;     ///< that reach Earth by the end of this cycle
+    std::vector<ReceivedPacket> packets;    ///< likewise
     std::vector<ReceivedTone> tones;
     std::vector<LinkState> links;
     std::vector<TruthEvent> events;

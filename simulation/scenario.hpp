@@ -116,7 +116,8 @@ struct Radio {
     double blackout_start_speed_mps = 5400.0; ///< plasma: between these two speeds after entry, while decelerating
     double blackout_end_speed_mps = 2400.0;
     double blackout_start_altitude_m = 65000.0;
-    double uhf_loss_fraction = 0.0;         ///< packets lost at random outside the blackout
+    double uhf_loss_fraction = 0.0;         ///< of the octets outside the blackout, spoilt in bursts of errors
+    double uhf_burst_s = 0.2;               ///< mean length of those. Ours
     double x_band_c_n0_dbhz = 22.0;         ///< total power to noise density; the statistical tone model uses it
     double earth_set_after_entry_s = 299.0; ///< no tone after that
     double relay_rate_bps = 2.0e6;          ///< of the recording, after landing

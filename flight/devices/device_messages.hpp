@@ -189,7 +189,7 @@ struct DeviceOutputs {
     bool pay_out_bridle = false;
     std::optional<ToneId> tone;                                ///< what X-band sends during this cycle; none: carrier only
     OctetBuffer<65536> nvm;                                    ///< packets to append to the recording, in order
-    OctetBuffer<8192> uhf;                                     ///< packets to radiate, a subset of what was recorded
+    OctetBuffer<8192> uhf;                                     ///< PLTUs to radiate; their packets are a subset of what was recorded
     StateOctets cross_string;                                  ///< to the other computer; empty: nothing in this cycle
     StateOctets restart_record;                                ///< to be kept in place of the one before; empty: keep
     std::optional<bool> designate_b_prime;                     ///< set the latch

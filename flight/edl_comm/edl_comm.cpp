@@ -7,7 +7,7 @@
 namespace aeolis::flight {
 
 EdlComm::EdlComm(const Load& load)
-    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), plan_(load.telemetry_plan) {
+    : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), string_(load.string), plan_(load.telemetry_plan) {
     // So that a unit of one computer never has the name of one of the other's.
     if (load.string == String::b)
         for (Stream& stream : streams_) stream.count = counts_of_string_b;
@@ -59,20 +59,39 @@ void EdlComm::offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const 
 }
 
 void EdlComm::radiate(Outbox& out) {
-    auto& uhf = out.bus().uhf;
-    // A link that was idle does not save up more than one largest packet.
-    credit_octets_ = std::min(credit_octets_ + octets_per_cycle_,
-                              static_cast<double>(telemetry_packet_octets_max) + octets_per_cycle_);
+    // A link that was idle does not save up more than one frame.
+    constexpr std::size_t saved_octets = pltu_overhead_octets + std::max(frame_packets_octets, telemetry_packet_octets_max);
+    credit_octets_ = std::min(credit_octets_, static_cast<double>(saved_octets)) + octets_per_cycle_;
     while (!queue_.empty()) {
-        const TelemetryPacket& packet = queue_.front();
-        if (packet.size > credit_octets_ || uhf.size() + packet.size > uhf.capacity()) break;
-        uhf.append(packet.span());
-        credit_octets_ -= packet.size;
-        sent_octets_ += packet.size;
-        queue_.pop();
+        const std::size_t wanted_octets = pltu_overhead_octets + frame_wanted_octets();
+        if (static_cast<double>(wanted_octets) > credit_octets_ || out.bus().uhf.size() + wanted_octets > out.bus().uhf.capacity()) break;
+        send_frame(out);
     }
     // The episode is over when half of the room is free again; ours, so that it is not said at every packet.
     if (queue_.waiting() <= RealtimeQueue::packets_max / 2) queue_full_reported_ = false;
+}
+
+std::size_t EdlComm::frame_wanted_octets() const {
+    return std::max<std::size_t>(queue_.front().size, std::min<std::size_t>(queue_.waiting_octets(), frame_packets_octets));
+}
+
+void EdlComm::send_frame(Outbox& out) {
+    auto& uhf = out.bus().uhf;
+    const auto affordable = static_cast<std::size_t>(credit_octets_) - pltu_overhead_octets;
+    const std::size_t room = std::min({affordable, uhf.capacity() - uhf.size() - pltu_overhead_octets, proximity_data_octets_max});
+    FixedVector<std::uint8_t, proximity_data_octets_max> packets;
+    while (!queue_.empty() && packets.size() + queue_.front().size <= room) {
+        packets.append(queue_.front().span());
+        queue_.pop();
+    }
+    const ProximityHeader header{.spacecraft = spacecraft,
+                                 .physical_channel = static_cast<std::uint8_t>(string_ == String::b),
+                                 .sequence = frame_sequence_++};
+    std::array<std::uint8_t, pltu_octets_max> pltu{};
+    const std::size_t size = write_pltu(header, packets.span(), pltu);
+    uhf.append(std::span{pltu}.first(size));
+    credit_octets_ -= static_cast<double>(size);
+    sent_octets_ += static_cast<std::uint32_t>(size);
 }
 
 void EdlComm::on(const ImuReadings& readings, Outbox&) {

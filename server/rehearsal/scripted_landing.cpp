@@ -30,7 +30,7 @@ ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint
 
 const simulation::CycleReport& ScriptedLanding::step() {
     send_script();
-    const auto& report = landing_.step();
+    const auto& report = station_.receive(landing_.step());
     ++cycles_;
     if (landing_.dispersed() && !std::exchange(dispersed_, true))
         gateway_.renew_solution(solution_arguments(landing_.solution()));

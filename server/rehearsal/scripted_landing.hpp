@@ -5,6 +5,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 #include "server/gateway/command_gateway.hpp"
+#include "server/station/ground_station.hpp"
 #include "simulation/landing.hpp"
 
 #include <cstdint>
@@ -45,12 +46,14 @@ class ScriptedLanding {
 
     const simulation::Landing& landing() const { return landing_; }
     const CommandGateway& gateway() const { return gateway_; }
+    const GroundStation& station() const { return station_; }
 
   private:
     void send_script();
 
     Sclk entry_;
     simulation::Landing landing_;
+    GroundStation station_;
     CommandGateway gateway_;
     std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
     std::vector<archive::StageRecord> stages_;

@@ -107,6 +107,7 @@ const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, blackout_end_speed_mps),
     AEOLIS_BIND(Radio, blackout_start_altitude_m),
     AEOLIS_BIND(Radio, uhf_loss_fraction),
+    AEOLIS_BIND(Radio, uhf_burst_s),
     AEOLIS_BIND(Radio, x_band_c_n0_dbhz),
     AEOLIS_BIND(Radio, earth_set_after_entry_s),
     AEOLIS_BIND(Radio, relay_rate_bps),

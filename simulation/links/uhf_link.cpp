@@ -1,9 +1,8 @@
 #include "simulation/links/uhf_link.hpp"
 
 #include "common/time.hpp"
-#include "simulation/devices/recorder.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 namespace aeolis::simulation {
 namespace {
@@ -13,15 +12,13 @@ constexpr const char* nominal = "nominal";
 
 } // namespace
 
-void UhfLink::offer(std::span<const std::uint8_t> packets) {
-    for (auto packet = take_packet(packets); !packet.empty(); packet = take_packet(packets)) {
-        if (waiting_octets_ + packet.size() > transmitter_octets) {
-            ++lost_packets_;
-            continue;
-        }
-        waiting_octets_ += packet.size();
-        waiting_.emplace_back(packet.begin(), packet.end());
-    }
+UhfLink::UhfLink(const Radio& radio, Random random)
+    : radio_(radio), errors_(radio.uhf_loss_fraction, radio.uhf_burst_s * radio.uhf_rate_bps / 8.0, random) {}
+
+void UhfLink::offer(std::span<const std::uint8_t> octets) {
+    const std::size_t taken = std::min(octets.size(), transmitter_octets - waiting_.size());
+    waiting_.insert(waiting_.end(), octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(taken));
+    lost_octets_ += octets.size() - taken;
 }
 
 const char* UhfLink::why_down(const Surroundings& at) {
@@ -34,34 +31,22 @@ const char* UhfLink::why_down(const Surroundings& at) {
     return plasma ? "plasma blackout" : nullptr;
 }
 
-void UhfLink::cycle(const Surroundings& at, std::vector<Delivered>& delivered) {
+std::span<const std::uint8_t> UhfLink::cycle(const Surroundings& at) {
     const char* down = why_down(at);
     up_ = down == nullptr;
     reason_ = up_ ? nominal : down;
-    double bits_left = radio_.uhf_rate_bps * seconds_per_tick;
-    const double cycle_bits = bits_left;
-    while (!waiting_.empty() && bits_left > 0.0) {
-        std::vector<std::uint8_t>& first = waiting_.front();
-        if (!up_) first_spoilt_ = true;
-        const double wanted_bits = static_cast<double>(first.size()) * 8.0 - sent_bits_of_first_;
-        if (wanted_bits > bits_left) {
-            sent_bits_of_first_ += bits_left;
-            return;
-        }
-        bits_left -= wanted_bits;
-        waiting_octets_ -= first.size();
-        const bool lost_at_random = random_.uniform() < radio_.uhf_loss_fraction;
-        if (first_spoilt_ || lost_at_random) {
-            ++lost_packets_;
-        } else {
-            const double part = (cycle_bits - bits_left) / cycle_bits;
-            delivered.push_back(
-                {static_cast<std::int64_t>(std::ceil(part * seconds_per_tick * 1.0e6)), std::move(first)});
-        }
-        waiting_.pop_front();
-        sent_bits_of_first_ = 0.0;
-        first_spoilt_ = false;
+    arrived_.clear();
+    credit_octets_ += radio_.uhf_rate_bps / 8.0 * seconds_per_tick;
+    const auto leaving = static_cast<std::ptrdiff_t>(std::min(credit_octets_, static_cast<double>(waiting_.size())));
+    credit_octets_ = static_cast<std::size_t>(leaving) == waiting_.size() ? 0.0 : credit_octets_ - static_cast<double>(leaving);
+    if (up_) {
+        arrived_.assign(waiting_.begin(), waiting_.begin() + leaving);
+        errors_.spoil(arrived_);
+    } else {
+        lost_octets_ += static_cast<std::uint64_t>(leaving);
     }
+    waiting_.erase(waiting_.begin(), waiting_.begin() + leaving);
+    return arrived_;
 }
 
 } // namespace aeolis::simulation

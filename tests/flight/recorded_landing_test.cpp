@@ -7,6 +7,7 @@
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/product_assembler.hpp"
 #include "tests/simulation/gale.hpp"
+#include "tests/support/radiated.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
@@ -57,7 +58,7 @@ const Flown& flown() {
             flown.imu.insert(flown.imu.end(), in.imu.begin(), in.imu.end());
             computer.step(in, *out);
             take(out->nvm.span(), flown.recorded);
-            take(out->uhf.span(), flown.radiated);
+            for (auto& packet : test::packets_in_pltus(out->uhf.span())) flown.radiated.push_back(std::move(packet));
             world.advance(*out);
             after += world.outcome() != simulation::Outcome::running;
         }

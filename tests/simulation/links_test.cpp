@@ -24,34 +24,47 @@ UhfLink::Surroundings coasting() {
 
 } // namespace
 
-TEST_CASE("UHF carries its rate and no more", "[simulation][uhf]") {
+TEST_CASE("UHF carries its rate and no more, octet for octet", "[simulation][uhf]") {
     Radio radio;
     radio.uhf_rate_bps = 8000.0;
     UhfLink link{radio, Random{1, 0, Stream::uhf}};
-    std::vector<UhfLink::Delivered> delivered;
-    for (int i = 0; i < 100; ++i)
-        link.offer(packet_of(100));
-    for (int cycle = 0; cycle < 64 * 5; ++cycle)
-        link.cycle(coasting(), delivered);
-    CHECK(delivered.size() == 50); // 5 s at 1000 octets a second
-    for (const auto& packet : delivered)
-        CHECK((packet.left_us >= 0 && packet.left_us <= 15625));
+    std::vector<std::uint8_t> offered, arrived;
+    for (int i = 0; i < 100; ++i) {
+        const auto packet = packet_of(100, static_cast<std::uint16_t>(i));
+        offered.insert(offered.end(), packet.begin(), packet.end());
+        link.offer(packet);
+    }
+    for (int cycle = 0; cycle < 64 * 5; ++cycle) {
+        const auto octets = link.cycle(coasting());
+        arrived.insert(arrived.end(), octets.begin(), octets.end());
+    }
+    CHECK(arrived.size() == 5000); // 5 s at 1000 octets a second
+    CHECK(std::equal(arrived.begin(), arrived.end(), offered.begin()));
+}
+
+TEST_CASE("an idle UHF link saves nothing up, and what finds no room is counted", "[simulation][uhf]") {
+    Radio radio;
+    radio.uhf_rate_bps = 8000.0;
+    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    for (int cycle = 0; cycle < 640; ++cycle)
+        CHECK(link.cycle(coasting()).empty());
+    link.offer(std::vector<std::uint8_t>(70000));
+    CHECK(link.lost_octets() == 70000 - 65536);
+    CHECK(link.cycle(coasting()).size() <= 16);
 }
 
 TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then is lost", "[simulation][uhf]") {
     Radio radio;
     radio.uhf_rate_bps = 16 * 8 * 64; // one packet a cycle
     UhfLink link{radio, Random{1, 0, Stream::uhf}};
-    std::vector<UhfLink::Delivered> delivered;
     const auto cycle = [&](UhfLink::Surroundings at) {
         link.offer(packet_of(16));
-        link.cycle(at, delivered);
+        CHECK(link.cycle(at).size() == (link.up() ? 16 : 0));
         return link.up();
     };
     CHECK_FALSE(cycle({-300.0, 800000.0, 5500.0, false}));
     CHECK(std::string{link.reason()} == "not switched on");
-    CHECK(delivered.empty());
-    CHECK(link.lost_packets() == 1);
+    CHECK(link.lost_octets() == 16);
     CHECK(cycle(coasting()));
     CHECK(cycle({10.0, 115000.0, 5855.0, true}));
     CHECK_FALSE(cycle({46.0, 64000.0, 5868.0, true}));
@@ -59,20 +72,27 @@ TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then
     CHECK_FALSE(cycle({97.0, 20000.0, 2401.0, true}));
     CHECK(cycle({98.0, 19500.0, 2399.0, true}));
     CHECK(cycle({300.0, 3000.0, 85.0, true}));
-    CHECK(link.lost_packets() == 3);
+    CHECK(link.lost_octets() == 48);
 }
 
-TEST_CASE("UHF loses packets at random at the scenario's fraction", "[simulation][uhf]") {
-    Radio radio;
-    radio.uhf_rate_bps = 1.0e6;
-    radio.uhf_loss_fraction = 0.1;
-    UhfLink link{radio, Random{1, 0, Stream::uhf}};
-    std::vector<UhfLink::Delivered> delivered;
-    for (int i = 0; i < 4000; ++i) {
-        link.offer(packet_of(100));
-        link.cycle(coasting(), delivered);
+TEST_CASE("UHF spoils the scenario's part of the octets, in bursts of the scenario's length", "[simulation][uhf]") {
+    constexpr std::size_t octets = 4'000'000;
+    ErrorBursts errors{0.05, 200.0, Random{1, 0, Stream::uhf}};
+    std::vector<std::uint8_t> air(octets, 0);
+    errors.spoil(air);
+    // One octet in 256 of a burst is right by chance; a stretch of 20 that are not spoilt ends a burst.
+    const auto spoilt = static_cast<std::size_t>(octets - static_cast<std::size_t>(std::ranges::count(air, 0)));
+    CHECK(static_cast<double>(spoilt) / octets == Approx(0.05 * 255.0 / 256.0).epsilon(0.1));
+    std::size_t bursts = 0, since = 1000;
+    for (const std::uint8_t octet : air) {
+        if (octet != 0 && since > 20) ++bursts;
+        since = octet == 0 ? since + 1 : 0;
     }
-    CHECK(delivered.size() == Approx(3600.0).margin(60.0));
+    CHECK(static_cast<double>(spoilt) / static_cast<double>(bursts) == Approx(200.0).epsilon(0.15));
+    ErrorBursts none{0.0, 200.0, Random{1, 0, Stream::uhf}};
+    std::vector<std::uint8_t> clean(1000, 7);
+    none.spoil(clean);
+    CHECK(std::ranges::count(clean, 7) == 1000);
 }
 
 TEST_CASE("the relay brings the recording down whole, in order, at its rate", "[simulation][relay]") {

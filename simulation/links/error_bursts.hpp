@@ -1,0 +1,28 @@
+#pragma once
+
+#include "simulation/random.hpp"
+
+#include <cstdint>
+#include <span>
+
+namespace aeolis::simulation {
+
+/// Errors of a link come in bursts: within one an octet is anything, between them all arrive as they were sent. Lengths of
+/// bursts, and of the times between, are exponential (the two states of [gilbert-1960], the bad one without use).
+class ErrorBursts {
+  public:
+    /// `fraction` of all octets are in bursts, 0 … below 1, of `mean_octets` on average, above 0.
+    ErrorBursts(double fraction, double mean_octets, Random random);
+
+    void spoil(std::span<std::uint8_t> octets);
+
+  private:
+    double drawn(double mean_octets);
+
+    double bad_octets_, good_octets_; ///< means; no good_octets_: no bursts at all
+    Random random_;
+    bool bad_ = false;
+    double left_octets_ = 0.0; ///< of the state it is in
+};
+
+} // namespace aeolis::simulation

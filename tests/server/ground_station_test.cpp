@@ -1,0 +1,80 @@
+#include "server/station/ground_station.hpp"
+
+#include "common/proximity_frame.hpp"
+#include "common/space_packet.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+std::vector<std::uint8_t> packet_of(std::uint16_t count) {
+    std::vector<std::uint8_t> packet(60);
+    seal_tm_packet(packet, Apid{0x10}, count, Sclk{397501715.0}, 1);
+    return packet;
+}
+
+std::vector<std::uint8_t> pltu_of(std::uint8_t sequence, std::span<const std::uint8_t> packets) {
+    std::vector<std::uint8_t> pltu(pltu_octets_max);
+    pltu.resize(write_pltu({.sequence = sequence}, packets, pltu));
+    return pltu;
+}
+
+} // namespace
+
+TEST_CASE("the station finds the packets of the UHF link however its octets are cut, dated by the last of them",
+          "[station]") {
+    std::vector<std::uint8_t> air;
+    for (std::uint8_t i = 0; i < 20; ++i) {
+        const auto pltu = pltu_of(i, packet_of(i));
+        air.insert(air.end(), pltu.begin(), pltu.end());
+    }
+    GroundStation station;
+    std::vector<std::vector<std::uint8_t>> found;
+    Ert last;
+    for (std::size_t at = 0; at < air.size(); at += 16) {
+        const auto end = std::min(at + 16, air.size());
+        simulation::CycleReport landed;
+        landed.octets.push_back({simulation::LinkId::uhf_live,
+                                 Ert{static_cast<std::int64_t>(at)},
+                                 {air.begin() + static_cast<std::ptrdiff_t>(at), air.begin() + static_cast<std::ptrdiff_t>(end)}});
+        for (const auto& packet : station.receive(landed).packets) {
+            CHECK(packet.link == simulation::LinkId::uhf_live);
+            CHECK(packet.ert.microseconds == static_cast<std::int64_t>(at));
+            found.push_back(packet.octets);
+        }
+    }
+    REQUIRE(found.size() == 20);
+    for (std::uint16_t i = 0; i < 20; ++i)
+        CHECK(found[i] == packet_of(i));
+    CHECK(station.uhf().frames == 20);
+    CHECK(station.uhf().missing_frames == 0);
+}
+
+TEST_CASE("a spoilt frame costs its packets and no others, and the gap is counted", "[station]") {
+    GroundStation station;
+    simulation::CycleReport landed;
+    for (std::uint8_t i = 0; i < 5; ++i) {
+        auto pltu = pltu_of(i, packet_of(i));
+        if (i == 2) pltu[30] ^= 0x40;
+        landed.octets.push_back({simulation::LinkId::uhf_live, Ert{i}, pltu});
+    }
+    CHECK(station.receive(landed).packets.size() == 4);
+    CHECK(station.uhf().bad_crc == 1);
+    CHECK(station.uhf().missing_frames == 1);
+}
+
+TEST_CASE("what comes by other ways passes through the station as it is", "[station]") {
+    GroundStation station;
+    simulation::CycleReport landed;
+    landed.packets.push_back({simulation::LinkId::relay, Ert{7}, packet_of(1)});
+    landed.tones.emplace_back();
+    const auto& report = station.receive(landed);
+    REQUIRE(report.packets.size() == 1);
+    CHECK(report.packets[0].link == simulation::LinkId::relay);
+    CHECK(report.tones.size() == 1);
+}
