@@ -217,7 +217,7 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
             const auto calibrated = parts_.report.number(point, "calibrated");
             if (raw && calibrated) result.spline.emplace_back(*raw, *calibrated);
         }
-        std::ranges::stable_sort(result.spline, {}, [](const auto& point) { return point.first; });
+        std::ranges::sort(result.spline);
         const int order = spline.attribute("order").as_int(1);
         result.flat = order == 0;
         if (order > 1) parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
