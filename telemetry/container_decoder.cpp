@@ -102,18 +102,28 @@ class Reading {
     DecodedContents contents;
 
   private:
+    /// Where the last value of a parameter stands: several, when it is composed.
+    struct Latest {
+        std::size_t first = 0;
+        std::size_t count = 0;
+        std::string name;
+    };
+
     bool stop(const std::string& why, unsigned line) {
         contents.problem = why + " (line " + std::to_string(line) + ")";
         return false;
     }
 
-    const DecodedValue* value_of(std::size_t parameter) const {
-        const auto& at = latest_[parameter];
-        return at ? &contents.values[*at] : nullptr;
+    const DecodedValue* value_of(std::size_t parameter, const std::string& member) const {
+        const Latest& latest = latest_[parameter];
+        const auto values = std::span{contents.values}.subspan(latest.first, latest.count);
+        if (member.empty()) return values.empty() ? nullptr : values.data();
+        const auto found = std::ranges::find(values, latest.name + member, &DecodedValue::name);
+        return found == values.end() ? nullptr : &*found;
     }
 
     bool compare(const Condition& condition) const {
-        const DecodedValue* value = value_of(condition.parameter);
+        const DecodedValue* value = value_of(condition.parameter, condition.member);
         if (value == nullptr) return false;
         const Datum& datum = condition.calibrated ? value->calibrated : value->raw;
         const auto wanted = compared_number(condition.value);
@@ -135,7 +145,7 @@ class Reading {
             if (found == amount.cases.end()) return std::nullopt;
             value = found->value;
         } else if (amount.parameter) {
-            const DecodedValue* known = value_of(*amount.parameter);
+            const DecodedValue* known = value_of(*amount.parameter, amount.member);
             if (known == nullptr) return std::nullopt;
             auto number = number_of(amount.calibrated ? known->calibrated : known->raw);
             if (!number) number = number_of(known->raw);
@@ -174,10 +184,11 @@ class Reading {
         const PacketParameter& parameter = model_.parameters[entry.index];
         const std::size_t before = contents.values.size();
         const PacketType& type = model_.types[parameter.type];
+        const std::string name = parameter.name + suffix;
         const bool read = type.kind == PacketType::Kind::array && !entry.last_indices.empty()
-                              ? read_array(type, entry.last_indices, parameter.name + suffix, depth + 1)
-                              : read_type(type, parameter.name + suffix, depth + 1);
-        if (contents.values.size() > before) latest_[entry.index] = before;
+                              ? read_array(type, entry.last_indices, name, depth + 1)
+                              : read_type(type, name, depth + 1);
+        latest_[entry.index] = {before, contents.values.size() - before, name};
         return read;
     }
 
@@ -319,7 +330,7 @@ class Reading {
 
     const PacketModel& model_;
     std::span<const std::uint8_t> packet_;
-    std::vector<std::optional<std::size_t>> latest_; ///< by parameter: its last value
+    std::vector<Latest> latest_; ///< by parameter
     std::size_t position_ = 0;
     std::size_t steps_ = 0;
 };

@@ -42,7 +42,10 @@ class ContainerReader {
         const std::string_view name = element.name();
         std::optional<std::size_t> index;
         if (name == "ParameterRefEntry" || name == "ArrayParameterRefEntry") {
-            index = parts_.parameter(symbol.scope, element, "parameterRef");
+            const auto found = parts_.parameter(symbol.scope, element, "parameterRef");
+            if (found && found->member.empty()) index = found->parameter;
+            if (found && !found->member.empty())
+                parts_.report.fault(element, "an entry for a member alone is not supported: packets are read up to it");
             entry.what = PacketEntry::What::parameter;
             entry.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
         } else if (name == "ContainerRefEntry") {

@@ -3,7 +3,9 @@
 #include "dictionaries/words.hpp"
 #include "dictionaries/xtce/packet_model_reader.hpp"
 
+#include <algorithm>
 #include <string_view>
+#include <utility>
 
 namespace aeolis::dictionary::xtce {
 namespace {
@@ -28,11 +30,29 @@ ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols
         if (symbol.kind == Kind::parameter) parameters_.emplace(symbol.path, parameters_.size());
 }
 
-std::optional<std::size_t> ModelParts::parameter(const std::string& scope, pugi::xml_node at,
-                                                 const char* reference) const {
-    const std::string word = at.attribute(reference).value();
+/// Whether the parameter's type has members that `path` ("flags/valid") leads to.
+bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
+    const Symbol* type = symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
+    while (type != nullptr && !path.empty()) {
+        const std::string name{path.substr(0, path.find('/'))};
+        path.remove_prefix(std::min(path.size(), name.size() + 1));
+        const pugi::xml_node member = type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
+        if (!member) return false;
+        const char* attribute = member.attribute("typeRef") ? "typeRef" : "parameterTypeRef";
+        type = symbols.find(Kind::parameter_type, type->scope, member.attribute(attribute).value());
+    }
+    return type != nullptr;
+}
+
+std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& scope, pugi::xml_node at,
+                                                           const char* attribute) const {
+    const std::string word = at.attribute(attribute).value();
     const Symbol* symbol = symbols.find(Kind::parameter, scope, word);
-    if (symbol == nullptr) {
+    // "STATUS/flags": the longest beginning that is a parameter, then its members.
+    std::size_t end = word.size();
+    while (symbol == nullptr && (end = word.rfind('/', end - 1)) != std::string::npos && end > 0)
+        symbol = symbols.find(Kind::parameter, scope, std::string_view{word}.substr(0, end));
+    if (symbol == nullptr || (end < word.size() && !has_member(*symbol, std::string_view{word}.substr(end + 1)))) {
         report.fault(at, "there is no parameter " + in_quotes(word));
         return std::nullopt;
     }
@@ -42,17 +62,20 @@ std::optional<std::size_t> ModelParts::parameter(const std::string& scope, pugi:
                              ", a value of another packet, is not supported");
         return std::nullopt;
     }
-    return parameters_.at(symbol->path);
+    std::string member = word.substr(end);
+    std::ranges::replace(member, '/', '.');
+    return Reference{parameters_.at(symbol->path), std::move(member)};
 }
 
 Condition ModelParts::comparison(const std::string& scope, pugi::xml_node element) const {
     Condition condition{.form = Condition::Form::unknown};
-    const auto index = parameter(scope, element, "parameterRef");
+    const auto found = parameter(scope, element, "parameterRef");
     const auto op = operator_of(element.attribute("comparisonOperator").value());
     if (!op) report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
-    if (!index || !op) return condition;
+    if (!found || !op) return condition;
     condition.form = Condition::Form::compare;
-    condition.parameter = *index;
+    condition.parameter = found->parameter;
+    condition.member = found->member;
     condition.op = *op;
     condition.calibrated = element.attribute("useCalibratedValue").as_bool(true);
     condition.value = element.attribute("value").value();
@@ -67,12 +90,13 @@ Condition ModelParts::condition_element(const std::string& scope, pugi::xml_node
         report.fault(element, "a comparison of two parameters is not supported");
         return condition;
     }
-    const auto index = parameter(scope, reference, "parameterRef");
+    const auto found = parameter(scope, reference, "parameterRef");
     const auto op = operator_of(element.child("ComparisonOperator").text().as_string());
     if (!op) report.fault(element, "its operator is unknown");
-    if (!index || !op) return condition;
+    if (!found || !op) return condition;
     condition.form = Condition::Form::compare;
-    condition.parameter = *index;
+    condition.parameter = found->parameter;
+    condition.member = found->member;
     condition.op = *op;
     condition.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
     condition.value = element.child("Value").text().as_string();
@@ -117,11 +141,12 @@ Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const
     }
     if (const pugi::xml_node dynamic = parent.child("DynamicValue")) {
         const pugi::xml_node reference = dynamic.child("ParameterInstanceRef");
-        const auto index = parameter(scope, reference, "parameterRef");
-        if (!index) return unknown;
+        const auto found = parameter(scope, reference, "parameterRef");
+        if (!found) return unknown;
         const pugi::xml_node line = dynamic.child("LinearAdjustment");
         Amount amount;
-        amount.parameter = index;
+        amount.parameter = found->parameter;
+        amount.member = found->member;
         amount.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
         amount.slope = line.attribute("slope").as_double(1.0);
         amount.intercept = line.attribute("intercept").as_double(0.0);

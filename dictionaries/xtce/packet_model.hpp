@@ -28,6 +28,7 @@ struct Condition {
     Form form = Form::always;
     std::vector<Condition> parts{};
     std::size_t parameter = 0; ///< in PacketModel::parameters; its latest value in the packet
+    std::string member{};      ///< of what is composed: ".flags.valid", as the decoder names it
     bool calibrated = true;
     Operator op = Operator::equal;
     std::string value{}; ///< a number or a label
@@ -40,13 +41,14 @@ struct Amount {
         double value = 0.0;
     };
     std::optional<std::size_t> parameter{}; ///< intercept + slope × its value
+    std::string member{};                   ///< of what is composed: ".length"
     bool calibrated = true;
     double slope = 1.0;
     double intercept = 0.0; ///< without parameter: the number itself
     std::vector<Case> cases{}; ///< where there are any: that of the first that holds
     bool known = true;       ///< false: not supported
 
-    static Amount fixed(double value) { return {std::nullopt, true, 1.0, value, {}, true}; }
+    static Amount fixed(double value) { return {.intercept = value}; }
 };
 
 struct Calibration {

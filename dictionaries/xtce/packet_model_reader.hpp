@@ -15,7 +15,11 @@ class ModelParts {
   public:
     ModelParts(const Symbols& symbols, Reporter& report);
 
-    std::optional<std::size_t> parameter(const std::string& scope, pugi::xml_node at, const char* reference) const;
+    struct Reference {
+        std::size_t parameter = 0;
+        std::string member; ///< ".flags.valid" for "STATUS/flags/valid"
+    };
+    std::optional<Reference> parameter(const std::string& scope, pugi::xml_node at, const char* attribute) const;
     /// The children of `parent`: Comparison, ComparisonList, BooleanExpression, or nothing.
     Condition condition(const std::string& scope, pugi::xml_node parent) const;
     /// The child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
@@ -25,6 +29,7 @@ class ModelParts {
     Reporter& report;
 
   private:
+    bool has_member(const Symbol& parameter, std::string_view path) const;
     Condition part(const std::string& scope, pugi::xml_node element, unsigned depth) const;
     Condition comparison(const std::string& scope, pugi::xml_node element) const;
     Condition condition_element(const std::string& scope, pugi::xml_node element) const;

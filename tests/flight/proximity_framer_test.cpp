@@ -65,5 +65,6 @@ TEST_CASE("what is no packet is a bug, found before it is sent", "[flight]") {
     ProximityFramer framer{76};
     Octets framed(2000);
     CHECK_THROWS_AS(framer.frame(Octets(20, 0xFF), framed), CheckFailed);
-    CHECK_THROWS_AS(framer.frame(std::span{packet_of(100, 1)}.first(50), framed), CheckFailed);
+    const Octets packet = packet_of(100, 1);
+    CHECK_THROWS_AS(framer.frame(std::span{packet}.first(50), framed), CheckFailed);
 }

@@ -209,6 +209,24 @@ TEST_CASE("what is composed: members, arrays of one and two dimensions, containe
           "n=1|1 p.x=5|5 p.y=258|258 r[0][0]=10|10 r[0][1]=11|11 r[1][0]=12|12 r[1][1]=13|13");
 }
 
+TEST_CASE("a condition and a size may ask for a member of what is composed", "[telemetry]") {
+    const std::string types = "<AggregateParameterType name='head'><MemberList><Member name='id' typeRef='u8'/><Member "
+                              "name='sizes' typeRef='sizes'/></MemberList></AggregateParameterType><AggregateParameterType "
+                              "name='sizes'><MemberList><Member name='all' typeRef='u8'/><Member name='n' typeRef='u8'/>"
+                              "</MemberList></AggregateParameterType>";
+    const std::string octets = "<BinaryParameterType name='octets'><BinaryDataEncoding><SizeInBits><DynamicValue>"
+                               "<ParameterInstanceRef parameterRef='h/sizes/n'/><LinearAdjustment slope='8'/>"
+                               "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+    const Mission mission{types + octets, {{"h", "head"}, {"d", "octets"}},
+                          container("Root", entry("h")) + container("Seven", entry("d"), base("Root", when("h/id", "==", "7")))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("07 0902 a1b2c3")) == "h.id=7|7 h.sizes.all=9|9 h.sizes.n=2|2 d=a1b2|a1b2");
+    CHECK(mission.decode("08 0902 a1b2c3").container == "Root");
+    const Mission dangling{types, {{"h", "head"}}, container("Root", entry("h"), base("Root", when("h/gone", "==", "7")))};
+    REQUIRE(dangling.findings.size() == 1);
+    CHECK(dangling.findings[0].message == "there is no parameter 'h/gone'");
+}
+
 TEST_CASE("time is seconds from the epoch, by offset and scale", "[telemetry]") {
     const Mission mission{"<AbsoluteTimeParameterType name='when'><Encoding offset='1000' scale='0.5'><IntegerDataEncoding "
                           "sizeInBits='32'/></Encoding></AbsoluteTimeParameterType>",
