@@ -152,7 +152,8 @@ void CfdpReceiver::conclude() {
     const std::uint32_t size = state_.eof->file_octets;
     const bool too_much = !state_.received.empty() && state_.received.back().end > size;
     if (too_much || size != *state_.file_octets) return end(Outcome::wrong_size);
-    if (received_octets(state_) < size) return;
+    const bool whole = size == 0 || state_.received == std::vector<Range>{{0, size}};
+    if (!whole) return;
     end(state_.checksum == state_.eof->checksum ? Outcome::complete : Outcome::wrong_checksum);
 }
 

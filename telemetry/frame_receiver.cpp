@@ -4,6 +4,7 @@
 #include "common/randomiser.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace aeolis::telemetry {
 namespace {
@@ -91,6 +92,31 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
     const auto most = std::ranges::max_element(distances, {}, [](const auto& each) { return each.second; });
     if (most == distances.end()) return std::nullopt;
     return most->first - attached_sync_marker.size();
+}
+
+std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets) {
+    constexpr std::size_t looked_at_octets = std::size_t{1} << 20U;
+    // Reed-Solomon: 32 or 16 check symbols a code word, 1 to 8 code words interleaved. [ccsds-131.0-b-5]
+    constexpr std::array<std::size_t, 10> check_symbols{0, 16, 32, 48, 64, 80, 96, 128, 160, 256};
+    octets = octets.first(std::min(octets.size(), looked_at_octets));
+    const auto length = cadu_frame_octets(octets);
+    if (!length) return std::nullopt;
+    for (const bool crc : {true, false})
+        for (const std::size_t symbols : check_symbols)
+            for (const bool randomised : {false, true})
+                for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
+                    if (*length < symbols + shortest_frame_octets) continue;
+                    FrameStream stream;
+                    stream.kind = kind;
+                    stream.frame_octets = *length - symbols;
+                    stream.suffix_octets = symbols;
+                    stream.randomised = randomised;
+                    stream.agreed.crc = crc;
+                    FrameReceiver receiver{stream};
+                    receiver.receive(octets);
+                    if (receiver.next()) return stream;
+                }
+    return std::nullopt;
 }
 
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets) {

@@ -68,4 +68,8 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
 /// which the first two are right, or the only one is.
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets);
 
+/// How the frames of a CADU stream are, found by trying: length, TM or AOS, randomised or not, check symbols of the code
+/// behind them, CRC. None when no two markers stand in it.
+std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets);
+
 } // namespace aeolis::telemetry

@@ -19,11 +19,30 @@ std::unique_ptr<Document> Document::parse(const std::string& text, Findings& fin
                      std::string{"the XML does not parse: "} + result.description());
         return nullptr;
     }
+    document->drop_prefix();
     if (!document->space_system()) {
         findings.add(1, "the root element is not SpaceSystem");
         return nullptr;
     }
     return document;
+}
+
+/// The root's prefix stands for XTCE, whatever it is called: "xtce:SpaceSystem". Elements of other prefixes keep theirs.
+void Document::drop_prefix() {
+    const std::string root = xml_.document_element().name();
+    const std::size_t colon = root.find(':');
+    if (colon == std::string::npos) return;
+    struct Shorten : pugi::xml_tree_walker {
+        std::string prefix;
+        bool for_each(pugi::xml_node& node) override {
+            const std::string name = node.name();
+            // A shorter name is written where the longer one stood, so that its line stays known.
+            if (name.starts_with(prefix)) node.set_name(name.substr(prefix.size()).c_str());
+            return true;
+        }
+    } shorten;
+    shorten.prefix = root.substr(0, colon + 1);
+    xml_.traverse(shorten);
 }
 
 unsigned Document::line_of_offset(std::ptrdiff_t offset) const {

@@ -22,6 +22,7 @@ class Document {
     unsigned line(pugi::xml_node element) const;
 
   private:
+    void drop_prefix();
     unsigned line_of_offset(std::ptrdiff_t offset) const;
 
     pugi::xml_document xml_;

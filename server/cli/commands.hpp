@@ -60,6 +60,16 @@ struct EntryReferenceOptions {
 /// Prints the tables that entry guidance follows in a scenario, as CSV.
 int entry_reference(const EntryReferenceOptions& options);
 
+struct DecodeOptions {
+    std::filesystem::path xtce, packets;
+    std::string format = "packets";
+    std::size_t skip = 0;                     ///< octets before each packet or bare frame
+    std::optional<std::size_t> frame_octets;  ///< left out: found by trying
+    bool csv = false;
+};
+/// Prints any mission's packets by its XTCE file; 0 when every octet was decoded.
+int decode(const DecodeOptions& options);
+
 int dictionary_check(const std::filesystem::path& directory);
 /// Prints the state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory);

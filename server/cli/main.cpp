@@ -17,13 +17,13 @@ struct Later {
     const char* text;
 };
 constexpr std::array later_commands{
-    Later{"decode", "any mission's packets by its XTCE"},
     Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
     Later{"export", "recorded data out"},
     Later{"archive", "verify, rebuild, prune, vacuum, backup"},
 };
 
 constexpr std::uint64_t campaign_cases_max = 10'000'000; // ours: a month on many processors
+constexpr std::size_t decode_skip_max = 65536;           // ours
 constexpr unsigned campaign_jobs_max = 256;              // ours: each holds a landing
 
 void add_shared(CLI::App& command, SharedOptions& shared) {
@@ -132,6 +132,23 @@ int main(int argc, char** argv) {
     modules_command->add_option("--seed", counting.seed, "of the errors")->check(whole_number())->capture_default_str();
     add_shared(*modules_command, counting.shared);
     modules_command->callback([&] { exit_code = modules(counting); });
+
+    DecodeOptions decoding;
+    auto* decode_command = app.add_subcommand(
+        "decode", "any mission's packets by its XTCE file; 1 when not every octet could be decoded");
+    decode_command->add_option("--xtce", decoding.xtce, "the mission's XTCE file, 1.0 to 1.3")->required();
+    decode_command->add_option("--packets", decoding.packets, "the file of packets or frames")->required();
+    decode_command->add_option("--format", decoding.format, "packets, tm, aos, cadu or pltu")->capture_default_str();
+    decode_command->add_option("--skip", decoding.skip, "octets without meaning before each packet, TM or AOS frame")
+        ->check(whole_number())
+        ->check(CLI::Range(std::size_t{0}, decode_skip_max))
+        ->capture_default_str();
+    decode_command->add_option("--frame-octets", decoding.frame_octets, "of a TM or AOS frame; left out: found by trying")
+        ->check(whole_number())
+        ->check(CLI::Range(std::size_t{9}, std::size_t{65536}));
+    decode_command->add_flag("--csv", decoding.csv,
+                             "a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each");
+    decode_command->callback([&] { exit_code = decode(decoding); });
 
     auto* dictionary_command = app.add_subcommand("dictionary", "the mission's words")->require_subcommand(1);
     auto checked = serving.shared.dictionary;

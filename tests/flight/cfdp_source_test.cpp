@@ -2,6 +2,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+#include <optional>
 #include <type_traits>
 
 using namespace aeolis;

@@ -1,6 +1,9 @@
+#include "common/proximity_frame.hpp"
+#include "common/space_packet.hpp"
 #include "flight/load.hpp"
 #include "server/api/json.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
 #include <array>
@@ -48,7 +51,7 @@ const char* program() {
 
 TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
     if (program() == nullptr) return;
-    const std::array<std::pair<const char*, const char*>, 12> table{{
+    const std::array<std::pair<const char*, const char*>, 15> table{{
         {"frob", "there is no command 'frob'"},
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
@@ -61,6 +64,9 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"serve --pace 0.5", "neither 0 nor within 1 … 1000: 0.5"},
         {"serve --listen nowhere", "ADDRESS:PORT is wanted"},
         {"dictionary check /nope", "/nope"},
+        {"decode --packets /dev/null", "--xtce"},
+        {"decode --xtce /nope --packets /dev/null", "/nope cannot be read"},
+        {"decode --xtce /dev/null --packets /dev/null --format frob", "there is no format 'frob'"},
     }};
     for (const auto& [arguments, says] : table) {
         const auto ended = run(program(), arguments);
@@ -175,4 +181,36 @@ TEST_CASE("in the venue performance a whole landing keeps every budget of time a
         CHECK(task.at("p999_us").number_value() <= task.at("budget_us").number_value());
         CHECK(task.at("stack_octets").number_value() <= task.at("stack_bound_octets").number_value());
     }
+}
+
+TEST_CASE("decode prints a row a packet of our own, whatever carried it, and says what it could not decode", "[cli][decode]") {
+    using namespace aeolis;
+    if (program() == nullptr) return;
+    const auto directory = std::filesystem::temp_directory_path() / ("aeolis_decode_" + std::to_string(getpid()));
+    std::filesystem::create_directories(directory);
+    const auto& ours = tests::shipped_dictionary();
+    const dictionary::Packet* kind = ours.packet("EdlStatus");
+    REQUIRE(kind != nullptr);
+    std::vector<std::uint8_t> packet(kind->octets), pltu(pltu_octets_max);
+    seal_tm_packet(packet, kind->apid, 7, Sclk{5.0}, ours.id);
+    pltu.resize(write_pltu({.spacecraft = 76}, packet, pltu));
+    const auto write = [&](const char* name, const std::vector<std::uint8_t>& octets) {
+        std::ofstream{directory / name, std::ios::binary}.write(reinterpret_cast<const char*>(octets.data()),
+                                                                static_cast<std::streamsize>(octets.size()));
+        return "'" + (directory / name).string() + "'";
+    };
+    const std::string xtce = "decode --xtce '" AEOLIS_SOURCE_DIR "/dictionaries/msl/msl.xml' --csv --packets ";
+    const std::string bare = write("bare", packet), framed = write("framed", pltu);
+    for (const std::string& arguments : {xtce + bare, xtce + framed + " --format pltu"}) {
+        const auto ended = run(program(), arguments);
+        INFO(ended.text);
+        CHECK(ended.code == 0);
+        CHECK_THAT(ended.text, Catch::Contains("index,apid,count,time,values\n0,16,7,,packet_version=0|0,"));
+        CHECK_THAT(ended.text, Catch::Contains(",sclk_coarse=5|5,"));
+    }
+    pltu[20] ^= 1;
+    const auto damaged = run(program(), xtce + write("damaged", pltu) + " --format pltu");
+    CHECK(damaged.code == 1);
+    CHECK_THAT(damaged.text, Catch::Contains("1 with a wrong CRC"));
+    std::filesystem::remove_all(directory);
 }

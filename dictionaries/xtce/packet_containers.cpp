@@ -1,0 +1,98 @@
+#include "dictionaries/xtce/packet_model_reader.hpp"
+
+#include <string_view>
+
+namespace aeolis::dictionary::xtce {
+namespace {
+
+class ContainerReader {
+  public:
+    explicit ContainerReader(const ModelParts& parts) : parts_(parts) {
+        for (const Symbol& symbol : parts.symbols.all())
+            if (symbol.kind == Kind::container) containers_.emplace(symbol.path, containers_.size());
+    }
+
+    PacketContainer read(const Symbol& symbol) {
+        const pugi::xml_node element = symbol.element;
+        PacketContainer container{name_of(element), parts_.report.line(element), element.attribute("abstract").as_bool(),
+                                  std::nullopt, {}, {}};
+        if (const pugi::xml_node base = element.child("BaseContainer")) {
+            container.base = index_of(symbol, base);
+            container.when = parts_.condition(symbol.scope, base.child("RestrictionCriteria"));
+            // Without its base a container would be taken for a packet of its own.
+            if (!container.base) container.when.form = Condition::Form::unknown;
+        }
+        for (const pugi::xml_node entry : element.child("EntryList").children())
+            if (entry.type() == pugi::node_element) container.entries.push_back(read_entry(symbol, entry));
+        return container;
+    }
+
+  private:
+    std::optional<std::size_t> index_of(const Symbol& from, pugi::xml_node at) {
+        const std::string word = at.attribute("containerRef").value();
+        const Symbol* symbol = parts_.symbols.find(Kind::container, from.scope, word);
+        if (symbol != nullptr) return containers_.at(symbol->path);
+        parts_.report.fault(at, "there is no container " + in_quotes(word));
+        return std::nullopt;
+    }
+
+    PacketEntry read_entry(const Symbol& symbol, pugi::xml_node element) {
+        PacketEntry entry;
+        entry.line = parts_.report.line(element);
+        const std::string_view name = element.name();
+        std::optional<std::size_t> index;
+        if (name == "ParameterRefEntry" || name == "ArrayParameterRefEntry") {
+            const auto found = parts_.parameter(symbol.scope, element, "parameterRef");
+            if (found && found->member.empty()) index = found->parameter;
+            if (found && !found->member.empty())
+                parts_.report.fault(element, "an entry for a member alone is not supported: packets are read up to it");
+            entry.what = PacketEntry::What::parameter;
+            entry.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
+        } else if (name == "ContainerRefEntry") {
+            index = index_of(symbol, element);
+            entry.what = PacketEntry::What::container;
+        } else {
+            parts_.report.fault(element, std::string{name} + " is not supported: packets are read up to it");
+        }
+        if (!index)
+            entry.what = PacketEntry::What::unknown;
+        else
+            entry.index = *index;
+        read_location(symbol, element, entry);
+        if (const pugi::xml_node include = element.child("IncludeCondition"))
+            entry.when = parts_.condition(symbol.scope, include);
+        if (const pugi::xml_node repeat = element.child("RepeatEntry")) {
+            entry.count = parts_.amount(symbol.scope, repeat.child("Count"));
+            if (const pugi::xml_node offset = repeat.child("Offset")) entry.gap_bits = parts_.amount(symbol.scope, offset);
+        }
+        return entry;
+    }
+
+    void read_location(const Symbol& symbol, pugi::xml_node element, PacketEntry& entry) {
+        const pugi::xml_node location = element.child("LocationInContainerInBits");
+        if (!location) return;
+        const std::string_view from = location.attribute("referenceLocation").as_string("previousEntry");
+        if (from == "containerStart") {
+            entry.from = PacketEntry::From::container_start;
+        } else if (from != "previousEntry") {
+            parts_.report.fault(location, "a location from " + in_quotes(from) + " is not supported: packets are read up to it");
+            entry.what = PacketEntry::What::unknown;
+        }
+        entry.offset_bits = parts_.amount(symbol.scope, location);
+    }
+
+    const ModelParts& parts_;
+    std::map<std::string, std::size_t> containers_;
+};
+
+} // namespace
+
+std::vector<PacketContainer> read_model_containers(const ModelParts& parts) {
+    ContainerReader reader{parts};
+    std::vector<PacketContainer> containers;
+    for (const Symbol& symbol : parts.symbols.all())
+        if (symbol.kind == Kind::container) containers.push_back(reader.read(symbol));
+    return containers;
+}
+
+} // namespace aeolis::dictionary::xtce

@@ -1,0 +1,194 @@
+#include "dictionaries/xtce/packet_model.hpp"
+
+#include "dictionaries/words.hpp"
+#include "dictionaries/xtce/packet_model_reader.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+namespace aeolis::dictionary::xtce {
+namespace {
+
+constexpr unsigned condition_depth_max = 16; // ours, so that a hostile file cannot exhaust the stack
+
+std::optional<Condition::Operator> operator_of(std::string_view word) {
+    using enum Condition::Operator;
+    if (word.empty() || word == "==") return equal;
+    if (word == "!=") return not_equal;
+    if (word == "<") return less;
+    if (word == "<=") return less_or_equal;
+    if (word == ">") return greater;
+    if (word == ">=") return greater_or_equal;
+    return std::nullopt;
+}
+
+} // namespace
+
+ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols(symbols_in), report(report_in) {
+    for (const Symbol& symbol : symbols.all())
+        if (symbol.kind == Kind::parameter) parameters_.emplace(symbol.path, parameters_.size());
+}
+
+/// Whether the parameter's type has members that `path` ("flags/valid") leads to.
+bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
+    const Symbol* type = symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
+    while (type != nullptr && !path.empty()) {
+        const std::string name{path.substr(0, path.find('/'))};
+        path.remove_prefix(std::min(path.size(), name.size() + 1));
+        const pugi::xml_node member = type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
+        if (!member) return false;
+        const char* attribute = member.attribute("typeRef") ? "typeRef" : "parameterTypeRef";
+        type = symbols.find(Kind::parameter_type, type->scope, member.attribute(attribute).value());
+    }
+    return type != nullptr;
+}
+
+std::optional<ModelParts::Reference> ModelParts::parameter(const std::string& scope, pugi::xml_node at,
+                                                           const char* attribute) const {
+    const std::string word = at.attribute(attribute).value();
+    const Symbol* symbol = symbols.find(Kind::parameter, scope, word);
+    // "STATUS/flags": the longest beginning that is a parameter, then its members.
+    std::size_t end = word.size();
+    while (symbol == nullptr && (end = word.rfind('/', end - 1)) != std::string::npos && end > 0)
+        symbol = symbols.find(Kind::parameter, scope, std::string_view{word}.substr(0, end));
+    if (symbol == nullptr || (end < word.size() && !has_member(*symbol, std::string_view{word}.substr(end + 1)))) {
+        report.fault(at, "there is no parameter " + in_quotes(word));
+        return std::nullopt;
+    }
+    const auto instance = at.attribute("instance").as_int(0);
+    if (instance != 0) {
+        report.fault(at, "instance " + std::to_string(instance) + " of " + in_quotes(word) +
+                             ", a value of another packet, is not supported");
+        return std::nullopt;
+    }
+    std::string member = word.substr(end);
+    std::ranges::replace(member, '/', '.');
+    return Reference{parameters_.at(symbol->path), std::move(member)};
+}
+
+Condition ModelParts::comparison(const std::string& scope, pugi::xml_node element) const {
+    Condition condition{.form = Condition::Form::unknown};
+    const auto found = parameter(scope, element, "parameterRef");
+    const auto op = operator_of(element.attribute("comparisonOperator").value());
+    if (!op) report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
+    if (!found || !op) return condition;
+    condition.form = Condition::Form::compare;
+    condition.parameter = found->parameter;
+    condition.member = found->member;
+    condition.op = *op;
+    condition.calibrated = element.attribute("useCalibratedValue").as_bool(true);
+    condition.value = element.attribute("value").value();
+    return condition;
+}
+
+/// Condition of a BooleanExpression: a parameter, an operator, a value.
+Condition ModelParts::condition_element(const std::string& scope, pugi::xml_node element) const {
+    Condition condition{.form = Condition::Form::unknown};
+    const pugi::xml_node reference = element.child("ParameterInstanceRef");
+    if (!element.child("Value") || reference.next_sibling("ParameterInstanceRef")) {
+        report.fault(element, "a comparison of two parameters is not supported");
+        return condition;
+    }
+    const auto found = parameter(scope, reference, "parameterRef");
+    const auto op = operator_of(element.child("ComparisonOperator").text().as_string());
+    if (!op) report.fault(element, "its operator is unknown");
+    if (!found || !op) return condition;
+    condition.form = Condition::Form::compare;
+    condition.parameter = found->parameter;
+    condition.member = found->member;
+    condition.op = *op;
+    condition.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
+    condition.value = element.child("Value").text().as_string();
+    return condition;
+}
+
+Condition ModelParts::part(const std::string& scope, pugi::xml_node element, unsigned depth) const {
+    const std::string_view name = element.name();
+    if (name == "Comparison") return comparison(scope, element);
+    if (name == "Condition") return condition_element(scope, element);
+    const bool any = name == "ORedConditions";
+    if (!any && name != "ANDedConditions" && name != "ComparisonList" && name != "BooleanExpression") {
+        report.fault(element, std::string{name} + " is not supported as a condition: it is taken as false");
+        return {.form = Condition::Form::unknown};
+    }
+    if (depth == condition_depth_max) {
+        report.fault(element, "conditions are nested deeper than " + std::to_string(condition_depth_max));
+        return {.form = Condition::Form::unknown};
+    }
+    Condition condition{.form = any ? Condition::Form::any : Condition::Form::all};
+    for (const pugi::xml_node child : element.children())
+        if (child.type() == pugi::node_element) condition.parts.push_back(part(scope, child, depth + 1));
+    return condition;
+}
+
+Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent) const {
+    for (const pugi::xml_node child : parent.children())
+        if (child.type() == pugi::node_element) return part(scope, child, 0);
+    return {};
+}
+
+Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const {
+    Amount unknown;
+    unknown.known = false;
+    pugi::xml_node fixed = parent.child("FixedValue");
+    if (!fixed) fixed = parent.child("Fixed").child("FixedValue");
+    if (fixed) {
+        const auto value = to_number(fixed.text().as_string());
+        if (value) return Amount::fixed(*value);
+        report.fault(fixed, in_quotes(fixed.text().as_string()) + " is not a number");
+        return unknown;
+    }
+    if (const pugi::xml_node dynamic = parent.child("DynamicValue")) {
+        const pugi::xml_node reference = dynamic.child("ParameterInstanceRef");
+        const auto found = parameter(scope, reference, "parameterRef");
+        if (!found) return unknown;
+        const pugi::xml_node line = dynamic.child("LinearAdjustment");
+        Amount amount;
+        amount.parameter = found->parameter;
+        amount.member = found->member;
+        amount.calibrated = reference.attribute("useCalibratedValue").as_bool(true);
+        amount.slope = line.attribute("slope").as_double(1.0);
+        amount.intercept = line.attribute("intercept").as_double(0.0);
+        return amount;
+    }
+    if (const pugi::xml_node list = parent.child("DiscreteLookupList")) {
+        Amount amount;
+        for (const pugi::xml_node each : list.children("DiscreteLookup"))
+            amount.cases.push_back({condition(scope, each), each.attribute("value").as_double()});
+        return amount;
+    }
+    report.fault(parent, std::string{parent.name()} + " says no number that is supported");
+    return unknown;
+}
+
+std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list) {
+    std::vector<Amount> last;
+    for (const pugi::xml_node dimension : list.children("Dimension")) {
+        const pugi::xml_node start = dimension.child("StartingIndex");
+        if (start && std::string_view{start.child("FixedValue").text().as_string("0")} != "0")
+            parts.report.fault(start, "an array that does not begin at 0 is read as if it did");
+        last.push_back(parts.amount(scope, dimension.child("EndingIndex")));
+    }
+    return last;
+}
+
+std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings) {
+    const auto document = Document::parse(text, findings);
+    if (!document) return std::nullopt;
+    Reporter report{*document, findings};
+    const Symbols symbols{*document, report};
+    const ModelParts parts{symbols, report};
+    ModelTypes types{parts};
+    PacketModel model;
+    model.name = name_of(document->space_system());
+    for (const Symbol& symbol : symbols.all())
+        if (symbol.kind == Kind::parameter)
+            model.parameters.push_back(
+                {name_of(symbol.element), types.of(symbol.scope, symbol.element, "parameterTypeRef")});
+    model.containers = read_model_containers(parts);
+    model.types = std::move(types.types);
+    return model;
+}
+
+} // namespace aeolis::dictionary::xtce

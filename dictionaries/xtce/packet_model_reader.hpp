@@ -1,0 +1,72 @@
+#pragma once
+
+#include "dictionaries/xtce/packet_model.hpp"
+#include "dictionaries/xtce/symbols.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace aeolis::dictionary::xtce {
+
+/// What types and containers are made of: references, conditions, amounts. All that is not supported is a finding.
+class ModelParts {
+  public:
+    ModelParts(const Symbols& symbols, Reporter& report);
+
+    struct Reference {
+        std::size_t parameter = 0;
+        std::string member; ///< ".flags.valid" for "STATUS/flags/valid"
+    };
+    std::optional<Reference> parameter(const std::string& scope, pugi::xml_node at, const char* attribute) const;
+    /// The children of `parent`: Comparison, ComparisonList, BooleanExpression, or nothing.
+    Condition condition(const std::string& scope, pugi::xml_node parent) const;
+    /// The child of `parent`: FixedValue, Fixed, DynamicValue or DiscreteLookupList.
+    Amount amount(const std::string& scope, pugi::xml_node parent) const;
+
+    const Symbols& symbols;
+    Reporter& report;
+
+  private:
+    bool has_member(const Symbol& parameter, std::string_view path) const;
+    Condition part(const std::string& scope, pugi::xml_node element, unsigned depth) const;
+    Condition comparison(const std::string& scope, pugi::xml_node element) const;
+    Condition condition_element(const std::string& scope, pugi::xml_node element) const;
+
+    std::map<std::string, std::size_t> parameters_;
+};
+
+/// Reads types as they are asked for, since they refer to one another.
+class ModelTypes {
+  public:
+    explicit ModelTypes(const ModelParts& parts) : parts_(parts) {}
+
+    /// Index of the type; of one that is unknown when there is none of that name.
+    std::size_t of(const std::string& scope, pugi::xml_node at, const char* reference);
+
+    std::vector<PacketType> types;
+
+  private:
+    PacketType read(const Symbol& symbol);
+    void read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type);
+    void read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
+    void read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type);
+    void read_order(pugi::xml_node coding, Coding& into);
+    void read_calibrations(const Symbol& symbol, pugi::xml_node coding, Coding& into);
+    Calibration calibration(pugi::xml_node calibrator);
+    void read_labels(pugi::xml_node element, PacketType& type);
+    void read_time(const Symbol& symbol, PacketType& type);
+    void read_members(const Symbol& symbol, PacketType& type);
+
+    const ModelParts& parts_;
+    std::map<std::string, std::size_t> by_path_;
+    unsigned depth_ = 0;
+};
+
+std::vector<PacketContainer> read_model_containers(const ModelParts& parts);
+
+/// One at most for each dimension: DimensionList, or those that the type counts.
+std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list);
+
+} // namespace aeolis::dictionary::xtce

@@ -1,0 +1,261 @@
+#include "dictionaries/words.hpp"
+#include "dictionaries/xtce/packet_model_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace aeolis::dictionary::xtce {
+namespace {
+
+constexpr unsigned type_depth_max = 16;       // ours: types within types, and types of types
+constexpr std::int64_t exponent_max = 32;     // ours: of a polynomial
+constexpr std::size_t label_values_max = 1U << 20U;
+
+PacketType::Kind model_kind_of(std::string_view element) {
+    using enum PacketType::Kind;
+    if (element == "IntegerParameterType") return integer;
+    if (element == "FloatParameterType") return real;
+    if (element == "EnumeratedParameterType") return enumerated;
+    if (element == "BooleanParameterType") return boolean;
+    if (element == "StringParameterType") return text;
+    if (element == "BinaryParameterType") return octets;
+    if (element == "AbsoluteTimeParameterType" || element == "RelativeTimeParameterType") return time;
+    if (element == "AggregateParameterType") return aggregate;
+    if (element == "ArrayParameterType") return array;
+    return unknown;
+}
+
+std::optional<Coding::Form> integer_form(std::string_view word) {
+    using enum Coding::Form;
+    if (word.empty() || word == "unsigned") return unsigned_integer;
+    if (word == "twosComplement" || word == "twosCompliment") return twos_complement;
+    if (word == "onesComplement" || word == "onesCompliment") return ones_complement;
+    if (word == "signMagnitude") return sign_and_magnitude;
+    if (word == "BCD" || word == "packedBCD") return bcd;
+    return std::nullopt;
+}
+
+std::optional<Coding::Form> real_form(std::string_view word, std::int64_t bits) {
+    if (word.empty() || word == "IEEE754_1985" || word == "IEEE754")
+        return bits == 16 || bits == 32 || bits == 64 ? std::optional{Coding::Form::ieee754} : std::nullopt;
+    if (word == "MILSTD_1750A" || word == "MIL-1750A")
+        return bits == 32 ? std::optional{Coding::Form::mil1750a} : std::nullopt;
+    return std::nullopt;
+}
+
+} // namespace
+
+std::size_t ModelTypes::of(const std::string& scope, pugi::xml_node at, const char* reference) {
+    const std::string word = at.attribute(reference).value();
+    const Symbol* symbol = parts_.symbols.find(Kind::parameter_type, scope, word);
+    if (symbol == nullptr) {
+        parts_.report.fault(at, "there is no type " + in_quotes(word));
+        types.push_back({.name = word, .line = parts_.report.line(at)});
+        return types.size() - 1;
+    }
+    if (const auto found = by_path_.find(symbol->path); found != by_path_.end()) return found->second;
+    const std::size_t index = types.size();
+    types.push_back({.name = name_of(symbol->element), .line = parts_.report.line(symbol->element)});
+    by_path_.emplace(symbol->path, index);
+    if (depth_ == type_depth_max) {
+        parts_.report.fault(symbol->element, "types are nested deeper than " + std::to_string(type_depth_max));
+        return index;
+    }
+    ++depth_;
+    PacketType type = read(*symbol);
+    --depth_;
+    types[index] = std::move(type);
+    return index;
+}
+
+PacketType ModelTypes::read(const Symbol& symbol) {
+    const pugi::xml_node element = symbol.element;
+    PacketType type;
+    if (element.attribute("baseType")) type = types[of(symbol.scope, element, "baseType")];
+    type.name = name_of(element);
+    type.line = parts_.report.line(element);
+    type.kind = model_kind_of(element.name());
+    switch (type.kind) {
+    case PacketType::Kind::unknown:
+        parts_.report.fault(element, std::string{element.name()} + " is unknown or not supported");
+        return type;
+    case PacketType::Kind::aggregate:
+        read_members(symbol, type);
+        return type;
+    case PacketType::Kind::array:
+        type.element = of(symbol.scope, element, "arrayTypeRef");
+        type.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
+        return type;
+    case PacketType::Kind::time:
+        read_time(symbol, type);
+        return type;
+    case PacketType::Kind::enumerated:
+        read_labels(element, type);
+        break;
+    case PacketType::Kind::boolean:
+        type.zero = element.attribute("zeroStringValue").as_string(type.zero.c_str());
+        type.one = element.attribute("oneStringValue").as_string(type.one.c_str());
+        break;
+    default:
+        break;
+    }
+    read_coding(symbol, element, type);
+    return type;
+}
+
+void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, PacketType& type) {
+    for (const char* name : {"IntegerDataEncoding", "FloatDataEncoding"})
+        if (const pugi::xml_node coding = holder.child(name)) return read_number(symbol, coding, type);
+    if (const pugi::xml_node coding = holder.child("StringDataEncoding")) return read_text(symbol, coding, type);
+    if (const pugi::xml_node coding = holder.child("BinaryDataEncoding")) {
+        type.coding.form = Coding::Form::octets;
+        type.coding.bits = parts_.amount(symbol.scope, coding.child("SizeInBits"));
+        for (const char* algorithm : {"FromBinaryTransformAlgorithm", "ToBinaryTransformAlgorithm"})
+            if (const pugi::xml_node found = coding.child(algorithm))
+                parts_.report.fault(found, std::string{algorithm} + " is not supported: the octets are given as they are");
+        return;
+    }
+    if (symbol.element.attribute("baseType")) return; // that of its base
+    parts_.report.fault(holder, "type " + in_quotes(type.name) + " has no data encoding that is supported");
+    type.kind = PacketType::Kind::unknown;
+}
+
+void ModelTypes::read_number(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
+    const bool real = std::string_view{coding.name()} == "FloatDataEncoding";
+    const auto bits = coding.attribute("sizeInBits") ? parts_.report.integer(coding, "sizeInBits", 1, 64)
+                                                     : std::optional<std::int64_t>{real ? 32 : 8};
+    const std::string_view word = coding.attribute("encoding").value();
+    const auto form = real ? real_form(word, bits.value_or(0)) : integer_form(word);
+    if (!form)
+        parts_.report.fault(coding, "encoding " + in_quotes(word) + " of " + std::to_string(bits.value_or(0)) +
+                                        " bits is not supported");
+    // Its size is known all the same: what stands behind it can be read.
+    type.coding.form = form.value_or(Coding::Form::octets);
+    if (!form) type.kind = PacketType::Kind::octets;
+    if (!bits) type.kind = PacketType::Kind::unknown;
+    type.coding.bits = Amount::fixed(static_cast<double>(bits.value_or(0)));
+    read_order(coding, type.coding);
+    read_calibrations(symbol, coding, type.coding);
+    if (type.coding.least_significant_octet_first && bits.value_or(0) % 8 != 0)
+        parts_.report.fault(coding, "least significant octet first is not supported for " +
+                                        std::to_string(bits.value_or(0)) + " bits");
+}
+
+void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
+    const std::string_view bit_order = coding.attribute("bitOrder").value();
+    into.least_significant_bit_first = bit_order == "leastSignificantBitFirst";
+    const std::string_view order = coding.attribute("byteOrder").value();
+    into.least_significant_octet_first = order == "leastSignificantByteFirst";
+    if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst")
+        parts_.report.fault(coding, "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
+    // 1.0 and 1.1 list the octets, each with its significance.
+    std::vector<int> significances;
+    for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
+        significances.push_back(each.attribute("byteSignificance").as_int());
+    if (significances.size() < 2) return;
+    if (std::ranges::is_sorted(significances))
+        into.least_significant_octet_first = true;
+    else if (!std::ranges::is_sorted(significances, std::ranges::greater{}))
+        parts_.report.fault(coding, "octets in mixed order are not supported: most significant first is taken");
+}
+
+void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketType& type) {
+    type.coding.form = Coding::Form::text;
+    const std::string_view characters = coding.attribute("encoding").as_string("UTF-8");
+    if (characters != "UTF-8" && characters != "US-ASCII" && characters != "ISO-8859-1")
+        parts_.report.fault(coding, "characters in " + in_quotes(characters) + " are given as they are");
+    pugi::xml_node size = coding.child("SizeInBits");
+    const pugi::xml_node variable = coding.child("Variable");
+    if (!size) size = variable;
+    type.coding.bits = Amount::fixed(variable.attribute("maxSizeInBits").as_double(8.0 * 65536));
+    type.coding.boxed =
+        size.child("Fixed") || size.child("FixedValue") || size.child("DynamicValue") || size.child("DiscreteLookupList");
+    if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
+    if (const pugi::xml_node leading = size.child("LeadingSize"))
+        type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);
+    if (const pugi::xml_node end = size.child("TerminationChar")) {
+        const auto octet = to_integer("0x" + std::string{end.text().as_string("00")});
+        if (octet && *octet >= 0 && *octet <= 255)
+            type.coding.terminator = static_cast<std::uint8_t>(*octet);
+        else
+            parts_.report.fault(end, "a termination of " + in_quotes(end.text().as_string()) + " is not supported");
+    }
+    if (type.coding.leading_size_bits > 64) {
+        parts_.report.fault(size, "a leading size of more than 64 bits is not supported");
+        type.kind = PacketType::Kind::unknown;
+    }
+    if (!size) {
+        parts_.report.fault(coding, "type " + in_quotes(type.name) + " does not say how long its text is");
+        type.kind = PacketType::Kind::unknown;
+    }
+}
+
+void ModelTypes::read_calibrations(const Symbol& symbol, pugi::xml_node coding, Coding& into) {
+    if (const pugi::xml_node calibrator = coding.child("DefaultCalibrator")) into.calibration = calibration(calibrator);
+    for (const pugi::xml_node each : coding.child("ContextCalibratorList").children("ContextCalibrator"))
+        into.contexts.push_back(
+            {parts_.condition(symbol.scope, each.child("ContextMatch")), calibration(each.child("Calibrator"))});
+}
+
+Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
+    Calibration result;
+    if (const pugi::xml_node polynomial = calibrator.child("PolynomialCalibrator")) {
+        for (const pugi::xml_node term : polynomial.children("Term")) {
+            const auto exponent = parts_.report.integer(term, "exponent", 0, exponent_max);
+            const auto coefficient = parts_.report.number(term, "coefficient");
+            if (!exponent || !coefficient) continue;
+            const auto power = static_cast<std::size_t>(*exponent);
+            if (result.polynomial.size() <= power) result.polynomial.resize(power + 1, 0.0);
+            result.polynomial[power] += *coefficient;
+        }
+        return result;
+    }
+    if (const pugi::xml_node spline = calibrator.child("SplineCalibrator")) {
+        for (const pugi::xml_node point : spline.children("SplinePoint")) {
+            const auto raw = parts_.report.number(point, "raw");
+            const auto calibrated = parts_.report.number(point, "calibrated");
+            if (raw && calibrated) result.spline.emplace_back(*raw, *calibrated);
+        }
+        std::ranges::sort(result.spline);
+        const int order = spline.attribute("order").as_int(1);
+        result.flat = order == 0;
+        if (order > 1) parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
+        return result;
+    }
+    parts_.report.fault(calibrator, "a calibrator that is neither polynomial nor spline is not supported: values stay raw");
+    return result;
+}
+
+void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
+    for (const pugi::xml_node entry : element.child("EnumerationList").children("Enumeration")) {
+        const auto first = to_integer(entry.attribute("value").value());
+        const auto last = entry.attribute("maxValue") ? to_integer(entry.attribute("maxValue").value()) : first;
+        if (!first || !last || *last < *first) {
+            parts_.report.fault(entry, "its value is not a whole number");
+            continue;
+        }
+        if (type.labels.size() < label_values_max) type.labels.push_back({*first, *last, entry.attribute("label").value()});
+    }
+}
+
+void ModelTypes::read_time(const Symbol& symbol, PacketType& type) {
+    const pugi::xml_node encoding = symbol.element.child("Encoding");
+    const std::string_view units = encoding.attribute("units").as_string("seconds");
+    if (units != "seconds")
+        parts_.report.fault(encoding, "time in " + in_quotes(units) + " is given as it is, without offset and scale");
+    else {
+        type.time_offset_s = encoding.attribute("offset").as_double(0.0);
+        type.time_scale_s = encoding.attribute("scale").as_double(1.0);
+    }
+    read_coding(symbol, encoding ? encoding : symbol.element, type);
+    if (type.kind == PacketType::Kind::time && type.coding.form == Coding::Form::octets)
+        parts_.report.fault(encoding, "a time that is no number is given as its octets");
+}
+
+void ModelTypes::read_members(const Symbol& symbol, PacketType& type) {
+    for (const pugi::xml_node member : symbol.element.child("MemberList").children("Member"))
+        type.members.push_back({name_of(member), of(symbol.scope, member, member.attribute("typeRef") ? "typeRef" : "parameterTypeRef")});
+}
+
+} // namespace aeolis::dictionary::xtce

@@ -1,0 +1,397 @@
+#include "telemetry/container_decoder.hpp"
+
+#include "common/bytes.hpp"
+#include "dictionaries/words.hpp"
+#include "telemetry/raw_number.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace aeolis::telemetry {
+namespace {
+
+using namespace dictionary::xtce;
+
+constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max; // entries read, of a packet
+
+/// A number to compare and compute with; none for text and octets.
+std::optional<long double> number_of(const Datum& datum) {
+    if (const auto* value = std::get_if<std::uint64_t>(&datum)) return *value;
+    if (const auto* value = std::get_if<std::int64_t>(&datum)) return *value;
+    if (const auto* value = std::get_if<double>(&datum)) return *value;
+    return std::nullopt;
+}
+
+template <typename Left, typename Right>
+bool compared(const Left& left, Condition::Operator op, const Right& right) {
+    switch (op) {
+    case Condition::Operator::equal:
+        return left == right;
+    case Condition::Operator::not_equal:
+        return left != right;
+    case Condition::Operator::less:
+        return left < right;
+    case Condition::Operator::less_or_equal:
+        return left <= right;
+    case Condition::Operator::greater:
+        return left > right;
+    case Condition::Operator::greater_or_equal:
+        return left >= right;
+    }
+    return false;
+}
+
+std::optional<long double> compared_number(const std::string& word) {
+    if (const auto whole = dictionary::to_integer(word)) return *whole;
+    if (const auto number = dictionary::to_number(word)) return *number;
+    return std::nullopt;
+}
+
+Datum defined(double value) { return std::isfinite(value) ? Datum{value} : Datum{}; }
+
+Datum calibrated_by(const Calibration& calibration, double raw) {
+    if (!calibration.polynomial.empty()) {
+        double sum = 0.0;
+        for (auto term = calibration.polynomial.rbegin(); term != calibration.polynomial.rend(); ++term)
+            sum = sum * raw + *term;
+        return defined(sum);
+    }
+    const auto& points = calibration.spline;
+    const auto above = std::ranges::upper_bound(points, raw, {}, [](const auto& point) { return point.first; });
+    if (above == points.begin()) return {};
+    const auto below = std::prev(above);
+    if (raw == below->first || calibration.flat) return defined(below->second);
+    if (above == points.end()) return {};
+    const double part = (raw - below->first) / (above->first - below->first);
+    return defined(below->second + part * (above->second - below->second));
+}
+
+/// The reading of one packet.
+class Reading {
+  public:
+    Reading(const PacketModel& model, std::span<const std::uint8_t> packet)
+        : model_(model), packet_(packet), latest_(model.parameters.size()) {}
+
+    /// False when the packet cannot be read on.
+    bool read_container(const PacketContainer& container, std::size_t start_bits, unsigned depth) {
+        if (depth == ContainerDecoder::depth_max) return stop("containers are nested too deep", container.line);
+        for (const PacketEntry& entry : container.entries)
+            if (!read_entry(container, entry, start_bits, depth)) return false;
+        return true;
+    }
+
+    bool holds(const Condition& condition) const {
+        const auto part_holds = [&](const Condition& part) { return holds(part); };
+        switch (condition.form) {
+        case Condition::Form::always:
+            return true;
+        case Condition::Form::all:
+            return std::ranges::all_of(condition.parts, part_holds);
+        case Condition::Form::any:
+            return std::ranges::any_of(condition.parts, part_holds);
+        case Condition::Form::compare:
+            return compare(condition);
+        case Condition::Form::unknown:
+            break;
+        }
+        return false;
+    }
+
+    DecodedContents contents;
+
+  private:
+    /// Where the last value of a parameter stands: several, when it is composed.
+    struct Latest {
+        std::size_t first = 0;
+        std::size_t count = 0;
+        std::string name;
+    };
+
+    bool stop(const std::string& why, unsigned line) {
+        contents.problem = why + " (line " + std::to_string(line) + ")";
+        return false;
+    }
+
+    const DecodedValue* value_of(std::size_t parameter, const std::string& member) const {
+        const Latest& latest = latest_[parameter];
+        const auto values = std::span{contents.values}.subspan(latest.first, latest.count);
+        if (member.empty()) return values.empty() ? nullptr : values.data();
+        const auto found = std::ranges::find(values, latest.name + member, &DecodedValue::name);
+        return found == values.end() ? nullptr : &*found;
+    }
+
+    bool compare(const Condition& condition) const {
+        const DecodedValue* value = value_of(condition.parameter, condition.member);
+        if (value == nullptr) return false;
+        const Datum& datum = condition.calibrated ? value->calibrated : value->raw;
+        const auto wanted = compared_number(condition.value);
+        if (const auto* text = std::get_if<std::string>(&datum)) {
+            const auto raw = number_of(value->raw);
+            // Some files compare a label by its number.
+            if (*text != condition.value && wanted && raw) return compared(*raw, condition.op, *wanted);
+            return compared(*text, condition.op, condition.value);
+        }
+        const auto number = number_of(datum);
+        return number && wanted && compared(*number, condition.op, *wanted);
+    }
+
+    /// A whole number of at most 2^40; none when it cannot be known, is negative or no number.
+    std::optional<std::size_t> evaluate(const Amount& amount) const {
+        double value = amount.intercept;
+        if (!amount.cases.empty()) {
+            const auto found = std::ranges::find_if(amount.cases, [&](const auto& each) { return holds(each.when); });
+            if (found == amount.cases.end()) return std::nullopt;
+            value = found->value;
+        } else if (amount.parameter) {
+            const DecodedValue* known = value_of(*amount.parameter, amount.member);
+            if (known == nullptr) return std::nullopt;
+            auto number = number_of(amount.calibrated ? known->calibrated : known->raw);
+            if (!number) number = number_of(known->raw);
+            if (!number) return std::nullopt;
+            value = amount.slope * static_cast<double>(*number) + amount.intercept;
+        }
+        constexpr double most = 1099511627776.0;
+        if (!amount.known || !(value >= 0.0) || value > most || value != std::floor(value)) return std::nullopt;
+        return static_cast<std::size_t>(value);
+    }
+
+    bool read_entry(const PacketContainer& container, const PacketEntry& entry, std::size_t start_bits, unsigned depth) {
+        if (++steps_ > steps_max) return stop("it has more entries than a packet may", entry.line);
+        if (!holds(entry.when)) return true;
+        const std::string where = "an entry of " + container.name;
+        if (entry.what == PacketEntry::What::unknown) return stop(where + " is not supported", entry.line);
+        const auto offset = evaluate(entry.offset_bits);
+        const auto count = evaluate(entry.count);
+        const auto gap = evaluate(entry.gap_bits);
+        if (!offset || !count || !gap) return stop(where + " has a location or a count that cannot be known", entry.line);
+        position_ = (entry.from == PacketEntry::From::container_start ? start_bits : position_) + *offset;
+        const bool repeated = entry.count.parameter || !entry.count.cases.empty() || entry.count.intercept != 1.0;
+        for (std::size_t i = 0; i < *count; ++i) {
+            if (i > 0) position_ += *gap;
+            // What takes no room could be repeated for ever.
+            if (++steps_ > steps_max) return stop("it repeats more than a packet may", entry.line);
+            const std::string suffix = repeated ? "[" + std::to_string(i) + "]" : "";
+            if (!read_once(entry, suffix, depth)) return false;
+        }
+        return true;
+    }
+
+    bool read_once(const PacketEntry& entry, const std::string& suffix, unsigned depth) {
+        if (entry.what == PacketEntry::What::container)
+            return read_container(model_.containers[entry.index], position_, depth + 1);
+        const PacketParameter& parameter = model_.parameters[entry.index];
+        const std::size_t before = contents.values.size();
+        const PacketType& type = model_.types[parameter.type];
+        const std::string name = parameter.name + suffix;
+        const bool read = type.kind == PacketType::Kind::array && !entry.last_indices.empty()
+                              ? read_array(type, entry.last_indices, name, depth + 1)
+                              : read_type(type, name, depth + 1);
+        latest_[entry.index] = {before, contents.values.size() - before, name};
+        return read;
+    }
+
+    bool read_type(const PacketType& type, const std::string& name, unsigned depth) {
+        if (depth >= 2 * ContainerDecoder::depth_max) return stop("types are nested too deep", type.line);
+        if (contents.values.size() >= ContainerDecoder::values_max)
+            return stop("there are more values than a packet may have", type.line);
+        switch (type.kind) {
+        case PacketType::Kind::unknown:
+            return stop("the type of " + name + " is not supported", type.line);
+        case PacketType::Kind::aggregate:
+            for (const auto& member : type.members)
+                if (!read_type(model_.types[member.type], name + "." + member.name, depth + 1)) return false;
+            return true;
+        case PacketType::Kind::array:
+            return read_array(type, type.last_indices, name, depth + 1);
+        default:
+            break;
+        }
+        if (type.coding.form == Coding::Form::text) return read_text(type, name);
+        const auto bits = evaluate(type.coding.bits);
+        if (!bits) return stop("the size of " + name + " cannot be known", type.line);
+        if (!has(*bits)) return cut(name, *bits, type.line);
+        if (type.coding.form == Coding::Form::octets) return read_octets(name, *bits);
+        return read_number(type, name, static_cast<unsigned>(*bits));
+    }
+
+    bool read_array(const PacketType& type, const std::vector<Amount>& last_indices, const std::string& name,
+                    unsigned depth) {
+        if (last_indices.empty()) return stop("the dimensions of " + name + " are not known", type.line);
+        std::vector<std::size_t> sizes;
+        std::size_t elements = 1;
+        for (const Amount& last : last_indices) {
+            const auto index = evaluate(last);
+            if (!index) return stop("the dimensions of " + name + " cannot be known", type.line);
+            sizes.push_back(*index + 1);
+            if (sizes.back() > ContainerDecoder::values_max / elements)
+                return stop("there are more values than a packet may have", type.line);
+            elements *= sizes.back();
+        }
+        for (std::size_t i = 0; i < elements; ++i) {
+            std::string indices;
+            std::size_t left = i;
+            for (auto size = sizes.rbegin(); size != sizes.rend(); left /= *size++)
+                indices.insert(0, "[" + std::to_string(left % *size) + "]");
+            if (!read_type(model_.types[type.element], name + indices, depth + 1)) return false;
+        }
+        return true;
+    }
+
+    bool has(std::size_t bits) const {
+        return position_ <= packet_.size() * 8 && bits <= packet_.size() * 8 - position_;
+    }
+    bool cut(const std::string& name, std::size_t bits, unsigned line) {
+        return stop("the packet ends before " + name + ": " + std::to_string(bits) + " bits at bit " +
+                        std::to_string(position_) + " of " + std::to_string(packet_.size() * 8),
+                    line);
+    }
+
+    std::vector<std::uint8_t> take_octets(std::size_t bits) {
+        std::vector<std::uint8_t> octets;
+        octets.reserve((bits + 7) / 8);
+        for (; bits > 0; position_ += std::min<std::size_t>(bits, 8), bits -= std::min<std::size_t>(bits, 8))
+            octets.push_back(static_cast<std::uint8_t>(
+                read_bits(packet_, position_, static_cast<unsigned>(std::min<std::size_t>(bits, 8)))));
+        return octets;
+    }
+
+    bool read_octets(const std::string& name, std::size_t bits) {
+        const Datum octets = take_octets(bits);
+        contents.values.push_back({name, octets, octets});
+        return true;
+    }
+
+    bool read_number(const PacketType& type, const std::string& name, unsigned bits) {
+        if (bits == 0 || bits > 64) return stop(name + " is a number of " + std::to_string(bits) + " bits", type.line);
+        const std::uint64_t field = read_bits(packet_, position_, bits);
+        position_ += bits;
+        Datum raw = std::visit([](auto value) -> Datum { return value; }, number_in(field, bits, type.coding));
+        if (const auto* real = std::get_if<double>(&raw); real != nullptr && !std::isfinite(*real)) {
+            contents.values.push_back({name, field, {}});
+            return true;
+        }
+        Datum calibrated = calibrated_value(type, raw);
+        if (type.kind == PacketType::Kind::time && !contents.time_s)
+            if (const auto* time_s = std::get_if<double>(&calibrated)) contents.time_s = *time_s;
+        contents.values.push_back({name, std::move(raw), std::move(calibrated)});
+        return true;
+    }
+
+    Datum calibrated_value(const PacketType& type, const Datum& raw) const {
+        const long double number = number_of(raw).value_or(0);
+        if (type.kind == PacketType::Kind::boolean) return number == 0 ? type.zero : type.one;
+        if (type.kind == PacketType::Kind::enumerated) {
+            const auto found = std::ranges::find_if(
+                type.labels, [&](const auto& label) { return number >= label.first && number <= label.last; });
+            return found == type.labels.end() ? raw : Datum{found->label};
+        }
+        const auto context = std::ranges::find_if(type.coding.contexts, [&](const auto& each) { return holds(each.when); });
+        const Calibration& calibration =
+            context == type.coding.contexts.end() ? type.coding.calibration : context->calibration;
+        Datum value = calibration.empty() ? raw : calibrated_by(calibration, static_cast<double>(number));
+        if (type.kind != PacketType::Kind::time) return value;
+        const auto time = number_of(value);
+        return time ? defined(type.time_offset_s + type.time_scale_s * static_cast<double>(*time)) : Datum{};
+    }
+
+    bool read_text(const PacketType& type, const std::string& name) {
+        const Coding& coding = type.coding;
+        auto bits = evaluate(coding.bits);
+        if (!bits) return stop("the size of " + name + " cannot be known", type.line);
+        if (coding.boxed && !has(*bits)) return cut(name, *bits, type.line);
+        const std::size_t end = position_ + *bits;
+        std::size_t terminator_bits = 0;
+        if (coding.leading_size_bits > 0) {
+            if (!has(coding.leading_size_bits)) return cut(name, coding.leading_size_bits, type.line);
+            const std::uint64_t size = read_bits(packet_, position_, coding.leading_size_bits);
+            position_ += coding.leading_size_bits;
+            if (size > *bits || !has(size)) return cut(name, size, type.line);
+            bits = size;
+        } else if (coding.terminator) {
+            std::size_t length = 0;
+            while (length + 8 <= *bits && has(length + 8) &&
+                   read_bits(packet_, position_ + length, 8) != *coding.terminator)
+                length += 8;
+            const bool ends = length + 8 <= *bits && has(length + 8);
+            bits = length;
+            terminator_bits = ends ? 8 : 0;
+        }
+        if (!has(*bits)) return cut(name, *bits, type.line);
+        auto octets = take_octets(*bits);
+        position_ = coding.boxed ? end : position_ + terminator_bits;
+        const std::size_t kept = octets.size() - static_cast<std::size_t>(std::ranges::find_if(
+            octets.rbegin(), octets.rend(), [](std::uint8_t octet) { return octet != 0; }) - octets.rbegin());
+        std::string text{octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(kept)};
+        contents.values.push_back({name, std::move(octets), std::move(text)});
+        return true;
+    }
+
+    const PacketModel& model_;
+    std::span<const std::uint8_t> packet_;
+    std::vector<Latest> latest_; ///< by parameter
+    std::size_t position_ = 0;
+    std::size_t steps_ = 0;
+};
+
+} // namespace
+
+std::string datum_text(const Datum& datum) {
+    if (const auto* value = std::get_if<std::uint64_t>(&datum)) return std::to_string(*value);
+    if (const auto* value = std::get_if<std::int64_t>(&datum)) return std::to_string(*value);
+    if (const auto* value = std::get_if<std::string>(&datum)) return *value;
+    if (const auto* value = std::get_if<double>(&datum)) {
+        std::array<char, 32> text{};
+        const auto end = std::to_chars(text.data(), text.data() + text.size(), *value);
+        return {text.data(), end.ptr};
+    }
+    if (const auto* value = std::get_if<std::vector<std::uint8_t>>(&datum)) {
+        constexpr const char* digits = "0123456789abcdef";
+        std::string text;
+        text.reserve(value->size() * 2);
+        for (const std::uint8_t octet : *value) {
+            text += digits[octet >> 4];
+            text += digits[octet & 15];
+        }
+        return text;
+    }
+    return "undefined";
+}
+
+ContainerDecoder::ContainerDecoder(const PacketModel& model) : model_(model), derived_(model.containers.size()) {
+    std::vector<bool> part_of_other(model.containers.size(), false);
+    for (std::size_t i = 0; i < model.containers.size(); ++i) {
+        if (model.containers[i].base) derived_[*model.containers[i].base].push_back(i);
+        for (const PacketEntry& entry : model.containers[i].entries)
+            if (entry.what == PacketEntry::What::container) part_of_other[entry.index] = true;
+    }
+    for (std::size_t i = 0; i < model.containers.size(); ++i)
+        if (!model.containers[i].base && !part_of_other[i]) roots_.push_back(i);
+}
+
+DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) const {
+    std::optional<DecodedContents> best;
+    for (const std::size_t root : roots_) {
+        Reading reading{model_, packet};
+        std::size_t at = root;
+        bool readable = reading.read_container(model_.containers[at], 0, 0);
+        while (readable) {
+            const auto next =
+                std::ranges::find_if(derived_[at], [&](std::size_t each) { return reading.holds(model_.containers[each].when); });
+            if (next == derived_[at].end()) break;
+            at = *next;
+            readable = reading.read_container(model_.containers[at], 0, 0);
+        }
+        const PacketContainer& last = model_.containers[at];
+        reading.contents.container = last.name;
+        if (readable && last.abstract) reading.contents.problem = "no container describes it: " + last.name + " is abstract";
+        const bool whole = reading.contents.problem.empty();
+        if (!best || whole || reading.contents.values.size() > best->values.size()) best = std::move(reading.contents);
+        if (whole) break;
+    }
+    if (best) return std::move(*best);
+    return {{}, {}, {}, "the XTCE file has no container to begin with"};
+}
+
+} // namespace aeolis::telemetry

@@ -1,0 +1,112 @@
+#include "telemetry/packet_source.hpp"
+
+#include "common/space_packet.hpp"
+
+#include <array>
+#include <utility>
+
+namespace aeolis::telemetry {
+
+std::optional<DownlinkFormat> downlink_format(std::string_view name) {
+    constexpr std::array<std::pair<std::string_view, DownlinkFormat>, 5> formats{{{"packets", DownlinkFormat::packets},
+                                                                                {"tm", DownlinkFormat::tm},
+                                                                                {"aos", DownlinkFormat::aos},
+                                                                                {"cadu", DownlinkFormat::cadu},
+                                                                                {"pltu", DownlinkFormat::pltu}}};
+    for (const auto& [word, format] : formats)
+        if (word == name) return format;
+    return std::nullopt;
+}
+
+std::optional<std::span<const std::uint8_t>> BarePackets::next() {
+    const auto rest = window_.rest();
+    if (rest.size() < prefix_octets_ + primary_header_octets || lost_) return std::nullopt;
+    const auto size = space_packet_octets(rest.subspan(prefix_octets_));
+    if (!size) {
+        lost_ = true;
+        return std::nullopt;
+    }
+    if (rest.size() < prefix_octets_ + *size) return std::nullopt;
+    window_.use(prefix_octets_ + *size);
+    ++counters_.packets;
+    return rest.subspan(prefix_octets_, *size);
+}
+
+void BarePackets::end() {
+    const std::size_t left = window_.rest().size();
+    counters_.unreadable_octets += left;
+    if (left > 0 && !lost_) ++counters_.cut_packets;
+    window_.use(left);
+    lost_ = true;
+}
+
+void PacketSource::take_from(BarePackets& packets) {
+    while (const auto packet = packets.next()) keep(*packet);
+}
+
+void PacketSource::take_from(Frames& frames) {
+    while (const auto received = frames.receiver.next()) {
+        PacketExtractor& channel =
+            frames.channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
+        channel.add(received->frame, received->missing_before > 0);
+        while (const auto packet = channel.next()) keep(*packet);
+    }
+}
+
+void PacketSource::take_from(Pltus& pltus) {
+    while (const auto received = pltus.receiver.next()) {
+        pltus.packets.add(*received);
+        while (const auto packet = pltus.packets.next()) keep(*packet);
+    }
+}
+
+void PacketSource::receive(std::span<const std::uint8_t> octets) {
+    if (auto* packets = std::get_if<BarePackets>(&source_)) {
+        packets->receive(octets);
+        take_from(*packets);
+    } else if (auto* frames = std::get_if<Frames>(&source_)) {
+        frames->receiver.receive(octets);
+        take_from(*frames);
+    } else if (auto* pltus = std::get_if<Pltus>(&source_)) {
+        pltus->receiver.receive(octets);
+        take_from(*pltus);
+    }
+}
+
+void PacketSource::end() {
+    if (auto* packets = std::get_if<BarePackets>(&source_)) packets->end();
+    if (auto* frames = std::get_if<Frames>(&source_)) frames->receiver.end();
+    if (auto* pltus = std::get_if<Pltus>(&source_)) {
+        pltus->receiver.end();
+        take_from(*pltus);
+    }
+}
+
+std::optional<std::span<const std::uint8_t>> PacketSource::next() {
+    if (whole_.empty()) return std::nullopt;
+    given_ = std::move(whole_.front());
+    whole_.pop_front();
+    return given_;
+}
+
+LinkCounters PacketSource::link() const {
+    if (const auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.counters();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->receiver.counters();
+    return {};
+}
+
+PacketCounters PacketSource::packets() const {
+    if (const auto* packets = std::get_if<BarePackets>(&source_)) return packets->counters();
+    if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->packets.counters();
+    PacketCounters sum;
+    if (const auto* frames = std::get_if<Frames>(&source_))
+        for (const auto& [id, channel] : frames->channels) {
+            sum.packets += channel.counters().packets;
+            sum.idle_packets += channel.counters().idle_packets;
+            sum.cut_packets += channel.counters().cut_packets;
+            sum.unreadable_octets += channel.counters().unreadable_octets;
+        }
+    return sum;
+}
+
+} // namespace aeolis::telemetry

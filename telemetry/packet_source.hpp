@@ -1,0 +1,78 @@
+#pragma once
+
+#include "telemetry/frame_receiver.hpp"
+#include "telemetry/proximity_packets.hpp"
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+enum class DownlinkFormat : std::uint8_t { packets, tm, aos, cadu, pltu };
+std::optional<DownlinkFormat> downlink_format(std::string_view name);
+
+/// Space packets one after another, each behind `prefix_octets` without meaning.
+///
+/// Faults   where no header stands it ends: there is no mark to find the next packet by
+class BarePackets {
+  public:
+    explicit BarePackets(std::size_t prefix_octets) : prefix_octets_(prefix_octets) {}
+    void receive(std::span<const std::uint8_t> octets) { window_.add(octets); }
+    std::optional<std::span<const std::uint8_t>> next();
+    /// Nothing more will come.
+    void end();
+    const PacketCounters& counters() const { return counters_; }
+
+  private:
+    std::size_t prefix_octets_;
+    OctetWindow window_;
+    PacketCounters counters_;
+    bool lost_ = false;
+};
+
+/// Space packets of any mission out of a stream in any of the formats.
+///
+/// In       octets as they come, in pieces of any size       Out   packets, in the order in which they are complete
+class PacketSource {
+  public:
+    static PacketSource of_packets(std::size_t prefix_octets) { return PacketSource{BarePackets{prefix_octets}}; }
+    static PacketSource of_frames(const FrameStream& stream) { return PacketSource{Frames{FrameReceiver{stream}, {}}}; }
+    static PacketSource of_pltus() { return PacketSource{Pltus{}}; }
+
+    void receive(std::span<const std::uint8_t> octets);
+    /// Nothing more will come; next() may give more.
+    void end();
+    /// The next packet; its octets are good until the next call of anything.
+    std::optional<std::span<const std::uint8_t>> next();
+
+    LinkCounters link() const;     ///< of frames; nothing for bare packets
+    PacketCounters packets() const;
+
+  private:
+    struct Frames {
+        FrameReceiver receiver;
+        std::map<std::uint32_t, PacketExtractor> channels; ///< by spacecraft and virtual channel
+    };
+    struct Pltus {
+        PltuReceiver receiver;
+        ProximityPackets packets;
+    };
+    using Source = std::variant<BarePackets, Frames, Pltus>;
+    explicit PacketSource(Source source) : source_(std::move(source)) {}
+    void take_from(Frames& frames);
+    void take_from(Pltus& pltus);
+    void take_from(BarePackets& packets);
+    void keep(std::span<const std::uint8_t> packet) { whole_.emplace_back(packet.begin(), packet.end()); }
+
+    Source source_;
+    std::deque<std::vector<std::uint8_t>> whole_;
+    std::vector<std::uint8_t> given_;
+};
+
+} // namespace aeolis::telemetry

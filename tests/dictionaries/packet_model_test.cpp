@@ -1,0 +1,98 @@
+#include "dictionaries/xtce/packet_model.hpp"
+#include "tests/support/catch.hpp"
+
+#include <algorithm>
+#include <string>
+
+using namespace aeolis::dictionary;
+using namespace aeolis::dictionary::xtce;
+
+namespace {
+
+struct Read {
+    std::vector<Finding> findings;
+    std::optional<PacketModel> model;
+    explicit Read(const std::string& text) {
+        Findings into{"t.xml", findings};
+        model = read_packet_model(text, into);
+    }
+    bool has(unsigned line, const std::string& words) const {
+        return std::ranges::any_of(findings, [&](const Finding& finding) {
+            return finding.line == line && finding.message.find(words) != std::string::npos;
+        });
+    }
+};
+
+std::string mission(const std::string& types) {
+    return "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>\n" + types +
+           "\n</ParameterTypeSet><ParameterSet><Parameter name='p' parameterTypeRef='t'/></ParameterSet>"
+           "</TelemetryMetaData></SpaceSystem>";
+}
+
+} // namespace
+
+TEST_CASE("the prefix that a file gives XTCE does not matter, and lines stay known", "[dictionary]") {
+    const Read read{"<x:SpaceSystem name='T' xmlns:x='http://www.omg.org/space/xtce'>\n<x:TelemetryMetaData>\n"
+                    "<x:ParameterTypeSet>\n<x:StrangeParameterType name='t'/>\n</x:ParameterTypeSet>\n"
+                    "<x:ParameterSet><x:Parameter name='p' parameterTypeRef='t'/></x:ParameterSet>\n"
+                    "</x:TelemetryMetaData></x:SpaceSystem>"};
+    REQUIRE(read.model);
+    CHECK(read.model->parameters.size() == 1);
+    CHECK(read.has(4, "StrangeParameterType is unknown or not supported"));
+}
+
+TEST_CASE("octet order is read as 1.2 and as 1.0 spell it", "[dictionary]") {
+    const Read newer{mission("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='16' "
+                             "byteOrder='leastSignificantByteFirst'/></IntegerParameterType>")};
+    CHECK(newer.model->types[0].coding.least_significant_octet_first);
+    const Read older{mission("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='16'><ByteOrderList>"
+                             "<Byte byteSignificance='0'/><Byte byteSignificance='1'/></ByteOrderList>"
+                             "</IntegerDataEncoding></IntegerParameterType>")};
+    CHECK(older.model->types[0].coding.least_significant_octet_first);
+    CHECK(newer.findings.empty());
+    CHECK(older.findings.empty());
+}
+
+TEST_CASE("a type takes from its base what it does not say itself", "[dictionary]") {
+    const Read read{mission("<EnumeratedParameterType name='t' baseType='b'/>"
+                            "<IntegerParameterType name='b'><IntegerDataEncoding sizeInBits='3'/></IntegerParameterType>")};
+    CHECK(read.findings.empty());
+    const auto& type = read.model->types[read.model->parameters[0].type];
+    CHECK(type.kind == PacketType::Kind::enumerated);
+    CHECK(type.coding.bits.intercept == 3.0);
+}
+
+TEST_CASE("each thing that is not supported is named with its line", "[dictionary]") {
+    const auto found = [](const std::string& types, const std::string& words) {
+        INFO(types);
+        CHECK(Read{mission(types)}.has(2, words));
+    };
+    found("<IntegerParameterType name='t'/>", "no data encoding");
+    found("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='99'/></IntegerParameterType>", "from 1 to 64");
+    found("<FloatParameterType name='t'><FloatDataEncoding encoding='IBM' sizeInBits='32'/></FloatParameterType>",
+          "'IBM' of 32 bits is not supported");
+    found("<BinaryParameterType name='t'><BinaryDataEncoding><SizeInBits/></BinaryDataEncoding></BinaryParameterType>",
+          "says no number");
+    found("<BinaryParameterType name='t'><BinaryDataEncoding><SizeInBits><DynamicValue><ParameterInstanceRef "
+          "parameterRef='gone'/></DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>",
+          "there is no parameter 'gone'");
+    found("<IntegerParameterType name='t'><IntegerDataEncoding><DefaultCalibrator><MathOperationCalibrator/>"
+          "</DefaultCalibrator></IntegerDataEncoding></IntegerParameterType>",
+          "neither polynomial nor spline");
+    found("<StringParameterType name='t'><StringDataEncoding/></StringParameterType>", "how long its text is");
+}
+
+TEST_CASE("types of types without end are refused, not followed", "[dictionary]") {
+    const Read base{mission("<IntegerParameterType name='t' baseType='t'/>")};
+    REQUIRE(base.model);
+    std::string chain;
+    for (int i = 0; i < 100; ++i)
+        chain += "<IntegerParameterType name='t" + (i == 0 ? std::string{} : std::to_string(i)) + "' baseType='t" +
+                 std::to_string(i + 1) + "'/>";
+    CHECK(Read{mission(chain)}.has(2, "nested deeper"));
+}
+
+TEST_CASE("what is no XTCE is refused", "[dictionary]") {
+    CHECK_FALSE(Read{"<Other/>"}.model);
+    CHECK_FALSE(Read{"not XML"}.model);
+}

@@ -1,0 +1,272 @@
+#include "telemetry/container_decoder.hpp"
+#include "telemetry/decommutator.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/octets.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+namespace xtce = aeolis::dictionary::xtce;
+
+namespace {
+
+/// A mission of few words: types, parameters "NAME TYPE", containers.
+struct Mission {
+    std::vector<dictionary::Finding> findings;
+    xtce::PacketModel model;
+
+    Mission(const std::string& types, const std::vector<std::pair<std::string, std::string>>& parameters,
+            const std::string& containers) {
+        std::string text = "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+                           "<IntegerParameterType name='u8'><IntegerDataEncoding sizeInBits='8'/></IntegerParameterType>"
+                           "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>" +
+                           types + "</ParameterTypeSet><ParameterSet>";
+        for (const auto& [name, type] : parameters)
+            text += "<Parameter name='" + name + "' parameterTypeRef='" + type + "'/>";
+        text += "</ParameterSet><ContainerSet>" + containers + "</ContainerSet></TelemetryMetaData></SpaceSystem>";
+        dictionary::Findings into{"t.xml", findings};
+        auto read = xtce::read_packet_model(text, into);
+        REQUIRE(read);
+        model = std::move(*read);
+    }
+    DecodedContents decode(std::string_view octets) const { return ContainerDecoder{model}.decode(test::hex(octets)); }
+};
+
+std::string container(const std::string& name, const std::string& entries, const std::string& base = "") {
+    return "<SequenceContainer name='" + name + "'><EntryList>" + entries + "</EntryList>" + base + "</SequenceContainer>";
+}
+std::string entry(const std::string& name, const std::string& inside = "") {
+    return "<ParameterRefEntry parameterRef='" + name + "'>" + inside + "</ParameterRefEntry>";
+}
+std::string base(const std::string& name, const std::string& criteria) {
+    return "<BaseContainer containerRef='" + name + "'><RestrictionCriteria>" + criteria +
+           "</RestrictionCriteria></BaseContainer>";
+}
+std::string when(const std::string& parameter, const std::string& op, const std::string& value) {
+    return "<Comparison parameterRef='" + parameter + "' comparisonOperator='" + op + "' value='" + value + "'/>";
+}
+
+/// "name=raw|calibrated" of each value, with blanks between.
+std::string text(const DecodedContents& contents) {
+    std::string all;
+    for (const auto& value : contents.values)
+        all += (all.empty() ? "" : " ") + value.name + "=" + datum_text(value.raw) + "|" + datum_text(value.calibrated);
+    return all;
+}
+
+const std::string dynamic_octets = "<BinaryParameterType name='rest'><BinaryDataEncoding><SizeInBits><DynamicValue>"
+                                   "<ParameterInstanceRef parameterRef='n'/><LinearAdjustment slope='8' intercept='-8'/>"
+                                   "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+
+} // namespace
+
+TEST_CASE("every packet of ours reads the same by its XTCE file as by the decommutator", "[telemetry]") {
+    std::ifstream in{AEOLIS_SOURCE_DIR "/dictionaries/msl/msl.xml"};
+    const std::string file{std::istreambuf_iterator<char>{in}, {}};
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"msl.xml", findings};
+    const auto model = xtce::read_packet_model(file, into);
+    REQUIRE(model);
+    CHECK(findings.empty());
+    const ContainerDecoder decoder{*model};
+    const auto& ours = tests::shipped_dictionary();
+    const Decommutator decommutator{ours};
+    std::mt19937 random{1};
+    Decoded decoded;
+    for (const auto& packet : ours.packets)
+        for (int round = 0; round < 5; ++round) {
+            auto octets = test::random_octets(random, packet.octets);
+            if (packet.event) {
+                octets[tm_data_offset_octets] = static_cast<std::uint8_t>(packet.event->value >> 8);
+                octets[tm_data_offset_octets + 1] = static_cast<std::uint8_t>(packet.event->value & 0xFF);
+            }
+            seal_tm_packet(octets, packet.apid, 1, Sclk{5.0}, ours.id);
+            REQUIRE_FALSE(decommutator.decode(octets, decoded));
+            const auto contents = decoder.decode(octets);
+            INFO(packet.name << ": " << contents.problem);
+            REQUIRE(contents.container == packet.name);
+            std::map<std::string, DecodedValue> by_name;
+            for (const auto& value : contents.values) by_name.emplace(value.name, value);
+            for (std::size_t i = 0; i < packet.fields.size(); ++i) {
+                const auto& field = packet.fields[i];
+                INFO(field.name);
+                REQUIRE(by_name.contains(field.name));
+                if (!decoded.value[i]) continue;
+                const Datum& raw = by_name.at(field.name).raw;
+                const Datum& calibrated = by_name.at(field.name).calibrated;
+                const bool label = std::holds_alternative<std::string>(calibrated);
+                const double value = std::visit(
+                    [](const auto& datum) {
+                        if constexpr (std::is_arithmetic_v<std::decay_t<decltype(datum)>>)
+                            return static_cast<double>(datum);
+                        else
+                            return -1.0;
+                    },
+                    label ? raw : calibrated);
+                REQUIRE(value == *decoded.value[i]);
+            }
+        }
+}
+
+TEST_CASE("octets whose number another value tells, and what stands behind them", "[telemetry]") {
+    const Mission mission{dynamic_octets, {{"n", "u8"}, {"data", "rest"}, {"after", "u8"}},
+                          container("P", entry("n") + entry("data") + entry("after"))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("04 a1b2c3 ff")) == "n=4|4 data=a1b2c3|a1b2c3 after=255|255");
+    CHECK(text(mission.decode("01 07")) == "n=1|1 data=| after=7|7");
+    CHECK(mission.decode("04 a1b2").problem.starts_with("the packet ends before data: 24 bits at bit 8 of 24"));
+    CHECK(mission.decode("00 07").problem.starts_with("the size of data cannot be known"));
+}
+
+TEST_CASE("the first derived container whose restriction holds goes on; none leaves the packet where it is", "[telemetry]") {
+    const Mission mission{
+        "",
+        {{"kind", "u8"}, {"a", "u8"}, {"b", "u16"}},
+        container("Root", entry("kind")) + container("One", entry("a"), base("Root", when("kind", "==", "1"))) +
+            container("Big", entry("b"),
+                      base("Root", "<BooleanExpression><ORedConditions><Condition><ParameterInstanceRef "
+                                   "parameterRef='kind'/><ComparisonOperator>&gt;=</ComparisonOperator><Value>0x10</Value>"
+                                   "</Condition></ORedConditions></BooleanExpression>"))};
+    CHECK(mission.findings.empty());
+    CHECK(mission.decode("01 05").container == "One");
+    CHECK(text(mission.decode("10 0102")) == "kind=16|16 b=258|258");
+    CHECK(mission.decode("05 0102").container == "Root");
+}
+
+TEST_CASE("entries repeat as often as told, are there only when their condition holds, and stand where told",
+          "[telemetry]") {
+    const std::string repeat = "<RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef='n'/></DynamicValue>"
+                               "</Count><Offset><FixedValue>8</FixedValue></Offset></RepeatEntry>";
+    const std::string include = "<IncludeCondition>" + when("n", "!=", "2") + "</IncludeCondition>";
+    const std::string at_start = "<LocationInContainerInBits referenceLocation='containerStart'><FixedValue>4</FixedValue>"
+                                 "</LocationInContainerInBits>";
+    const Mission mission{"", {{"n", "u8"}, {"a", "u8"}, {"b", "u8"}, {"c", "u8"}},
+                          container("P", entry("n") + entry("a", repeat) + entry("b", include) + entry("c", at_start))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("02 01ff02 99")) == "n=2|2 a[0]=1|1 a[1]=2|2 c=32|32");
+    CHECK(text(mission.decode("01 01 99")) == "n=1|1 a[0]=1|1 b=153|153 c=16|16");
+    CHECK(text(mission.decode("00 77")) == "n=0|0 b=119|119 c=7|7");
+}
+
+TEST_CASE("labels, flags, polynomials, splines and calibrators by context", "[telemetry]") {
+    const Mission mission{
+        "<EnumeratedParameterType name='mode'><IntegerDataEncoding sizeInBits='4'/><EnumerationList>"
+        "<Enumeration value='1' label='ON'/><Enumeration value='2' maxValue='5' label='WARM'/></EnumerationList>"
+        "</EnumeratedParameterType><BooleanParameterType name='flag' oneStringValue='yes'><IntegerDataEncoding "
+        "sizeInBits='4'/></BooleanParameterType><FloatParameterType name='volt'><IntegerDataEncoding sizeInBits='8' "
+        "encoding='twosComplement'><DefaultCalibrator><PolynomialCalibrator><Term coefficient='1' exponent='0'/><Term "
+        "coefficient='0.5' exponent='1'/></PolynomialCalibrator></DefaultCalibrator><ContextCalibratorList>"
+        "<ContextCalibrator><ContextMatch>" +
+            when("m", "==", "WARM") +
+            "</ContextMatch><Calibrator><PolynomialCalibrator><Term coefficient='10' exponent='1'/></PolynomialCalibrator>"
+            "</Calibrator></ContextCalibrator></ContextCalibratorList></IntegerDataEncoding></FloatParameterType>"
+            "<FloatParameterType name='temp'><IntegerDataEncoding sizeInBits='8'><DefaultCalibrator><SplineCalibrator>"
+            "<SplinePoint raw='100' calibrated='30'/><SplinePoint raw='0' calibrated='-10'/></SplineCalibrator>"
+            "</DefaultCalibrator></IntegerDataEncoding></FloatParameterType>",
+        {{"m", "mode"}, {"f", "flag"}, {"v", "volt"}, {"t", "temp"}},
+        container("P", entry("m") + entry("f") + entry("v") + entry("t"))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("11 fe 32")) == "m=1|ON f=1|yes v=-2|0 t=50|10");
+    CHECK(text(mission.decode("30 02 65")) == "m=3|WARM f=0|False v=2|20 t=101|undefined");
+    CHECK(text(mission.decode("90 02 64")) == "m=9|9 f=0|False v=2|2 t=100|30");
+}
+
+TEST_CASE("text of fixed size, ended by a character, and behind its own size", "[telemetry]") {
+    const auto type = [](const std::string& name, const std::string& size) {
+        return "<StringParameterType name='" + name + "'><StringDataEncoding>" + size + "</StringDataEncoding></StringParameterType>";
+    };
+    const Mission mission{
+        type("fixed", "<SizeInBits><Fixed><FixedValue>32</FixedValue></Fixed></SizeInBits>") +
+            type("ended", "<Variable maxSizeInBits='80'><TerminationChar>00</TerminationChar></Variable>") +
+            type("sized", "<Variable maxSizeInBits='80'><LeadingSize sizeInBitsOfSizeTag='8'/></Variable>") +
+            type("boxed", "<SizeInBits><Fixed><FixedValue>32</FixedValue></Fixed><TerminationChar>2c</TerminationChar>"
+                          "</SizeInBits>"),
+        {{"a", "fixed"}, {"b", "ended"}, {"c", "sized"}, {"d", "boxed"}, {"e", "u8"}},
+        container("P", entry("a") + entry("b") + entry("c") + entry("d") + entry("e"))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("41420000 434400 10 4546 472c4849 01")) ==
+          "a=41420000|AB b=4344|CD c=4546|EF d=47|G e=1|1");
+    CHECK(mission.decode("41420000 434400 60 4546").problem.find("ends before c") != std::string::npos);
+}
+
+TEST_CASE("what is composed: members, arrays of one and two dimensions, containers within containers", "[telemetry]") {
+    const Mission mission{
+        "<AggregateParameterType name='pair'><MemberList><Member name='x' typeRef='u8'/><Member name='y' typeRef='u16'/>"
+        "</MemberList></AggregateParameterType><ArrayParameterType name='row' arrayTypeRef='u8'><DimensionList><Dimension>"
+        "<StartingIndex><FixedValue>0</FixedValue></StartingIndex><EndingIndex><DynamicValue><ParameterInstanceRef "
+        "parameterRef='n'/></DynamicValue></EndingIndex></Dimension><Dimension><EndingIndex><FixedValue>1</FixedValue>"
+        "</EndingIndex></Dimension></DimensionList></ArrayParameterType>",
+        {{"n", "u8"}, {"p", "pair"}, {"r", "row"}},
+        container("Inner", entry("p")) +
+            container("P", entry("n") + "<ContainerRefEntry containerRef='Inner'/>" + entry("r"))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("01 050102 0a0b0c0d")) ==
+          "n=1|1 p.x=5|5 p.y=258|258 r[0][0]=10|10 r[0][1]=11|11 r[1][0]=12|12 r[1][1]=13|13");
+}
+
+TEST_CASE("a condition and a size may ask for a member of what is composed", "[telemetry]") {
+    const std::string types = "<AggregateParameterType name='head'><MemberList><Member name='id' typeRef='u8'/><Member "
+                              "name='sizes' typeRef='sizes'/></MemberList></AggregateParameterType><AggregateParameterType "
+                              "name='sizes'><MemberList><Member name='all' typeRef='u8'/><Member name='n' typeRef='u8'/>"
+                              "</MemberList></AggregateParameterType>";
+    const std::string octets = "<BinaryParameterType name='octets'><BinaryDataEncoding><SizeInBits><DynamicValue>"
+                               "<ParameterInstanceRef parameterRef='h/sizes/n'/><LinearAdjustment slope='8'/>"
+                               "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+    const Mission mission{types + octets, {{"h", "head"}, {"d", "octets"}},
+                          container("Root", entry("h")) + container("Seven", entry("d"), base("Root", when("h/id", "==", "7")))};
+    CHECK(mission.findings.empty());
+    CHECK(text(mission.decode("07 0902 a1b2c3")) == "h.id=7|7 h.sizes.all=9|9 h.sizes.n=2|2 d=a1b2|a1b2");
+    CHECK(mission.decode("08 0902 a1b2c3").container == "Root");
+    const Mission dangling{types, {{"h", "head"}}, container("Root", entry("h"), base("Root", when("h/gone", "==", "7")))};
+    REQUIRE(dangling.findings.size() == 1);
+    CHECK(dangling.findings[0].message == "there is no parameter 'h/gone'");
+}
+
+TEST_CASE("time is seconds from the epoch, by offset and scale", "[telemetry]") {
+    const Mission mission{"<AbsoluteTimeParameterType name='when'><Encoding offset='1000' scale='0.5'><IntegerDataEncoding "
+                          "sizeInBits='32'/></Encoding></AbsoluteTimeParameterType>",
+                          {{"t", "when"}}, container("P", entry("t"))};
+    CHECK(mission.decode("00000009").time_s == 1004.5);
+}
+
+TEST_CASE("what is not supported is named with its line, and the packet is read up to it", "[telemetry]") {
+    const Mission mission{"", {{"a", "u8"}, {"b", "nowhere"}, {"c", "u8"}},
+                          container("P", entry("a") + "\n<StreamSegmentEntry streamRef='s'/>" + entry("c")) +
+                              container("Q", entry("b"))};
+    REQUIRE(mission.findings.size() == 2);
+    CHECK(mission.findings[1].line == 2);
+    CHECK(mission.findings[1].message.find("StreamSegmentEntry") != std::string::npos);
+    const auto contents = mission.decode("07 08");
+    CHECK(text(contents) == "a=7|7");
+    CHECK(contents.problem.find("(line 2)") != std::string::npos);
+}
+
+TEST_CASE("containers and types that hold themselves, and counts without end, come to an end", "[telemetry]") {
+    const std::string endless = "<RepeatEntry><Count><FixedValue>1000000000000</FixedValue></Count></RepeatEntry>";
+    const std::string self = "<ContainerRefEntry containerRef='A'/>";
+    const Mission loop{"", {{"a", "u8"}}, container("P", self) + container("A", self + self)};
+    CHECK_FALSE(loop.decode("0102").problem.empty());
+    const Mission bases{"", {{"a", "u8"}}, container("A", "", base("B", "")) + container("B", "", base("A", ""))};
+    CHECK(bases.decode("0102").problem == "the XTCE file has no container to begin with");
+    const Mission nothing{"", {{"a", "u8"}},
+                          container("P", "<ContainerRefEntry containerRef='E'>" + endless + "</ContainerRefEntry>") +
+                              container("E", "")};
+    CHECK_FALSE(nothing.decode("0102").problem.empty());
+    const Mission type{"<AggregateParameterType name='t'><MemberList><Member name='m' typeRef='t'/><Member name='n' "
+                       "typeRef='t'/></MemberList></AggregateParameterType>",
+                       {{"a", "t"}}, container("P", entry("a"))};
+    CHECK_FALSE(type.decode("0102").problem.empty());
+}
+
+TEST_CASE("a datum is written in the fewest digits that read back the same", "[telemetry]") {
+    CHECK(datum_text(Datum{}) == "undefined");
+    CHECK(datum_text(0.1) == "0.1");
+    CHECK(datum_text(std::uint64_t{18446744073709551615U}) == "18446744073709551615");
+    CHECK(datum_text(std::int64_t{-5}) == "-5");
+    CHECK(datum_text(std::vector<std::uint8_t>{0x0A, 0xFF}) == "0aff");
+}

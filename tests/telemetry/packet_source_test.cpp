@@ -1,0 +1,143 @@
+#include "telemetry/packet_source.hpp"
+#include "common/randomiser.hpp"
+#include "common/space_packet.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/octets.hpp"
+
+#include <algorithm>
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+void append(Octets& to, std::span<const std::uint8_t> octets) { to.insert(to.end(), octets.begin(), octets.end()); }
+
+std::vector<Octets> some_packets(std::mt19937& random) {
+    std::vector<Octets> packets;
+    for (unsigned i = 0; i < 200; ++i) {
+        packets.emplace_back(tm_overhead_octets + random() % 300);
+        seal_tm_packet(packets.back(), Apid{0x20}, static_cast<std::uint16_t>(i), Sclk{1.0}, 1);
+    }
+    return packets;
+}
+
+/// TM or AOS frames of `length` octets with all packets one after another in one virtual channel; fill at the end.
+std::vector<Octets> frames_of(const std::vector<Octets>& packets, FrameStream::Kind kind, std::size_t length) {
+    const std::size_t room = length - (kind == FrameStream::Kind::tm ? 8 : 10);
+    Octets octets;
+    std::vector<std::size_t> starts;
+    for (const Octets& packet : packets) {
+        starts.push_back(octets.size());
+        append(octets, packet);
+    }
+    starts.push_back(octets.size());
+    Octets idle(primary_header_octets + room + (room - octets.size() % room));
+    seal_tm_packet(idle, Apid{idle_apid}, 0, Sclk{0.0}, 0);
+    append(octets, idle);
+    std::vector<Octets> frames;
+    for (std::size_t at = 0; at + room <= octets.size(); at += room) {
+        TransferFrame frame;
+        frame.spacecraft = 76;
+        frame.count = static_cast<std::uint32_t>(frames.size());
+        frame.data = std::span{octets}.subspan(at, room);
+        const auto next = std::ranges::lower_bound(starts, at);
+        if (next != starts.end() && *next < at + room) frame.first_header_pointer = static_cast<std::uint16_t>(*next - at);
+        frames.emplace_back(length);
+        if (kind == FrameStream::Kind::tm)
+            write_tm_frame(frame, static_cast<std::uint8_t>(frames.size()), true, frames.back());
+        else
+            write_aos_frame(frame, true, frames.back());
+    }
+    return frames;
+}
+
+std::vector<Octets> all(PacketSource source, std::span<const std::uint8_t> stream, std::mt19937& random) {
+    std::vector<Octets> packets;
+    const auto take = [&] {
+        while (const auto packet = source.next()) packets.push_back(test::copy_of(*packet));
+    };
+    while (!stream.empty()) {
+        const std::size_t now = std::min<std::size_t>(1 + random() % 900, stream.size());
+        source.receive(stream.first(now));
+        stream = stream.subspan(now);
+        take();
+    }
+    source.end();
+    take();
+    return packets;
+}
+
+} // namespace
+
+TEST_CASE("packets come out of bare packets with a prefix, of frames and of PLTUs the same", "[telemetry]") {
+    std::mt19937 random{1};
+    const auto packets = some_packets(random);
+    Octets bare, pltus;
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+        append(bare, test::hex("60f06060"));
+        append(bare, packets[i]);
+        Octets pltu(pltu_octets_max);
+        pltu.resize(write_pltu({.spacecraft = 76, .sequence = static_cast<std::uint8_t>(i)}, packets[i], pltu));
+        append(pltus, pltu);
+    }
+    CHECK(all(PacketSource::of_packets(4), bare, random) == packets);
+    CHECK(all(PacketSource::of_pltus(), pltus, random) == packets);
+    for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
+        Octets stream;
+        for (const Octets& frame : frames_of(packets, kind, 223)) append(stream, frame);
+        CHECK(crc_frame_octets(stream, 0) == 223U);
+        CHECK(all(PacketSource::of_frames({.kind = kind, .frame_octets = 223, .marker = false}), stream, random) ==
+              packets);
+    }
+}
+
+TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with check symbols or without", "[telemetry]") {
+    std::mt19937 random{2};
+    const auto packets = some_packets(random);
+    for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos})
+        for (const bool randomised : {false, true})
+            for (const std::size_t symbols : {0U, 32U, 160U}) {
+                Octets stream;
+                for (Octets frame : frames_of(packets, kind, 223)) {
+                    append(stream, attached_sync_marker);
+                    append(frame, test::random_octets(random, symbols));
+                    if (randomised) randomise_tm(frame);
+                    append(stream, frame);
+                }
+                const auto found = recognise_cadus(stream);
+                REQUIRE(found);
+                CHECK(found->kind == kind);
+                CHECK(found->randomised == randomised);
+                CHECK(found->frame_octets == 223);
+                CHECK(found->suffix_octets == symbols);
+                CHECK(all(PacketSource::of_frames(*found), stream, random) == packets);
+            }
+}
+
+TEST_CASE("bare packets end where no header stands or one is cut, and the rest is counted", "[telemetry]") {
+    std::mt19937 random{3};
+    const auto packets = some_packets(random);
+    BarePackets cut{0};
+    cut.receive(std::span{packets[0]}.first(10));
+    CHECK_FALSE(cut.next());
+    cut.end();
+    CHECK(cut.counters() == PacketCounters{.cut_packets = 1, .unreadable_octets = 10});
+    BarePackets lost{0};
+    lost.receive(packets[0]);
+    lost.receive(test::hex("ffffffffffffffff"));
+    lost.receive(packets[1]);
+    CHECK(lost.next());
+    CHECK_FALSE(lost.next());
+    lost.end();
+    CHECK(lost.counters() == PacketCounters{.packets = 1, .unreadable_octets = 8 + packets[1].size()});
+}
+
+TEST_CASE("each format has its name, and no other name a format", "[telemetry]") {
+    CHECK(downlink_format("cadu") == DownlinkFormat::cadu);
+    CHECK(downlink_format("packets") == DownlinkFormat::packets);
+    CHECK_FALSE(downlink_format("CADU"));
+    CHECK_FALSE(downlink_format(""));
+}
