@@ -7,7 +7,7 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double step_s = 1.0 / 128.0; // ours: Doppler bends by 1e-4 cycles of the carrier within, at 1000 Hz/s²
+constexpr double channel_step_s = 1.0 / 128.0; // ours: Doppler bends by 1e-4 cycles of the carrier within, at 1000 Hz/s²
 
 } // namespace
 
@@ -15,7 +15,7 @@ XBandChannel::XBandChannel(const MfskWaveform& waveform, XBandPath path, std::ve
                            std::uint64_t case_number)
     : waveform_(waveform), path_(std::move(path)), tones_(std::move(tones)),
       noise_(seed, case_number, Stream::x_band_noise),
-      step_samples_(std::max(1, static_cast<int>(path_.rate_hz * step_s))),
+      step_samples_(std::max(1, static_cast<int>(path_.rate_hz * channel_step_s))),
       step_end_residual_hz_(path_.doppler_hz.at(path_.start_s) - path_.predict_hz.at(path_.start_s)),
       step_end_doppler_hz_(path_.doppler_hz.at(path_.start_s)) {}
 

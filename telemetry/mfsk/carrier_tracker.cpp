@@ -10,10 +10,12 @@ namespace {
 constexpr double turn_rad = 2.0 * std::numbers::pi;
 constexpr double thinned_rate_least_hz = 6000.0; // the sum droops by 0.12 dB at the highest tone; ours
 constexpr double parts_hz = 256.0;               // ours: a wrong prediction by 100 Hz is still seen
-constexpr double energy_least = 13.0;            // ours: noise passes once in 200 looks
+constexpr double false_find = 0.005;             // of a look at noise; ours
+constexpr double longer_gain = 1.2;              // what a longer window must gather more; ours
+constexpr int short_for_hops = 16;               // then no longer one is tried; ours
 constexpr double energy_weak = 22.0;             // below this a longer window is taken; ours
 constexpr double energy_strong = 60.0;           // above this a shorter one; ours
-constexpr double lost_after_s = 1.5;             // ours
+constexpr double lost_after_s = 1.5;             // or after 0.75 windows; ours
 constexpr double noise_gain = 0.08;              // of each hop in the running mean of the noise: 1.5 s; ours
 
 } // namespace
@@ -35,10 +37,9 @@ HopLayout::HopLayout(double rate)
 CarrierTracker::CarrierTracker(const HopLayout& layout, double carrier_fraction)
     : layout_(layout), carrier_fraction_(carrier_fraction) {
     const double part_s = layout.part_samples / layout.thinned_rate_hz();
-    for (const int hops : {5, 11, 21}) {
-        const double wide_hz = hops == 5 ? 100.0 : 40.0;
-        windows_.push_back({hops, CarrierFit{hops * HopLayout::parts, part_s},
-                            FitSpan{200.0 / hops, 4}, FitSpan{wide_hz, CarrierFit::rate_lines_max}});
+    for (const int hops : {5, 11, 21, 41}) {
+        windows_.push_back({hops, hops * layout.hop_s(), CarrierFit{hops * HopLayout::parts, part_s},
+                            FitSpan{200.0 / hops, 4}, FitSpan{500.0 / hops, CarrierFit::rate_lines_max}});
     }
 }
 
@@ -51,6 +52,8 @@ void CarrierTracker::start(std::int64_t first_sample, double frequency_hz, doubl
     rate_hzps_ = rate_hzps;
     noise_density_ = carrier_power_ = 0.0;
     missed_ = 0;
+    energy_before_longer_ = 0.0;
+    short_for_ = 0;
     lost_ = settled_ = false;
 }
 
@@ -157,22 +160,35 @@ void CarrierTracker::follow(const Wiped& hop, const CarrierLine& line) {
     carrier_power_ = carrier_power_ == 0.0 ? power : carrier_power_ + 2.0 * noise_gain * (power - carrier_power_);
 }
 
+double CarrierTracker::Window::least_energy(bool with_wide) const {
+    const FitSpan& span = with_wide ? wide : narrow;
+    return std::log(2.0 * span.frequency_hz * length_s * (2 * span.rate_lines + 1) / false_find);
+}
+
 void CarrierTracker::choose_window(double energy) {
-    if (energy < energy_weak && window_ + 1 < windows_.size())
-        ++window_;
-    else if (energy > energy_strong && window_ > 0)
+    short_for_ = std::max(short_for_ - 1, 0);
+    if (energy > energy_strong && window_ > 0) {
         --window_;
+    } else if (energy < energy_weak && window_ + 1 < windows_.size() && short_for_ == 0) {
+        energy_before_longer_ = energy;
+        ++window_;
+    }
+}
+
+// A longer window gathers more of a weak carrier, and less of one that swerves.
+void CarrierTracker::shorten() {
+    --window_;
+    energy_before_longer_ = 0.0;
+    short_for_ = short_for_hops;
 }
 
 void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
     while (waiting_ + static_cast<std::size_t>(windows_[window_].hops / 2) < hops_.size()) {
         const auto aside = static_cast<std::size_t>(windows_[window_].hops / 2);
         const Wiped& hop = hops_[waiting_];
-        if (waiting_ < aside) { // the first hops have no half window before them: a shorter one, or none
-            if (window_ > 0) {
-                --window_;
-                continue;
-            }
+        if (waiting_ < aside && window_ > 0) { // the first hops have no half window before them
+            shorten();
+            continue;
         }
         CarrierHop done;
         done.first_sample = hop.first_sample;
@@ -181,11 +197,17 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
         Window& window = windows_[window_];
         bool wide = !settled_ || missed_ > 0;
         CarrierLine line = fit_around(middle, window, wide);
-        if (line.energy < energy_least && !wide) {
+        if (line.energy < window.least_energy(false) && !wide) {
             wide = true;
             line = fit_around(middle, window, wide);
         }
-        if (line.energy >= energy_least) {
+        const bool found = line.energy >= window.least_energy(wide);
+        if (found && line.energy < longer_gain * energy_before_longer_) {
+            shorten();
+            continue;
+        }
+        if (found) {
+            energy_before_longer_ = 0.0;
             if (middle == waiting_) {
                 done = demodulated(hop, line);
             } else { // carried over from the window's middle to this earlier hop
@@ -205,6 +227,9 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
             settled_ = true;
             missed_ = 0;
             choose_window(line.energy);
+        } else if (energy_before_longer_ > 0.0) {
+            shorten();
+            continue;
         } else {
             done.lock = CarrierLock::coasting;
             done.frequency_hz = hop.frequency_hz + 0.5 * hop.rate_hzps * layout_.hop_s();
@@ -224,7 +249,8 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
 void CarrierTracker::push(std::span<const std::complex<float>> hop, std::vector<CarrierHop>& out) {
     hops_.push_back(wipe(hop));
     fit_waiting(out);
-    if (missed_ * layout_.hop_s() > lost_after_s) finish(out);
+    const double patience_s = std::max(lost_after_s, 0.75 * windows_[window_].length_s);
+    if (missed_ * layout_.hop_s() > patience_s) finish(out);
 }
 
 void CarrierTracker::finish(std::vector<CarrierHop>& out) {

@@ -50,9 +50,9 @@ struct HopLayout {
 /// of the newest fit predict where the next is looked for.
 ///
 /// In      hops of samples, one after the other     Out   each hop once, in order, up to half a window later
-/// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4 and 2.6 s when the carrier is weak
+/// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4, 2.6 and 5.1 s when the carrier is weak
 /// Memory  the longest window
-/// Faults  after 1.5 s without a carrier it is lost: the hops in memory come out as not found
+/// Faults  after 1.5 s, or 0.75 windows, without a carrier it is lost: the hops in memory come out as not found
 class CarrierTracker {
   public:
     explicit CarrierTracker(const HopLayout& layout, double carrier_fraction);
@@ -66,6 +66,7 @@ class CarrierTracker {
     void finish(std::vector<CarrierHop>& out);
 
     bool lost() const { return lost_; }
+    std::int64_t next_sample() const { return next_sample_; } ///< where the next hop begins
 
   private:
     struct Wiped { ///< a hop turned back by the predicted phase
@@ -80,8 +81,10 @@ class CarrierTracker {
     };
     struct Window {
         int hops; ///< odd
+        double length_s;
         CarrierFit fit;
         FitSpan narrow, wide;
+        double least_energy(bool with_wide) const;
     };
 
     Wiped wipe(std::span<const std::complex<float>> hop);
@@ -90,6 +93,7 @@ class CarrierTracker {
     CarrierHop demodulated(const Wiped& hop, const CarrierLine& line) const;
     void follow(const Wiped& hop, const CarrierLine& line);
     void choose_window(double energy);
+    void shorten();
 
     HopLayout layout_;
     double carrier_fraction_;
@@ -106,6 +110,8 @@ class CarrierTracker {
     double noise_density_ = 0.0, carrier_power_ = 0.0;
     int missed_ = 0;
     bool lost_ = true, settled_ = false;
+    double energy_before_longer_ = 0.0; ///< above 0: the window has just been lengthened
+    int short_for_ = 0;                 ///< no longer window for so many hops
 };
 
 } // namespace aeolis::telemetry

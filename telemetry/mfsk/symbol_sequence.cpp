@@ -54,7 +54,8 @@ DecidedSymbol SymbolSequence::decide() const {
         symbol.doppler_hz /= seen;
     }
     symbol.first_sample = hops_.back().first_sample - (symbol_hops_ - 1) * hop_samples_;
-    if (symbol.evidence.best[0].likelihood >= least_likelihood) symbol.tone = symbol.evidence.best[0].tone;
+    if (symbol.evidence.best[0].likelihood >= least_likelihood && symbol.seen_fraction >= least_seen_fraction)
+        symbol.tone = symbol.evidence.best[0].tone;
     return symbol;
 }
 

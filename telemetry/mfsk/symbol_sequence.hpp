@@ -37,11 +37,12 @@ struct DecidedSymbol {
 /// event that is expected once a symbol does, and gains the symbol's log likelihood ratio. A symbol comes out when the
 /// likeliest way to here, the part of a symbol that is still coming in included, leads over every way without that symbol
 /// (same tone, the same beginning to a tenth of a symbol) by `decided_lead`; at the latest two symbols after its end.
-/// Erased: a symbol whose likeliest tone has less than `least_likelihood`.
+/// Erased: a symbol whose likeliest tone has less than `least_likelihood`, or of which less than a quarter was seen.
 /// Source: [forney-1973] for the search over survivors; the early decision is ours.
 class SymbolSequence {
   public:
     static constexpr double least_likelihood = 0.9; ///< ours, as in the statistical model
+    static constexpr double least_seen_fraction = 0.25; ///< ours: what little is seen is seen while the carrier swerves
     static constexpr double decided_lead = 20.0;    ///< e^20 times likelier; ours
 
     explicit SymbolSequence(int symbol_hops, std::int64_t hop_samples);
