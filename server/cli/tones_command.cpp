@@ -171,8 +171,7 @@ int tones_bench(const TonesBenchOptions& options) {
     if (!errors) return failed(errors.error().message);
     dispersed.dispersions = errors->dispersions;
     const bool met = tell_tone_figures(landing->dictionary, landing->scenario, dispersed, options.full, [](const ToneFigure& figure) {
-        fmt::print("{:<40} {:9.4g}   goal {:<7.4g} {:<20} {}   {}\n", figure.name, figure.value, figure.goal, figure.unit,
-                   figure.met ? "met   " : "MISSED", figure.evidence);
+        fmt::print("{}\n", figure.text());
         std::fflush(stdout);
     });
     return met ? 0 : 1;

@@ -47,11 +47,11 @@ Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path, cons
     return heard;
 }
 
-/// What was received in the place of a sent tone: begun within a second of it.
+/// What was received in the place of a sent tone: the nearest, begun within half a symbol of it.
 const telemetry::ToneReception* in_place_of(const simulation::SentTone& sent, const std::vector<telemetry::ToneReception>& all) {
-    const auto found = std::ranges::find_if(
-        all, [&](const telemetry::ToneReception& each) { return std::abs(each.start_s - sent.start_s) < 1.0; });
-    return found == all.end() ? nullptr : &*found;
+    const auto apart_s = [&](const telemetry::ToneReception& each) { return std::abs(each.start_s - sent.start_s); };
+    const auto nearest = std::ranges::min_element(all, {}, apart_s);
+    return nearest == all.end() || apart_s(*nearest) > 5.0 ? nullptr : &*nearest;
 }
 
 std::string counted(const ErrorCount& count) {
@@ -66,11 +66,16 @@ double theory_dbhz(const MfskWaveform& waveform, double error) {
 
 } // namespace
 
+std::string ToneFigure::text() const {
+    return fmt::format("{:<40} {:9.4g}   goal {:<7.4g} {:<24} {}   {}", name, value, goal, unit, met ? "met   " : "MISSED",
+                       evidence);
+}
+
 ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols, std::uint64_t seed) {
     constexpr double acquired_s = 20.0, strong_dbhz = 26.0;
     simulation::Random random{seed, 2, simulation::Stream::x_band};
     std::vector<simulation::SentTone> tones;
-    double at_s = acquired_s + 10.0;
+    double at_s = acquired_s + 30.0;
     for (std::uint64_t i = 0; i < symbols; ++i) {
         tones.push_back({at_s, static_cast<std::uint8_t>(random.bits() & 0xff)});
         at_s += waveform.symbol_s + (i % 4 == 3 ? std::floor(random.uniform() * 640.0) / 64.0 : 0.0);
@@ -79,7 +84,7 @@ ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz,
     path.rate_hz = 4096.0;
     path.total_c_n0_dbhz = total_c_n0_dbhz;
     path.doppler_hz = TimeTable::make({0.0, at_s}, {100.0, 100.0 + 0.02 * at_s}).value();
-    path.gain_db = TimeTable::make({0.0, acquired_s, acquired_s + 5.0, at_s + 100.0},
+    path.gain_db = TimeTable::make({0.0, acquired_s, acquired_s + 20.0, at_s + 100.0},
                                    {strong_dbhz - total_c_n0_dbhz, strong_dbhz - total_c_n0_dbhz, 0.0, 0.0}).value();
     const Heard heard = hear(waveform, path, tones, at_s + 20.0, seed);
     ErrorCount count;
@@ -170,7 +175,7 @@ LandingTones landing_tones(const FlownSignal& nominal, const simulation::Scenari
     // A tone where none was sent is wrong too.
     for (const telemetry::ToneReception& each : heard.receptions)
         if (each.tone && std::ranges::none_of(flown.tones, [&](const simulation::SentTone& sent) {
-                return std::abs(each.start_s - sent.start_s) < 1.0;
+                return std::abs(each.start_s - sent.start_s) <= 5.0;
             }))
             ++result.wrong;
     return result;
@@ -207,8 +212,8 @@ bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulatio
     add_loss("carrier-aided, carrier at 20.5 dB-Hz", theory_dbhz(mfsk, full ? 1e-2 : 3e-2), 0.3,
              carrier_aided_errors(mfsk, 20.5, theory_dbhz(mfsk, full ? 1e-2 : 3e-2), full ? 40'000 : 8'000, 5));
 
-    for (const auto& [name, error, total_dbhz] : {std::tuple{"the whole receiver, 1e-1", 1e-1, 8.9},
-                                                  std::tuple{"the whole receiver, 3e-2", 3e-2, 9.6}}) {
+    for (const auto& [name, error, total_dbhz] : {std::tuple{"the whole receiver, 1e-1", 1e-1, 9.5},
+                                                  std::tuple{"the whole receiver, 3e-2", 3e-2, 10.2}}) {
         const ErrorCount count = receiver_errors(mfsk, total_dbhz, full ? 6'000 : 1'000, 6);
         const double tone_dbhz = total_dbhz + 10.0 * std::log10(mfsk.tone_fraction());
         const double loss = loss_db(tone_dbhz, mfsk.symbol_s, count.rate());

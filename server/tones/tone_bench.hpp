@@ -17,6 +17,7 @@ struct ToneFigure {
     std::string unit;
     bool met = true;
     std::string evidence; ///< what was counted, with its 95 % interval
+    std::string text() const; ///< a line
 };
 
 /// Counted errors of a number of trials.

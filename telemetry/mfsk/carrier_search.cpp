@@ -15,7 +15,7 @@ constexpr double segment_s = 0.02;       // ours: 1200 Hz/s bends the phase by 0
 constexpr int segments_a_window = 50;    // 1 s
 constexpr int windows_a_long_one = 4;    // 4 s
 constexpr int rate_lines = 49;           // an odd number, the middle one of rate 0
-constexpr double rate_max_hzps = 1200.0; // [issue]: what a predict may leave
+constexpr double rate_max_hzps = 1200.0; // ours: what a predict may leave
 
 } // namespace
 

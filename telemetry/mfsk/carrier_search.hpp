@@ -27,7 +27,7 @@ struct CarrierFound {
 /// Memory  the powers of 4 s
 /// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in white noise of any power. Without power nothing is
 ///         found.
-/// Source: [richards-radar] for the non-coherent sum and its distribution; lengths and grid ours (limits.md's study).
+/// Source: [richards-radar] for the non-coherent sum and its distribution; lengths and grid ours.
 class CarrierSearch {
   public:
     static constexpr double false_alarm = 1e-4; ///< of a window; ours

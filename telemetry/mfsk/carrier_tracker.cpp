@@ -15,7 +15,8 @@ constexpr double longer_gain = 1.2;              // what a longer window must ga
 constexpr int short_for_hops = 16;               // then no longer one is tried; ours
 constexpr double energy_weak = 22.0;             // below this a longer window is taken; ours
 constexpr double energy_strong = 60.0;           // above this a shorter one; ours
-constexpr double lost_after_s = 1.5;             // or after 0.75 windows; ours
+constexpr double lost_after_s = 1.5;             // at least; ours
+constexpr double windows_waited = 0.75, windows_waited_weak = 4.0; // ours
 constexpr double noise_gain = 0.08;              // of each hop in the running mean of the noise: 1.5 s; ours
 
 } // namespace
@@ -249,7 +250,9 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
 void CarrierTracker::push(std::span<const std::complex<float>> hop, std::vector<CarrierHop>& out) {
     hops_.push_back(wipe(hop));
     fit_waiting(out);
-    const double patience_s = std::max(lost_after_s, 0.75 * windows_[window_].length_s);
+    // What needed the longest window is too weak to be found anew: it is waited for.
+    const double windows = window_ + 1 == windows_.size() ? windows_waited_weak : windows_waited;
+    const double patience_s = std::max(lost_after_s, windows * windows_[window_].length_s);
     if (missed_ * layout_.hop_s() > patience_s) finish(out);
 }
 

@@ -52,7 +52,8 @@ struct HopLayout {
 /// In      hops of samples, one after the other     Out   each hop once, in order, up to half a window later
 /// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4, 2.6 and 5.1 s when the carrier is weak
 /// Memory  the longest window
-/// Faults  after 1.5 s, or 0.75 windows, without a carrier it is lost: the hops in memory come out as not found
+/// Faults  after 1.5 s without a carrier (20 s if it was so weak as to need the longest window) it is lost: the hops in
+///         memory come out as not found
 class CarrierTracker {
   public:
     explicit CarrierTracker(const HopLayout& layout, double carrier_fraction);
