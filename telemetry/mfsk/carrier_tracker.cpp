@@ -16,7 +16,9 @@ constexpr int short_for_hops = 16;               // then no longer one is tried;
 constexpr double energy_weak = 22.0;             // below this a longer window is taken; ours
 constexpr double energy_strong = 60.0;           // above this a shorter one; ours
 constexpr double lost_after_s = 1.5;             // at least; ours
-constexpr double windows_waited = 0.75, windows_waited_weak = 4.0; // ours
+constexpr double weak_lost_after_s = 20.0;       // ours
+constexpr double weak_level_hz = 25.0;           // 14 dB-Hz: the search over 4 s needs more; ours
+constexpr double level_of_old = 0.99;            // of each hop in the running mean of C/N0: 12 s; ours
 constexpr double noise_gain = 0.08;              // of each hop in the running mean of the noise: 1.5 s; ours
 
 } // namespace
@@ -51,7 +53,7 @@ void CarrierTracker::start(std::int64_t first_sample, double frequency_hz, doubl
     next_sample_ = frequency_sample_ = first_sample;
     frequency_hz_ = frequency_hz;
     rate_hzps_ = rate_hzps;
-    noise_density_ = carrier_power_ = 0.0;
+    noise_density_ = carrier_power_ = level_hz_ = 0.0;
     missed_ = 0;
     energy_before_longer_ = 0.0;
     short_for_ = 0;
@@ -158,6 +160,8 @@ void CarrierTracker::follow(const Wiped& hop, const CarrierLine& line) {
     rate_hzps_ = hop.rate_hzps + line.rate_hzps;
     frequency_sample_ = hop.first_sample + layout_.hop_samples() / 2;
     const double power = line.amplitude * line.amplitude;
+    const double level_hz = power / hop.noise;
+    level_hz_ = level_hz_ == 0.0 ? level_hz : level_of_old * level_hz_ + (1.0 - level_of_old) * level_hz;
     carrier_power_ = carrier_power_ == 0.0 ? power : carrier_power_ + 2.0 * noise_gain * (power - carrier_power_);
 }
 
@@ -250,9 +254,9 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
 void CarrierTracker::push(std::span<const std::complex<float>> hop, std::vector<CarrierHop>& out) {
     hops_.push_back(wipe(hop));
     fit_waiting(out);
-    // What needed the longest window is too weak to be found anew: it is waited for.
-    const double windows = window_ + 1 == windows_.size() ? windows_waited_weak : windows_waited;
-    const double patience_s = std::max(lost_after_s, windows * windows_[window_].length_s);
+    // What is too weak to be found anew is waited for.
+    const bool is_weak = level_hz_ < weak_level_hz;
+    const double patience_s = is_weak ? weak_lost_after_s : std::max(lost_after_s, 0.75 * windows_[window_].length_s);
     if (missed_ * layout_.hop_s() > patience_s) finish(out);
 }
 

@@ -52,7 +52,7 @@ struct HopLayout {
 /// In      hops of samples, one after the other     Out   each hop once, in order, up to half a window later
 /// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4, 2.6 and 5.1 s when the carrier is weak
 /// Memory  the longest window
-/// Faults  after 1.5 s without a carrier (20 s if it was so weak as to need the longest window) it is lost: the hops in
+/// Faults  after 1.5 s without a carrier (20 s when it has long been too weak to be found anew) it is lost: the hops in
 ///         memory come out as not found
 class CarrierTracker {
   public:
@@ -109,6 +109,7 @@ class CarrierTracker {
     double frequency_hz_ = 0.0, rate_hzps_ = 0.0; ///< of the newest fit
     std::int64_t frequency_sample_ = 0;           ///< where that holds
     double noise_density_ = 0.0, carrier_power_ = 0.0;
+    double level_hz_ = 0.0; ///< carrier to noise density, over a longer time
     int missed_ = 0;
     bool lost_ = true, settled_ = false;
     double energy_before_longer_ = 0.0; ///< above 0: the window has just been lengthened
