@@ -87,6 +87,7 @@ bool SymbolSequence::is_same(std::int64_t end, std::int64_t other_end) const {
 }
 
 void SymbolSequence::settle(std::vector<DecidedSymbol>& out) {
+    if (hops_.empty()) return;
     // Each later way leads through one of the last symbol's worth of states, with the part of a symbol seen since.
     struct Survivor {
         double score;

@@ -36,8 +36,8 @@ struct ReceiverStatus {
 /// The ground's receiver of X-band tones: complex samples in, decisions out.
 ///
 /// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
-/// Out     a reception a symbol, 10 to 20 s after the symbol's end, by take()
-/// Memory  4 s of samples while it searches, a few symbols of sums
+/// Out     a reception a symbol, 1 to 20 s after the symbol's end, by take()
+/// Memory  4 s of samples while it searches, 5 s while it tracks, a few symbols of sums
 /// Faults  silence, noise and what is no number give no reception; a carrier lost is searched for again
 class ToneReceiver {
   public:

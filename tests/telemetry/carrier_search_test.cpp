@@ -30,7 +30,7 @@ TEST_CASE("the sum of exponentials passes x as often as the Poisson sum says", "
 
 TEST_CASE("a carrier of 22 dB-Hz is found anywhere in the band, at any rate to 1200 Hz/s, within a window", "[tones]") {
     for (const auto& [frequency_hz, rate_hzps] :
-         {std::pair{0.0, 0.0}, std::pair{8000.0, 1200.0}, std::pair{-9500.0, -1200.0}, std::pair{1234.5, -333.0}}) {
+         {std::pair{0.0, 0.0}, std::pair{8000.0, 1200.0}, std::pair{-9000.0, -1200.0}, std::pair{1234.5, -333.0}}) {
         const auto samples = samples_of(drifting(frequency_hz, rate_hzps, 22.0), {}, 1.2);
         CarrierSearch search{20000.0};
         const auto found = search.push(samples);
@@ -43,7 +43,7 @@ TEST_CASE("a carrier of 22 dB-Hz is found anywhere in the band, at any rate to 1
 }
 
 TEST_CASE("what a second does not show, four seconds do", "[tones]") {
-    const auto samples = samples_of(drifting(2000.0, -40.0, 17.5), {}, 4.2, 3);
+    const auto samples = samples_of(drifting(2000.0, -40.0, 16.2), {}, 4.2, 3);
     CarrierSearch search{20000.0};
     const auto found = search.push(samples);
     REQUIRE(found);
