@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/ids.hpp"
+#include "common/mfsk_waveform.hpp"
 #include "common/result.hpp"
 #include "common/time.hpp"
 #include "dictionaries/telemetry_plan.hpp"
@@ -274,6 +275,7 @@ struct Dictionary {
     std::vector<StateMachineTable> state_machines;
     std::vector<OwnerRow> owners;
     std::vector<TelemetryPlanRow> telemetry_plan;
+    MfskWaveform mfsk;                 ///< how tones are sent: mfsk.csv
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -297,8 +299,8 @@ struct Loaded {
     std::vector<Finding> findings;
 };
 
-/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, parameters.csv, constraints.csv,
-/// state_machines.csv, owners.csv, telemetry_plan.csv. All are on board, so `id` follows each; only the timeline's own two
+/// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv,
+/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv. All are on board, so `id` follows each; only the timeline's own two
 /// change what it does, so `timeline_version` follows those alone.
 Loaded load(const std::filesystem::path& directory);
 

@@ -82,6 +82,7 @@ Loaded load(const std::filesystem::path& directory) {
     const File xml = read_xtce(directory, all);
     const File anchors_csv = read_file(directory / "anchors.csv", all);
     const File tones_csv = read_file(directory / "tones.csv", all);
+    const File mfsk_csv = read_file(directory / "mfsk.csv", all);
     const File parameters_csv = read_file(directory / "parameters.csv", all);
     const File timeline_csv = read_file(directory / "timeline.csv", all);
 
@@ -97,6 +98,7 @@ Loaded load(const std::filesystem::path& directory) {
     auto system = read(xml, xtce::read_space_system);
     auto anchors = read(anchors_csv, read_anchors);
     auto tones = read(tones_csv, read_tones);
+    auto mfsk = read(mfsk_csv, read_mfsk);
     auto parameters = read(parameters_csv, read_parameters);
     std::vector<TimelineContext::DeclaredEvent> events;
     if (system) events = declared(*system);
@@ -138,8 +140,8 @@ Loaded load(const std::filesystem::path& directory) {
 
     Dictionary dictionary;
     dictionary.mission = std::move(system->mission);
-    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &parameters_csv, &timeline_csv, &constraints_csv, &state_machines_csv,
-                          &owners_csv, &plan_csv});
+    dictionary.id = hash({&xml, &anchors_csv, &tones_csv, &mfsk_csv, &parameters_csv, &timeline_csv, &constraints_csv,
+                          &state_machines_csv, &owners_csv, &plan_csv});
     // Without constraints.csv: flight checks it and does not act on it, so it makes no other timeline.
     dictionary.timeline_version = hash({&timeline_csv, &anchors_csv});
     dictionary.channels = std::move(system->channels);
@@ -149,6 +151,7 @@ Loaded load(const std::filesystem::path& directory) {
     dictionary.timeline = std::move(*timeline);
     dictionary.anchors = std::move(*anchors);
     dictionary.tones = std::move(*tones);
+    dictionary.mfsk = *mfsk;
     dictionary.parameters = std::move(*parameters);
     dictionary.constraints = std::move(*constraints);
     dictionary.state_machines = std::move(*state_machines);

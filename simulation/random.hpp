@@ -34,6 +34,7 @@ enum class Stream : std::uint64_t {
     terrain,
     mass,
     slow_drag,
+    x_band_noise,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

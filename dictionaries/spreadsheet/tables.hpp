@@ -22,6 +22,10 @@ std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findin
 /// By id. Every prime tone NAME has a Second Chance tone sc_NAME. R31, R35
 std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& findings);
 
+/// Each number of the waveform once, under its name and in its unit; tones orthogonal over a symbol, and no odd harmonic of
+/// one falls on another.
+std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings);
+
 std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, Findings& findings);
 
 /// What a timeline may refer to; a null pointer: unknown because its own file could not be read, so not checked.

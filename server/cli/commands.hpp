@@ -88,4 +88,37 @@ struct TimelineDiffOptions {
 /// 0 when no row differs.
 int timeline_diff(const TimelineDiffOptions& options);
 
+struct TonesDecodeOptions {
+    SharedOptions shared;
+    std::filesystem::path samples;
+    double rate_hz = 0.0;
+    std::string format;
+    std::optional<std::filesystem::path> predict; ///< what was removed before sampling
+    double start_s = 0.0;                         ///< of the first sample, in the predict's time
+    bool json = false;
+};
+/// Prints a line a symbol. 1 when there is silence, no carrier, or a long carrier without any symbol.
+int tones_decode(const TonesDecodeOptions& options);
+
+struct TonesSimulateOptions {
+    SharedOptions shared;
+    std::filesystem::path out;
+    double rate_hz = 16384.0;
+    std::string format = "cf32";
+    std::optional<std::string> scenario;          ///< the tones and Doppler of a landing, from entry interface
+    std::optional<std::filesystem::path> tones, doppler, predict;
+    std::optional<double> from_s, length_s;
+    double c_n0_dbhz = 22.0;
+    std::uint64_t seed = 1, case_number = 0;
+};
+/// Writes a file of samples.
+int tones_simulate(const TonesSimulateOptions& options);
+
+struct TonesBenchOptions {
+    SharedOptions shared;
+    bool full = false;
+};
+/// Prints the receiver's figures beside their goals; 1 when one is missed.
+int tones_bench(const TonesBenchOptions& options);
+
 } // namespace aeolis::server

@@ -17,7 +17,6 @@ struct Later {
     const char* text;
 };
 constexpr std::array later_commands{
-    Later{"tones", "decode, simulate, bench: the tone receiver on recorded samples"},
     Later{"export", "recorded data out"},
     Later{"archive", "verify, rebuild, prune, vacuum, backup"},
 };
@@ -177,6 +176,44 @@ int main(int argc, char** argv) {
     diff->add_option("DIR_B", comparing.after, "the later one's")->required();
     diff->add_flag("--json", comparing.json, "print one JSON object");
     diff->callback([&] { exit_code = timeline_diff(comparing); });
+
+    auto* tones_command = app.add_subcommand("tones", "X-band tones from samples")->require_subcommand(1);
+    TonesDecodeOptions decoding;
+    decoding.shared = serving.shared;
+    auto* decode = tones_command->add_subcommand("decode", "the tones in a file of complex samples, a line a symbol");
+    decode->add_option("--samples", decoding.samples, "the file: in-phase and quadrature, little-endian")->required();
+    decode->add_option("--rate", decoding.rate_hz, "samples a second")->required();
+    decode->add_option("--format", decoding.format, "cf32 or ci16")->required();
+    decode->add_option("--predict", decoding.predict, "CSV of the Doppler that was removed: time, doppler_hz");
+    decode->add_option("--start", decoding.start_s, "time of the first sample [s]")->capture_default_str();
+    decode->add_flag("--json", decoding.json, "a JSON object a line");
+    add_shared(*decode, decoding.shared);
+    decode->callback([&] { exit_code = tones_decode(decoding); });
+    TonesSimulateOptions sending;
+    sending.shared = serving.shared;
+    auto* simulate = tones_command->add_subcommand("simulate", "writes such a file: from lists, or from a landing");
+    simulate->add_option("--out", sending.out, "the file to write")->required();
+    simulate->add_option("--rate", sending.rate_hz, "samples a second")->capture_default_str();
+    simulate->add_option("--format", sending.format, "cf32 or ci16")->capture_default_str();
+    simulate->add_option("--tones", sending.tones, "CSV: start_s,tone");
+    simulate->add_option("--doppler", sending.doppler, "CSV of the Doppler: time, doppler_hz");
+    auto* flown = simulate->add_option("--scenario", sending.scenario, "tones and Doppler of this landing instead");
+    simulate->get_option("--tones")->excludes(flown);
+    simulate->get_option("--doppler")->excludes(flown);
+    simulate->add_option("--predict", sending.predict, "CSV of the Doppler to remove: time, doppler_hz");
+    simulate->add_option("--from", sending.from_s, "time of the first sample [s]");
+    simulate->add_option("--length", sending.length_s, "[s]");
+    simulate->add_option("--c-n0", sending.c_n0_dbhz, "total power to noise density [dB-Hz]")->capture_default_str();
+    simulate->add_option("--seed", sending.seed, "of the noise, and of the landing")->check(whole_number())->capture_default_str();
+    simulate->add_option("--case", sending.case_number, "of the landing's errors")->check(whole_number())->capture_default_str();
+    add_shared(*simulate, sending.shared);
+    simulate->callback([&] { exit_code = tones_simulate(sending); });
+    TonesBenchOptions measuring;
+    measuring.shared = serving.shared;
+    auto* measured = tones_command->add_subcommand("bench", "the receiver's figures beside theory; 1 when a goal is missed");
+    measured->add_flag("--full", measuring.full, "the points that take long, too");
+    add_shared(*measured, measuring.shared);
+    measured->callback([&] { exit_code = tones_bench(measuring); });
 
     for (const auto& later : later_commands) {
         auto* command = app.add_subcommand(later.name, fmt::format("(comes with a later issue) {}", later.text));

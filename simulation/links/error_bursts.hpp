@@ -8,7 +8,7 @@
 namespace aeolis::simulation {
 
 /// Errors of a link come in bursts: within one an octet is anything, between them all arrive as they were sent. Lengths of
-/// bursts, and of the times between, are exponential (the two states of [gilbert-1960], the bad one without use).
+/// bursts, and of the times between, are exponential ([gilbert-1960], with mean lengths in place of probabilities).
 class ErrorBursts {
   public:
     /// `fraction` of all octets are in bursts, 0 … below 1, of `mean_octets` on average, above 0.

@@ -22,7 +22,4 @@ struct ToneDecision {
 /// in proportion to I0(√(2 E/N0) r).
 ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Random& random);
 
-/// Natural logarithm of the modified Bessel function I0, x ≥ 0, within 1e-7. [abramowitz-stegun] 9.6.12, 9.7.1
-double log_bessel_i0(double x);
-
 } // namespace aeolis::simulation

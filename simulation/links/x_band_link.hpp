@@ -10,10 +10,10 @@ namespace aeolis::simulation {
 
 /// Direct-to-Earth tones in their statistical form: one decision for each 10 s symbol that the computer sends.
 ///
-/// The receiver is taken to know when symbols begin; a tone that ends before its 10 s is an erasure. Power is split, by
-/// our choice of a square-wave subcarrier at a modulation index of 48°: carrier cos² = −3.5 dB of the total, the tone,
-/// both first sidebands together, 8/π² sin² = −3.5 dB. The carrier is locked while Earth is up and the carrier reaches
-/// 15.8 dB-Hz, which a search over 4 s needs (limits of the tone receiver's benchmark).
+/// The receiver is taken to know when symbols begin; a tone that ends before its 10 s is an erasure. Power is split as the
+/// waveform's modulation index says (mfsk.csv, docs/tones.md): at 32° the carrier has −1.4 dB of the total, the tone, both
+/// first sidebands together, −6.4 dB. The carrier is locked while Earth is up and the carrier reaches 15.8 dB-Hz, which a
+/// search over 4 s needs (CarrierSearch).
 /// Erased: a decision of less than nine tenths likelihood (ours), no lock, a broken symbol, Earth setting meanwhile.
 /// Tones sent after Earth set are not heard of at all.
 class XBandLink {

@@ -12,11 +12,11 @@ constexpr double overshoot = 0.2;          // ours
 constexpr double overshoot_decay_s = 0.25; // ours
 constexpr double plane_turns_rps = 4.5 * 0.017453292519943295;
 
-struct DragRow {
+struct MachRow {
     double mach, factor;
 };
 // ours: see the header
-constexpr std::array<DragRow, 8> factors{
+constexpr std::array<MachRow, 8> factors{
     {{0.7, 1.0}, {0.85, 0.99}, {1.0, 0.92}, {1.1, 1.13}, {1.25, 1.24}, {1.6, 1.27}, {1.9, 1.22}, {2.5, 1.05}}};
 
 } // namespace

@@ -140,8 +140,8 @@ TEST_CASE("any change of any file on board changes the dictionary's id; the time
           "[dictionary][R20]") {
     std::set<std::uint16_t> ids{msl().id};
     for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "constraints.csv", "state_machines.csv",
-          "owners.csv", "telemetry_plan.csv"}) {
+         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
+          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         INFO(file);
         const tests::MissionCopy mission;
         mission.write(file, mission.text(file) + "\n");
@@ -168,8 +168,8 @@ TEST_CASE("a change of constraints.csv, which flight checks and does not act on,
 
 TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary]") {
     for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "constraints.csv", "state_machines.csv",
-          "owners.csv", "telemetry_plan.csv"}) {
+         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
+          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         const tests::MissionCopy mission;
         std::filesystem::remove(mission.path() / file);
         const Loaded loaded = mission.load();
@@ -177,15 +177,15 @@ TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary
         CHECK_FALSE(loaded.dictionary);
         CHECK(loaded.findings.size() == 1);
     }
-    CHECK(load("/no/such/folder").findings.size() == 9);
+    CHECK(load("/no/such/folder").findings.size() == 10);
 }
 
 TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
     std::mt19937 random{20120806};
     const tests::MissionCopy mission;
     for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "parameters.csv", "constraints.csv", "state_machines.csv",
-          "owners.csv", "telemetry_plan.csv"}) {
+         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
+          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         const std::string sound = mission.text(file);
         for (int trial = 0; trial < 60; ++trial) {
             std::string text = sound;

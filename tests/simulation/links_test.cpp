@@ -148,13 +148,6 @@ TEST_CASE("the likelihood of a tone is the share of decisions that are right", "
     CHECK(promised == Approx(right).epsilon(0.03));
 }
 
-TEST_CASE("the logarithm of I0 has no seam", "[simulation][tones]") {
-    CHECK(log_bessel_i0(0.0) == 0.0);
-    CHECK(log_bessel_i0(1.0) == Approx(std::log(1.2660658777520084)).epsilon(1e-10));
-    CHECK(log_bessel_i0(19.999999) == Approx(log_bessel_i0(20.000001)).margin(3e-6));
-    CHECK(log_bessel_i0(2000.0) > 1990.0);
-}
-
 TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silent after Earth set",
           "[simulation][tones]") {
     Radio radio;

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace aeolis {
+
+/// The X-band waveform: a carrier whose phase a square wave at the tone's own frequency swings by ± the modulation index.
+///
+///   s(t) = A exp j(φ(t) + m sq(2π f_k t)),   f_k = first + k · spacing,   sq = ±1; without a tone m sq is 0.
+///
+/// The numbers are the dictionary's (mfsk.csv, docs/tones.md).
+struct MfskWaveform {
+    static constexpr int tones = 256; ///< R31
+
+    double carrier_hz = 0.0;
+    double first_tone_hz = 0.0, tone_spacing_hz = 0.0;
+    double symbol_s = 0.0;
+    double modulation_index_rad = 0.0;
+
+    double tone_hz(int tone) const { return first_tone_hz + tone * tone_spacing_hz; }
+    double highest_tone_hz() const { return tone_hz(tones - 1); }
+    /// Part of the total power that stays in the carrier while a tone is sent.
+    double carrier_fraction() const { return std::cos(modulation_index_rad) * std::cos(modulation_index_rad); }
+    /// Part of the total power in both first sidebands, which are what the receiver uses.
+    double tone_fraction() const {
+        const double sine = std::sin(modulation_index_rad);
+        return 8.0 / (std::numbers::pi * std::numbers::pi) * sine * sine;
+    }
+    constexpr bool operator==(const MfskWaveform&) const = default;
+};
+
+} // namespace aeolis

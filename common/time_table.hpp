@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "common/result.hpp"
+
+namespace aeolis {
+
+/// A quantity against time, smooth between rows: cubic Hermite with the slopes of neighbouring rows' chords, so value and
+/// rate are continuous; before the first and after the last row the value is held. Empty: zero everywhere.
+class TimeTable {
+  public:
+    TimeTable() = default;
+    /// Fails when times do not increase, a number is not finite, or the lengths differ.
+    static Result<TimeTable> make(std::vector<double> time_s, std::vector<double> value);
+
+    double at(double time_s) const;
+    double rate_at(double time_s) const; ///< per second
+
+    bool empty() const { return time_s_.empty(); }
+    double first_s() const { return time_s_.empty() ? 0.0 : time_s_.front(); }
+    double last_s() const { return time_s_.empty() ? 0.0 : time_s_.back(); }
+
+  private:
+    struct Piece {
+        double start_s, length_s, from, to, slope_from, slope_to;
+    };
+    Piece piece_at(double time_s) const;
+    double slope(std::size_t row) const;
+
+    std::vector<double> time_s_, value_;
+};
+
+} // namespace aeolis

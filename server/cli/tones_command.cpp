@@ -1,0 +1,180 @@
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/tones/doppler_file.hpp"
+#include "server/tones/flown_signal.hpp"
+#include "server/tones/sample_file.hpp"
+#include "server/tones/tone_bench.hpp"
+#include "simulation/links/x_band_channel.hpp"
+#include "telemetry/mfsk/tone_receiver.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::size_t block_samples = 65536;
+constexpr double carrier_worth_a_word_s = 30.0; // ours: three symbols long and no symbol
+
+Result<TimeTable> optional_doppler(const std::optional<std::filesystem::path>& file) {
+    return file ? read_doppler(*file) : Result<TimeTable>{TimeTable{}};
+}
+
+/// A line a symbol: JSON, or words.
+void print(const telemetry::ToneReception& heard, const dictionary::Dictionary& dictionary, bool json) {
+    if (!json) {
+        const std::string name = heard.tone ? dictionary.tones[*heard.tone].name : std::string{};
+        fmt::print("{:12.3f} s  {:>7}  {:.4f}  {:5.1f} dB-Hz  {:10.1f} Hz  {:<11} {}\n", heard.start_s,
+                   heard.tone ? fmt::format("tone {}", *heard.tone) : "erasure", heard.evidence.best[0].likelihood,
+                   heard.total_c_n0_dbhz, heard.doppler_hz, to_text(heard.lock), name);
+        return;
+    }
+    std::string best, spectrum;
+    for (const auto& each : heard.evidence.best)
+        best += fmt::format("{}{{\"tone\":{},\"likelihood\":{:.6g}}}", best.empty() ? "" : ",", each.tone, each.likelihood);
+    for (const float level : heard.evidence.spectrum_db)
+        spectrum += fmt::format("{}{:.1f}", spectrum.empty() ? "" : ",", level);
+    fmt::print("{{\"start_s\":{:.3f},\"tone\":{},\"c_n0_dbhz\":{:.2f},\"doppler_hz\":{:.2f},\"lock\":\"{}\","
+               "\"seen_fraction\":{:.3f},\"log_likelihood_ratio\":{:.2f},\"best\":[{}],\"spectrum_db\":[{}]}}\n",
+               heard.start_s, heard.tone ? std::to_string(*heard.tone) : "null", heard.total_c_n0_dbhz, heard.doppler_hz,
+               to_text(heard.lock), heard.seen_fraction, heard.evidence.log_likelihood_ratio, best, spectrum);
+}
+
+struct Sending {
+    std::vector<simulation::SentTone> tones;
+    simulation::XBandPath path;
+    double length_s = 0.0;
+};
+
+Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
+    const auto flyable_landing = flyable(options.shared, *options.scenario);
+    if (!flyable_landing) return flyable_landing.error();
+    const FlownSignal flown = fly_signal(flyable_landing->scenario, options.seed, options.case_number, dictionary);
+    if (flown.doppler_hz.empty()) return Error{"the landing did not come within 900 s of entry"};
+    Sending sending;
+    sending.tones = flown.tones;
+    sending.path.doppler_hz = flown.doppler_hz;
+    sending.path.start_s = options.from_s.value_or(flown.doppler_hz.first_s());
+    sending.path.set_s = flown.earth_set_s;
+    sending.length_s = options.length_s.value_or(flown.earth_set_s + 20.0 - sending.path.start_s);
+    return sending;
+}
+
+Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
+    Sending sending;
+    if (options.tones) {
+        auto tones = read_tones_to_send(*options.tones, dictionary.mfsk.symbol_s);
+        if (!tones) return tones.error();
+        sending.tones = std::move(*tones);
+    }
+    auto doppler = optional_doppler(options.doppler);
+    if (!doppler) return doppler.error();
+    sending.path.doppler_hz = std::move(*doppler);
+    const bool has_doppler = !sending.path.doppler_hz.empty();
+    sending.path.start_s = options.from_s.value_or(has_doppler ? sending.path.doppler_hz.first_s() : 0.0);
+    const double last_s = std::max(sending.tones.empty() ? 0.0 : sending.tones.back().start_s + 20.0,
+                                   has_doppler ? sending.path.doppler_hz.last_s() : 0.0);
+    sending.length_s = options.length_s.value_or(last_s - sending.path.start_s);
+    return sending;
+}
+
+} // namespace
+
+int tones_decode(const TonesDecodeOptions& options) {
+    const auto dictionary = loaded_dictionary(options.shared.dictionary);
+    if (!dictionary) return 1;
+    const auto format = sample_format(options.format);
+    if (!format) return failed(format.error().message, 2);
+    const auto predict = optional_doppler(options.predict);
+    if (!predict) return failed(predict.error().message);
+    auto receiver = telemetry::ToneReceiver::make(dictionary->mfsk, options.rate_hz, *predict, options.start_s);
+    if (!receiver) return failed(receiver.error().message, 2);
+    auto reader = SampleReader::open(options.samples, *format);
+    if (!reader) return failed(reader.error().message);
+
+    std::size_t symbols = 0;
+    const auto print_new = [&] {
+        for (const auto& heard : receiver->take()) {
+            print(heard, *dictionary, options.json);
+            ++symbols;
+        }
+    };
+    std::vector<std::complex<float>> room(block_samples);
+    for (;;) {
+        const auto block = reader->next(room);
+        if (!block) return failed(block.error().message);
+        if (block->empty()) break;
+        receiver->push(*block);
+        print_new();
+    }
+    receiver->finish();
+    print_new();
+    const telemetry::ReceiverStatus& status = receiver->status();
+    const double length_s = static_cast<double>(reader->samples()) / options.rate_hz;
+    if (status.loudest == 0.0)
+        return failed(fmt::format("{}: silence, {:.1f} s of it", options.samples.string(), length_s));
+    if (status.carrier_s == 0.0)
+        return failed(fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", options.samples.string(), length_s,
+                                  options.rate_hz, options.format));
+    if (symbols == 0 && status.carrier_s > carrier_worth_a_word_s)
+        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", options.samples.string(),
+                                  status.carrier_s, options.rate_hz));
+    return 0;
+}
+
+int tones_simulate(const TonesSimulateOptions& options) {
+    const auto dictionary = options.scenario ? dictionary_of_flight(options.shared.dictionary)
+                                             : Result<dictionary::Dictionary>{dictionary::Dictionary{}};
+    if (!dictionary) return failed(dictionary.error().message);
+    const auto words = options.scenario ? std::optional{*dictionary} : loaded_dictionary(options.shared.dictionary);
+    if (!words) return 1;
+    const auto format = sample_format(options.format);
+    if (!format) return failed(format.error().message, 2);
+    if (const auto possible = telemetry::ToneReceiver::make(words->mfsk, options.rate_hz); !possible)
+        return failed(possible.error().message, 2);
+    auto sending = options.scenario ? sending_of_flight(options, *words) : sending_of_files(options, *words);
+    if (!sending) return failed(sending.error().message);
+    auto predict = optional_doppler(options.predict);
+    if (!predict) return failed(predict.error().message);
+    if (!(sending->length_s > 0.0)) return failed("there is nothing to send: give tones, Doppler, a scenario or --length", 2);
+    const double residual_hz = sending->path.doppler_hz.at(sending->path.start_s) - predict->at(sending->path.start_s);
+    if (std::abs(residual_hz) > 0.5 * options.rate_hz)
+        return failed(fmt::format("Doppler minus predict is {:.0f} Hz: outside of samples at {} Hz; give --predict",
+                                  residual_hz, options.rate_hz), 2);
+    sending->path.predict_hz = std::move(*predict);
+    sending->path.rate_hz = options.rate_hz;
+    sending->path.total_c_n0_dbhz = options.c_n0_dbhz;
+
+    auto writer = SampleWriter::open(options.out, *format);
+    if (!writer) return failed(writer.error().message);
+    simulation::XBandChannel channel{words->mfsk, sending->path, sending->tones, options.seed, options.case_number};
+    std::vector<std::complex<float>> block(block_samples);
+    auto left = static_cast<std::uint64_t>(sending->length_s * options.rate_hz);
+    while (left > 0) {
+        const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left, block.size()));
+        channel.next(std::span{block}.first(count));
+        if (const auto written = writer->add(std::span{block}.first(count)); !written) return failed(written.error().message);
+        left -= count;
+    }
+    if (const auto closed = writer->close(); !closed) return failed(closed.error().message);
+    fmt::print("{}: {:.1f} s from {:.3f} s on, {} tones, {} at {} Hz, {} dB-Hz total\n", options.out.string(),
+               sending->length_s, sending->path.start_s, sending->tones.size(), options.format, options.rate_hz,
+               options.c_n0_dbhz);
+    return 0;
+}
+
+int tones_bench(const TonesBenchOptions& options) {
+    const auto landing = flyable(options.shared, "od137");
+    if (!landing) return failed(landing.error().message);
+    simulation::Scenario dispersed = landing->scenario;
+    const auto errors = scenario_given("nominal_auto", options.shared.scenarios);
+    if (!errors) return failed(errors.error().message);
+    dispersed.dispersions = errors->dispersions;
+    const bool met = tell_tone_figures(landing->dictionary, landing->scenario, dispersed, options.full, [](const ToneFigure& figure) {
+        fmt::print("{}\n", figure.text());
+        std::fflush(stdout);
+    });
+    return met ? 0 : 1;
+}
+
+} // namespace aeolis::server

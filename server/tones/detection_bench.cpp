@@ -1,0 +1,166 @@
+#include "server/tones/tone_bench.hpp"
+
+#include "simulation/links/x_band_channel.hpp"
+#include "telemetry/mfsk/symbol_error.hpp"
+#include "telemetry/mfsk/tone_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+namespace aeolis::server {
+namespace {
+
+using telemetry::ToneSums;
+
+constexpr int baseband_hops = 80;
+constexpr double baseband_rate_hz = 1200.0; // ours: just above twice the highest tone
+constexpr int frequency_steps = 2, rate_steps = 4; // to either side of the middle; ours
+constexpr double full_turn_rad = 2.0 * std::numbers::pi;
+
+double power_ratio(double db) {
+    return std::pow(10.0, 0.1 * db);
+}
+
+/// The tone whose sum over the hops is greatest, whichever offset of the grid that takes.
+int likeliest(const std::vector<ToneSums>& hops, double hop_s, const BasebandTrial& trial) {
+    const int aside_f = trial.frequency_offset_hz > 0.0 ? frequency_steps : 0;
+    const int aside_r = trial.rate_offset_hzps > 0.0 ? rate_steps : 0;
+    float most = -1.0F;
+    int best = 0;
+    for (int r = -aside_r; r <= aside_r; ++r)
+        for (int f = -aside_f; f <= aside_f; ++f) {
+            ToneSums total{};
+            for (std::size_t i = 0; i < hops.size(); ++i) {
+                const double t = (static_cast<double>(i) + 0.5 - 0.5 * static_cast<double>(hops.size())) * hop_s;
+                const double frequency_hz = aside_f == 0 ? 0.0 : trial.frequency_offset_hz * f / aside_f;
+                const double rate_hzps = aside_r == 0 ? 0.0 : trial.rate_offset_hzps * r / aside_r;
+                const auto turn = static_cast<std::complex<float>>(
+                    std::polar(1.0, -full_turn_rad * (frequency_hz * t + 0.5 * rate_hzps * t * t)));
+                for (std::size_t tone = 0; tone < total.size(); ++tone)
+                    total[tone] += std::complex<float>{turn.real() * hops[i][tone].real() - turn.imag() * hops[i][tone].imag(),
+                                                       turn.real() * hops[i][tone].imag() + turn.imag() * hops[i][tone].real()};
+            }
+            for (std::size_t tone = 0; tone < total.size(); ++tone)
+                if (std::norm(total[tone]) > most) {
+                    most = std::norm(total[tone]);
+                    best = static_cast<int>(tone);
+                }
+        }
+    return best;
+}
+
+} // namespace
+
+RateInterval interval_of(const ErrorCount& count) {
+    if (count.trials == 0) return {};
+    constexpr double z = 1.959964;
+    const auto n = static_cast<double>(count.trials);
+    const double middle = (count.rate() + 0.5 * z * z / n) / (1.0 + z * z / n);
+    const double aside = z / (1.0 + z * z / n) * std::sqrt(count.rate() * (1.0 - count.rate()) / n + 0.25 * z * z / (n * n));
+    return {std::max(middle - aside, 0.0), std::min(middle + aside, 1.0)};
+}
+
+double loss_db(double tone_c_n0_dbhz, double symbol_s, double error_rate) {
+    const double energy =
+        telemetry::energy_for_symbol_error(std::clamp(error_rate, 1e-9, 0.99), MfskWaveform::tones);
+    return tone_c_n0_dbhz - 10.0 * std::log10(energy / symbol_s);
+}
+
+ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& trial, std::uint64_t symbols, std::uint64_t seed) {
+    const int samples = static_cast<int>(baseband_rate_hz * waveform.symbol_s) / baseband_hops;
+    const double hop_s = samples / baseband_rate_hz;
+    const telemetry::ToneCorrelator correlator{waveform, baseband_rate_hz, samples};
+    simulation::Random random{seed, 0, simulation::Stream::x_band};
+    simulation::FastNormal noise{seed, 0, simulation::Stream::x_band_noise};
+    // Noise of deviation 1 a sample is a density of 2/rate.
+    const double amplitude = std::sqrt(2.0 * power_ratio(trial.tone_c_n0_dbhz) * 2.0 / baseband_rate_hz);
+    std::vector<ToneSums> hops(baseband_hops);
+    std::vector<float> hop(static_cast<std::size_t>(samples));
+    ErrorCount count;
+    for (; count.trials < symbols; ++count.trials) {
+        const int sent = static_cast<int>(random.uniform() * MfskWaveform::tones);
+        const double offset_hz = trial.frequency_offset_hz * (2.0 * random.uniform() - 1.0);
+        const double rate_hzps = trial.rate_offset_hzps * (2.0 * random.uniform() - 1.0);
+        const double phase_rad = full_turn_rad * random.uniform();
+        for (int h = 0; h < baseband_hops; ++h) {
+            const double begin_s = h * hop_s;
+            const double from_middle_s = begin_s - 0.5 * waveform.symbol_s;
+            // Within a hop the drift is a step of frequency: 0.02 Hz/s bends the phase by 1e-3 rad.
+            const double frequency_hz =
+                waveform.tone_hz(sent) + offset_hz + rate_hzps * (from_middle_s + 0.5 * hop_s);
+            const double begin_rad =
+                phase_rad + full_turn_rad * (waveform.tone_hz(sent) * begin_s + offset_hz * from_middle_s +
+                                             0.5 * rate_hzps * from_middle_s * from_middle_s);
+            const double step_rad = full_turn_rad * frequency_hz / baseband_rate_hz;
+            std::complex<double> phasor = std::polar(amplitude, begin_rad + 0.5 * step_rad);
+            const std::complex<double> step = std::polar(1.0, step_rad);
+            for (float& sample : hop) {
+                sample = static_cast<float>(phasor.imag()) + noise();
+                phasor = {phasor.real() * step.real() - phasor.imag() * step.imag(),
+                          phasor.real() * step.imag() + phasor.imag() * step.real()};
+            }
+            correlator.correlate(hop, begin_s, hops[static_cast<std::size_t>(h)]);
+        }
+        if (likeliest(hops, hop_s, trial) != sent) ++count.errors;
+    }
+    return count;
+}
+
+ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n0_dbhz, double tone_c_n0_dbhz,
+                                std::uint64_t symbols, std::uint64_t seed) {
+    // The index at which both powers are as asked for.
+    MfskWaveform split = waveform;
+    constexpr double first_sidebands = 8.0 / (std::numbers::pi * std::numbers::pi);
+    split.modulation_index_rad = std::atan(std::sqrt(power_ratio(tone_c_n0_dbhz - carrier_c_n0_dbhz) / first_sidebands));
+
+    const telemetry::HopLayout layout{4096.0};
+    const auto symbol_hops = static_cast<std::uint64_t>(std::lround(waveform.symbol_s / layout.hop_s()));
+    simulation::Random random{seed, 1, simulation::Stream::x_band};
+    std::vector<simulation::SentTone> tones(symbols);
+    for (std::uint64_t i = 0; i < symbols; ++i)
+        tones[i] = {static_cast<double>(i) * waveform.symbol_s, static_cast<std::uint8_t>(random.bits() & 0xff)};
+    simulation::XBandPath path;
+    path.rate_hz = layout.rate_hz;
+    path.total_c_n0_dbhz = carrier_c_n0_dbhz - 10.0 * std::log10(split.carrier_fraction());
+    // A slow swing of a few hertz: the frequency is not known, and not constant.
+    std::vector<double> time_s, doppler_hz;
+    for (double t = 0.0; t <= static_cast<double>(symbols) * waveform.symbol_s + 10.0; t += 0.5) {
+        time_s.push_back(t);
+        doppler_hz.push_back(5.0 * std::sin(0.5 * t));
+    }
+    path.doppler_hz = TimeTable::make(std::move(time_s), std::move(doppler_hz)).value();
+    simulation::XBandChannel channel{split, path, tones, seed, 1};
+    telemetry::CarrierTracker tracker{layout, split.carrier_fraction()};
+    tracker.start(0, 0.0, 0.0);
+    const telemetry::ToneCorrelator correlator{waveform, layout.thinned_rate_hz(), layout.thinned_samples()};
+
+    std::vector<std::complex<float>> samples(static_cast<std::size_t>(layout.hop_samples()));
+    std::vector<telemetry::CarrierHop> hops;
+    ToneSums total{}, sums{};
+    std::uint64_t gathered = 0;
+    ErrorCount count;
+    while (count.trials < symbols) {
+        channel.next(samples);
+        hops.clear();
+        tracker.push(samples, hops);
+        for (const telemetry::CarrierHop& hop : hops) {
+            if (hop.found) {
+                correlator.correlate(hop.quadrature, static_cast<double>(hop.first_sample) / layout.rate_hz, sums);
+                for (std::size_t tone = 0; tone < total.size(); ++tone)
+                    total[tone] += sums[tone];
+            }
+            if (++gathered < symbol_hops || count.trials == symbols) continue;
+            const auto most = std::ranges::max_element(total, {}, [](const auto& sum) { return std::norm(sum); });
+            if (most - total.begin() != tones[count.trials].tone) ++count.errors;
+            ++count.trials;
+            total = {};
+            gathered = 0;
+        }
+        if (tracker.lost()) tracker.start(tracker.next_sample(), 0.0, 0.0);
+    }
+    return count;
+}
+
+} // namespace aeolis::server

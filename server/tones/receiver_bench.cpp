@@ -1,0 +1,257 @@
+#include "server/tones/tone_bench.hpp"
+
+#include "server/tones/flown_signal.hpp"
+#include "simulation/links/x_band_channel.hpp"
+#include "telemetry/mfsk/symbol_error.hpp"
+#include "telemetry/mfsk/tone_receiver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fmt/format.h>
+#include <functional>
+
+namespace aeolis::server {
+namespace {
+
+constexpr double block_s = 1.0;
+
+double cpu_s() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+struct Heard {
+    std::vector<telemetry::ToneReception> receptions;
+    double cpu_s = 0.0; ///< of the receiver alone
+};
+
+/// `length_s` of a channel through a receiver, a second at a time.
+Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path, const std::vector<simulation::SentTone>& tones,
+           double length_s, std::uint64_t seed) {
+    simulation::XBandChannel channel{waveform, path, tones, seed, 2};
+    auto receiver = telemetry::ToneReceiver::make(waveform, path.rate_hz, path.predict_hz, path.start_s);
+    AEOLIS_CHECK(receiver.ok());
+    std::vector<std::complex<float>> block(static_cast<std::size_t>(path.rate_hz * block_s));
+    Heard heard;
+    for (double at_s = 0.0; at_s < length_s; at_s += block_s) {
+        channel.next(block);
+        const double before_s = cpu_s();
+        receiver->push(block);
+        for (auto& reception : receiver->take())
+            heard.receptions.push_back(reception);
+        heard.cpu_s += cpu_s() - before_s;
+    }
+    receiver->finish();
+    for (auto& reception : receiver->take())
+        heard.receptions.push_back(reception);
+    return heard;
+}
+
+/// What was received in the place of a sent tone: the nearest, begun within half a symbol of it.
+const telemetry::ToneReception* in_place_of(const simulation::SentTone& sent, const std::vector<telemetry::ToneReception>& all) {
+    const auto apart_s = [&](const telemetry::ToneReception& each) { return std::abs(each.start_s - sent.start_s); };
+    const auto nearest = std::ranges::min_element(all, {}, apart_s);
+    return nearest == all.end() || apart_s(*nearest) > 5.0 ? nullptr : &*nearest;
+}
+
+std::string counted(const ErrorCount& count) {
+    const RateInterval interval = interval_of(count);
+    return fmt::format("{} of {}: {:.2e} [{:.2e}, {:.2e}]", count.errors, count.trials, count.rate(), interval.low,
+                       interval.high);
+}
+
+double theory_dbhz(const MfskWaveform& waveform, double error) {
+    return 10.0 * std::log10(telemetry::energy_for_symbol_error(error, MfskWaveform::tones) / waveform.symbol_s);
+}
+
+} // namespace
+
+std::string ToneFigure::text() const {
+    return fmt::format("{:<40} {:9.4g}   goal {:<7.4g} {:<24} {}   {}", name, value, goal, unit, met ? "met   " : "MISSED",
+                       evidence);
+}
+
+ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols, std::uint64_t seed) {
+    constexpr double acquired_s = 20.0, strong_dbhz = 26.0;
+    simulation::Random random{seed, 2, simulation::Stream::x_band};
+    std::vector<simulation::SentTone> tones;
+    double at_s = acquired_s + 30.0;
+    for (std::uint64_t i = 0; i < symbols; ++i) {
+        tones.push_back({at_s, static_cast<std::uint8_t>(random.bits() & 0xff)});
+        at_s += waveform.symbol_s + (i % 4 == 3 ? std::floor(random.uniform() * 640.0) / 64.0 : 0.0);
+    }
+    simulation::XBandPath path;
+    path.rate_hz = 4096.0;
+    path.total_c_n0_dbhz = total_c_n0_dbhz;
+    path.doppler_hz = TimeTable::make({0.0, at_s}, {100.0, 100.0 + 0.02 * at_s}).value();
+    path.gain_db = TimeTable::make({0.0, acquired_s, acquired_s + 20.0, at_s + 100.0},
+                                   {strong_dbhz - total_c_n0_dbhz, strong_dbhz - total_c_n0_dbhz, 0.0, 0.0}).value();
+    const Heard heard = hear(waveform, path, tones, at_s + 20.0, seed);
+    ErrorCount count;
+    for (const simulation::SentTone& sent : tones) {
+        const auto* reception = in_place_of(sent, heard.receptions);
+        ++count.trials;
+        if (reception == nullptr || reception->tone != sent.tone) ++count.errors;
+    }
+    return count;
+}
+
+AcquisitionCount acquisitions(const MfskWaveform& waveform, double carrier_c_n0_dbhz, std::uint64_t windows, std::uint64_t seed) {
+    constexpr double rate_hz = 100e3, rate_max_hzps = 1200.0;
+    simulation::Random random{seed, 3, simulation::Stream::x_band};
+    std::vector<std::complex<float>> samples(static_cast<std::size_t>(rate_hz));
+    AcquisitionCount count;
+    double took_s = 0.0;
+    for (; count.missed.trials < windows; ++count.missed.trials) {
+        const double middle_hz = (random.uniform() - 0.5) * (rate_hz - 2.0 * rate_max_hzps);
+        const double rate_hzps = (2.0 * random.uniform() - 1.0) * rate_max_hzps;
+        simulation::XBandPath path;
+        path.rate_hz = rate_hz;
+        path.total_c_n0_dbhz = carrier_c_n0_dbhz;
+        path.doppler_hz =
+            TimeTable::make({0.0, 1.0}, {middle_hz - 0.5 * rate_hzps, middle_hz + 0.5 * rate_hzps}).value();
+        simulation::XBandChannel channel{waveform, path, {}, seed, 1000 + count.missed.trials};
+        channel.next(samples);
+        telemetry::CarrierSearch search{rate_hz};
+        const double before_s = cpu_s();
+        const auto found = search.push(samples);
+        took_s += cpu_s() - before_s;
+        if (!found || std::abs(found->frequency_hz - middle_hz) > 50.0) ++count.missed.errors;
+    }
+    count.cpu_ms_a_second = 1e3 * took_s / static_cast<double>(windows);
+    return count;
+}
+
+ErrorCount false_alarms(std::uint64_t windows, std::uint64_t seed) {
+    constexpr double rate_hz = 100e3;
+    simulation::FastNormal noise{seed, 4, simulation::Stream::x_band_noise};
+    std::vector<std::complex<float>> samples(static_cast<std::size_t>(rate_hz));
+    telemetry::CarrierSearch search{rate_hz};
+    ErrorCount count;
+    for (; count.trials < windows; ++count.trials) {
+        for (auto& sample : samples)
+            sample = {noise(), noise()};
+        if (search.push(samples)) ++count.errors;
+    }
+    return count;
+}
+
+LandingTones landing_tones(const FlownSignal& nominal, const simulation::Scenario& dispersed,
+                           const dictionary::Dictionary& dictionary, double total_c_n0_dbhz, double rate_hz,
+                           std::uint64_t seed) {
+    const FlownSignal flown = fly_signal(dispersed, seed, 1, dictionary);
+
+    simulation::XBandPath path;
+    path.rate_hz = rate_hz;
+    path.start_s = nominal.doppler_hz.first_s() + 1.0;
+    path.total_c_n0_dbhz = total_c_n0_dbhz;
+    path.doppler_hz = flown.doppler_hz;
+    path.predict_hz = nominal.doppler_hz;
+    path.set_s = flown.earth_set_s;
+    const double length_s = flown.earth_set_s - path.start_s + 20.0;
+    const Heard heard = hear(dictionary.mfsk, path, flown.tones, length_s, seed);
+
+    LandingTones result;
+    result.cpu_ms_a_second = 1e3 * heard.cpu_s / length_s;
+    for (double t = path.start_s; t < flown.earth_set_s; t += 0.1)
+        result.predict_error_hz =
+            std::max(result.predict_error_hz, std::abs(flown.doppler_hz.at(t) - nominal.doppler_hz.at(t)));
+    for (const simulation::SentTone& sent : flown.tones) {
+        const double end_s = sent.start_s + dictionary.mfsk.symbol_s;
+        if (sent.start_s < path.start_s + 2.0 || sent.start_s >= flown.earth_set_s) continue;
+        const bool outage = end_s > flown.earth_set_s ||
+                            (end_s > flown.parachute_s - 10.0 && sent.start_s < flown.parachute_s + 10.0);
+        const auto* reception = in_place_of(sent, heard.receptions);
+        const bool right = reception != nullptr && reception->tone == sent.tone;
+        if (reception != nullptr && reception->tone && !right) ++result.wrong;
+        if (outage) {
+            ++result.in_outage;
+            result.in_outage_decoded += right ? 1 : 0;
+        } else {
+            ++result.sent;
+            right ? ++result.decoded : ++result.missed;
+        }
+    }
+    // A tone where none was sent is wrong too.
+    for (const telemetry::ToneReception& each : heard.receptions)
+        if (each.tone && std::ranges::none_of(flown.tones, [&](const simulation::SentTone& sent) {
+                return std::abs(each.start_s - sent.start_s) <= 5.0;
+            }))
+            ++result.wrong;
+    return result;
+}
+
+bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulation::Scenario& landing,
+                       const simulation::Scenario& dispersed, bool full,
+                       const std::function<void(const ToneFigure&)>& tell) {
+    const MfskWaveform& mfsk = dictionary.mfsk;
+    bool all_met = true;
+    const auto add = [&](const ToneFigure& figure) {
+        tell(figure);
+        all_met = all_met && figure.met;
+    };
+    const auto add_loss = [&](const std::string& name, double tone_dbhz, double goal_db, const ErrorCount& count) {
+        const double loss = loss_db(tone_dbhz, mfsk.symbol_s, count.rate());
+        const RateInterval rates = interval_of(count);
+        const double least = loss_db(tone_dbhz, mfsk.symbol_s, rates.low), most = loss_db(tone_dbhz, mfsk.symbol_s, rates.high);
+        add({name, loss, goal_db, "dB from theory", loss <= goal_db,
+             fmt::format("at {:.2f} dB-Hz, {}; loss [{:.2f}, {:.2f}] dB", tone_dbhz, counted(count), least, most)});
+    };
+
+    add_loss("frequency known, 1e-2", theory_dbhz(mfsk, 1e-2), 0.1,
+             baseband_errors(mfsk, {theory_dbhz(mfsk, 1e-2)}, full ? 100'000 : 32'000, 1));
+    if (full)
+        add_loss("frequency known, 1e-3", theory_dbhz(mfsk, 1e-3), 0.1,
+                 baseband_errors(mfsk, {theory_dbhz(mfsk, 1e-3)}, 350'000, 2));
+    const double half_bin_hz = 0.5 / mfsk.symbol_s;
+    add_loss("blind within half a bin, 1e-2", theory_dbhz(mfsk, 1e-2) + 0.4, 0.5,
+             baseband_errors(mfsk, {theory_dbhz(mfsk, 1e-2) + 0.4, half_bin_hz}, full ? 60'000 : 6'000, 3));
+    add_loss("with rate search, 1e-2", theory_dbhz(mfsk, 1e-2) + 0.8, 1.2,
+             baseband_errors(mfsk, {theory_dbhz(mfsk, 1e-2) + 0.8, half_bin_hz, 2.0 / (mfsk.symbol_s * mfsk.symbol_s)},
+                             full ? 40'000 : 3'000, 4));
+    add_loss("carrier-aided, carrier at 20.5 dB-Hz", theory_dbhz(mfsk, full ? 1e-2 : 3e-2), 0.3,
+             carrier_aided_errors(mfsk, 20.5, theory_dbhz(mfsk, full ? 1e-2 : 3e-2), full ? 40'000 : 8'000, 5));
+
+    for (const auto& [name, error, total_dbhz] : {std::tuple{"the whole receiver, 1e-1", 1e-1, 11.3},
+                                                  std::tuple{"the whole receiver, 3e-2", 3e-2, 12.3}}) {
+        const ErrorCount count = receiver_errors(mfsk, total_dbhz, full ? 6'000 : 1'000, 6);
+        const double tone_dbhz = total_dbhz + 10.0 * std::log10(mfsk.tone_fraction());
+        const double loss = loss_db(tone_dbhz, mfsk.symbol_s, count.rate());
+        add({name, loss, 0.0, "dB from theory, no goal", true, fmt::format("at {:.2f} dB-Hz total, {}", total_dbhz, counted(count))});
+    }
+
+    const AcquisitionCount found = acquisitions(mfsk, 20.5, full ? 10'000 : 1'000, 7);
+    add({"acquisition, carrier at 20.5 dB-Hz: Pd", 1.0 - found.missed.rate(), 0.99, "", found.missed.rate() <= 0.01,
+         "missed " + counted(found.missed)});
+    add({"acquisition over 100 kHz", found.cpu_ms_a_second, 10.0, "ms of CPU a second", found.cpu_ms_a_second <= 10.0, ""});
+    const ErrorCount alarms = false_alarms(full ? 30'000 : 1'000, 8);
+    add({"acquisition in noise: Pfa", alarms.rate(), telemetry::CarrierSearch::false_alarm, "a window",
+         interval_of(alarms).low <= telemetry::CarrierSearch::false_alarm, counted(alarms) + ", a bound by construction"});
+
+    constexpr double total_dbhz = 22.0, low_rate_hz = 16384.0, whole_band_hz = 100e3;
+    const FlownSignal nominal = fly_signal(landing, 1, 0, dictionary);
+    LandingTones sum;
+    const std::uint64_t seeds = full ? 50 : 5;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        const LandingTones one = landing_tones(nominal, dispersed, dictionary, total_dbhz, low_rate_hz, seed);
+        sum.sent += one.sent;
+        sum.decoded += one.decoded;
+        sum.wrong += one.wrong;
+        sum.in_outage += one.in_outage;
+        sum.in_outage_decoded += one.in_outage_decoded;
+        sum.cpu_ms_a_second += one.cpu_ms_a_second / static_cast<double>(seeds);
+        sum.predict_error_hz = std::max(sum.predict_error_hz, one.predict_error_hz);
+    }
+    add({"OD137 at 22 dB-Hz total: decoded", static_cast<double>(sum.decoded), static_cast<double>(sum.sent), "tones",
+         sum.sent > 0 && sum.decoded == sum.sent,
+         fmt::format("{} landings; of {} in outages {}; the predict is wrong by up to {:.0f} Hz", seeds, sum.in_outage,
+                     sum.in_outage_decoded, sum.predict_error_hz)});
+    add({"OD137 at 22 dB-Hz total: wrong", static_cast<double>(sum.wrong), 0.0, "tones", sum.wrong == 0, ""});
+    add({"receiver, samples at 16 kHz", sum.cpu_ms_a_second, 15.0, "ms of CPU a second", sum.cpu_ms_a_second <= 15.0, ""});
+    const double wide_ms =
+        landing_tones(nominal, dispersed, dictionary, total_dbhz, whole_band_hz, 1).cpu_ms_a_second;
+    add({"receiver, samples at 100 kHz", wide_ms, 15.0, "ms of CPU a second", wide_ms <= 15.0, ""});
+    return all_met;
+}
+
+} // namespace aeolis::server

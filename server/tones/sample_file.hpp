@@ -1,0 +1,58 @@
+#pragma once
+
+#include "common/result.hpp"
+
+#include <complex>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace aeolis::server {
+
+/// How complex samples lie in a file: in-phase then quadrature, little-endian, nothing else.
+enum class SampleFormat {
+    cf32, ///< two 32-bit floats
+    ci16, ///< two 16-bit integers
+};
+Result<SampleFormat> sample_format(std::string_view name);
+std::size_t octets_a_sample(SampleFormat format);
+
+/// Reads samples block by block.
+class SampleReader {
+  public:
+    /// Fails when there is no such file, or its length is no whole number of samples, or nothing.
+    static Result<SampleReader> open(const std::filesystem::path& file, SampleFormat format);
+
+    /// The next samples, at most as many as `room`; none at the end.
+    Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
+    std::uint64_t samples() const { return samples_; }
+
+  private:
+    SampleReader(std::filesystem::path file, SampleFormat format) : file_(std::move(file)), format_(format) {}
+    std::filesystem::path file_;
+    SampleFormat format_;
+    std::uint64_t samples_ = 0, read_ = 0;
+    std::ifstream stream_;
+    std::vector<char> octets_;
+};
+
+/// Writes samples; ci16 scaled so that noise of power 1 a sample has a deviation of 2000 in each part.
+class SampleWriter {
+  public:
+    static Result<SampleWriter> open(const std::filesystem::path& file, SampleFormat format);
+    Result<void> add(std::span<const std::complex<float>> samples);
+    Result<void> close();
+
+  private:
+    SampleWriter(std::filesystem::path file, SampleFormat format) : file_(std::move(file)), format_(format) {}
+    Result<void> state() const;
+    std::filesystem::path file_;
+    SampleFormat format_;
+    std::ofstream stream_;
+    std::vector<char> octets_;
+};
+
+} // namespace aeolis::server

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "telemetry/mfsk/tone_correlator.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace aeolis::telemetry {
+
+struct ToneLikelihood {
+    std::uint8_t tone = 0;
+    double likelihood = 0.0; ///< posterior probability, all tones being equally likely before
+};
+
+/// What a symbol's worth of signal says about which tone was sent.
+struct ToneEvidence {
+    std::array<ToneLikelihood, 5> best{};                ///< the likeliest first
+    std::array<float, MfskWaveform::tones / 4> spectrum_db{}; ///< energy over noise, the greatest of each four tones
+    /// Natural logarithm of how much likelier the signal is with some tone than without one.
+    double log_likelihood_ratio = 0.0;
+};
+
+/// The exact non-coherent statistic: with `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy,
+/// tone k is likelier than none by I0(2|G_k|) exp(−energy). `energy`: expected, E/N0 of the symbol as the carrier tells.
+/// Source: [proakis-digital-communications].
+ToneEvidence weigh(const ToneSums& sums, double energy);
+
+} // namespace aeolis::telemetry

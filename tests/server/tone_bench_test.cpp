@@ -1,0 +1,43 @@
+#include "server/tones/tone_bench.hpp"
+#include "simulation/links/tone_detection.hpp"
+#include "simulation/links/x_band_link.hpp"
+#include "telemetry/mfsk/symbol_error.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <cmath>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+TEST_CASE("the statistical model splits power as the waveform of the dictionary does", "[tones]") {
+    const MfskWaveform& mfsk = tests::shipped_dictionary().mfsk;
+    CHECK(simulation::XBandLink::carrier_power_db() == Approx(10.0 * std::log10(mfsk.carrier_fraction())));
+    CHECK(simulation::XBandLink::tone_power_db() == Approx(10.0 * std::log10(mfsk.tone_fraction())));
+}
+
+TEST_CASE("the statistical model's curve is that of the real receiver's correlator on samples, and both are theory's",
+          "[tones][R31]") {
+    const MfskWaveform& mfsk = tests::shipped_dictionary().mfsk;
+    simulation::Random random{3, 0, simulation::Stream::x_band};
+    for (const double theory : {0.3, 0.1}) {
+        const double tone_dbhz = 10.0 * std::log10(telemetry::energy_for_symbol_error(theory, 256) / mfsk.symbol_s);
+        ErrorCount statistical;
+        for (; statistical.trials < 2000; ++statistical.trials)
+            if (simulation::detect_tone(77, tone_dbhz, mfsk.symbol_s, random).best != 77) ++statistical.errors;
+        const ErrorCount real = baseband_errors(mfsk, {tone_dbhz}, 1000, 9);
+        const auto deviation = [&](const ErrorCount& count) {
+            return std::sqrt(theory * (1.0 - theory) / static_cast<double>(count.trials));
+        };
+        CHECK(real.rate() == Approx(theory).margin(3.5 * deviation(real)));
+        CHECK(statistical.rate() == Approx(theory).margin(3.5 * deviation(statistical)));
+    }
+}
+
+TEST_CASE("a counted rate's interval holds the rate, and an error rate tells its loss", "[tones]") {
+    const RateInterval interval = interval_of({10, 1000});
+    CHECK(interval.low == Approx(0.00544).margin(1e-4));
+    CHECK(interval.high == Approx(0.01831).margin(1e-4));
+    CHECK(interval_of({}).high == 1.0);
+    CHECK(loss_db(2.36, 10.0, 0.01) == Approx(0.0).margin(0.005));
+    CHECK(loss_db(3.36, 10.0, 0.01) == Approx(1.0).margin(0.005));
+}
