@@ -77,7 +77,7 @@ struct CarrierSearch::State {
 
     std::optional<CarrierFound> search(int windows) {
         const int count = windows * segments_a_window;
-        const double step_hzps = rate_max_hzps / (lines_aside) / windows;
+        const double step_hzps = rate_max_hzps / lines_aside / windows;
         double mean = 0.0;
         for (int i = 0; i < count; ++i)
             mean += powers.col((segments_seen - 1 - i) % powers.cols()).segment(guard, bins).mean() / count;
@@ -103,10 +103,11 @@ struct CarrierSearch::State {
             sum_line(count, (best_line + line_offset) * step_hzps);
             return static_cast<double>(line[(best_bin + bin_offset + bins) % bins]);
         };
+        const Eigen::Index from_middle = best_bin - bins / 2;
         CarrierFound found;
         found.last_sample = segments_seen * segment;
         found.first_sample = found.last_sample - static_cast<std::int64_t>(count) * segment;
-        found.frequency_hz = (static_cast<double>(best_bin - bins / 2) +
+        found.frequency_hz = (static_cast<double>(from_middle) +
                               peak_offset(around(0, -1), around(0, 0), around(0, 1))) * bin_hz;
         found.rate_hzps = (best_line + peak_offset(around(-1, 0), around(0, 0), around(1, 0))) * step_hzps;
         found.statistic = most / mean;
