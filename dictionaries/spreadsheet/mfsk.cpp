@@ -3,7 +3,9 @@
 
 #include "dictionaries/words.hpp"
 
+#include <algorithm>
 #include <array>
+#include <numbers>
 #include <set>
 #include <string>
 

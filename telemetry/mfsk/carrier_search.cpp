@@ -14,7 +14,8 @@ namespace {
 constexpr double segment_s = 0.02;       // ours: 1200 Hz/s bends the phase by 0.4 rad at most
 constexpr int segments_a_window = 50;    // 1 s
 constexpr int windows_a_long_one = 4;    // 4 s
-constexpr int rate_lines = 49;           // an odd number, the middle one of rate 0
+constexpr int lines_aside = 24;          // to either side of rate 0
+constexpr int rate_lines = 2 * lines_aside + 1;
 constexpr double rate_max_hzps = 1200.0; // ours: what a predict may leave
 
 } // namespace
@@ -76,7 +77,7 @@ struct CarrierSearch::State {
 
     std::optional<CarrierFound> search(int windows) {
         const int count = windows * segments_a_window;
-        const double step_hzps = rate_max_hzps / (rate_lines / 2) / windows;
+        const double step_hzps = rate_max_hzps / lines_aside / windows;
         double mean = 0.0;
         for (int i = 0; i < count; ++i)
             mean += powers.col((segments_seen - 1 - i) % powers.cols()).segment(guard, bins).mean() / count;
@@ -86,12 +87,12 @@ struct CarrierSearch::State {
         int best_line = 0;
         Eigen::Index best_bin = 0;
         for (int l = 0; l < rate_lines; ++l) {
-            sum_line(count, (l - rate_lines / 2) * step_hzps);
+            sum_line(count, (l - lines_aside) * step_hzps);
             Eigen::Index bin = 0;
             const float highest = line.maxCoeff(&bin);
             if (highest > most) {
                 most = highest;
-                best_line = l - rate_lines / 2;
+                best_line = l - lines_aside;
                 best_bin = bin;
             }
         }
@@ -102,10 +103,11 @@ struct CarrierSearch::State {
             sum_line(count, (best_line + line_offset) * step_hzps);
             return static_cast<double>(line[(best_bin + bin_offset + bins) % bins]);
         };
+        const Eigen::Index from_middle = best_bin - bins / 2;
         CarrierFound found;
         found.last_sample = segments_seen * segment;
         found.first_sample = found.last_sample - static_cast<std::int64_t>(count) * segment;
-        found.frequency_hz = (static_cast<double>(best_bin) - bins / 2 +
+        found.frequency_hz = (static_cast<double>(from_middle) +
                               peak_offset(around(0, -1), around(0, 0), around(0, 1))) * bin_hz;
         found.rate_hzps = (best_line + peak_offset(around(-1, 0), around(0, 0), around(1, 0))) * step_hzps;
         found.statistic = most / mean;

@@ -59,8 +59,8 @@ DecidedSymbol SymbolSequence::decide() const {
     return symbol;
 }
 
-void SymbolSequence::push(HopEvidence hop, std::vector<DecidedSymbol>& out) {
-    hops_.push_back(std::move(hop));
+void SymbolSequence::push(const HopEvidence& hop, std::vector<DecidedSymbol>& out) {
+    hops_.push_back(hop);
     if (std::ssize(hops_) > symbol_hops_) hops_.pop_front();
     ++hops_seen_;
     State next{states_.back().score, states_.back().last_end, std::nullopt};
@@ -69,7 +69,7 @@ void SymbolSequence::push(HopEvidence hop, std::vector<DecidedSymbol>& out) {
         const double score = state(from).score + ending.evidence.log_likelihood_ratio - begin_cost();
         if (score > next.score) next = {score, hops_seen_, ending};
     }
-    states_.push_back(std::move(next));
+    states_.push_back(next);
     if (hops_seen_ % settle_hops == 0) settle(out);
 }
 
@@ -133,9 +133,9 @@ void SymbolSequence::come_out(std::int64_t first, std::vector<DecidedSymbol>& ou
         State anew{state(hops - 1).score, state(hops - 1).last_end, std::nullopt};
         if (each.symbol && hops - symbol_hops_ >= first) {
             const double score = state(hops - symbol_hops_).score + each.symbol->evidence.log_likelihood_ratio - begin_cost();
-            if (score > anew.score) anew = {score, hops, std::move(each.symbol)};
+            if (score > anew.score) anew = {score, hops, each.symbol};
         }
-        each = std::move(anew);
+        each = anew;
     }
 }
 
@@ -143,7 +143,7 @@ void SymbolSequence::finish(std::vector<DecidedSymbol>& out) {
     for (int i = 0; i < 2 * symbol_hops_ && hops_seen_ > 0; ++i) {
         HopEvidence nothing;
         nothing.first_sample = hops_.back().first_sample + hop_samples_;
-        push(std::move(nothing), out);
+        push(nothing, out);
     }
     settle(out);
 }

@@ -47,7 +47,7 @@ class SymbolSequence {
 
     explicit SymbolSequence(int symbol_hops, std::int64_t hop_samples);
 
-    void push(HopEvidence hop, std::vector<DecidedSymbol>& out);
+    void push(const HopEvidence& hop, std::vector<DecidedSymbol>& out);
     /// The rest, taking it that nothing more comes.
     void finish(std::vector<DecidedSymbol>& out);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace aeolis::telemetry {
 namespace {
@@ -123,7 +124,7 @@ void ToneReceiver::weigh_hops() {
         status_.lock = hop.lock;
         status_.doppler_hz = evidence.doppler_hz;
         (hop.found ? status_.carrier_s : status_.without_s) += layout_.hop_s();
-        sequence_.push(std::move(evidence), decided_);
+        sequence_.push(evidence, decided_);
     }
     hops_.clear();
 }

@@ -49,13 +49,13 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"named spare", "tones.csv", "\n255,spare,,", "\n255,spare,left_over,", "a spare tone has no name", 1},
         // parameters
         // the waveform
-        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[ours]\n", "is none that the waveform has"},
-        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[ours]\n", "is there twice", 4},
-        {"number of the waveform missing", "mfsk.csv", "symbol_s,10,s,A tone lasts this long,[facts]\n", "", "there is no symbol_s"},
+        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[ours]\n", "is none that the waveform has", 1},
+        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[ours]\n", "is there twice", 5},
+        {"number of the waveform missing", "mfsk.csv", "symbol_s,10,s,A tone lasts this long,[facts]\n", "", "there is no symbol_s", -4},
         {"index in radians", "mfsk.csv", "32,deg", "0.5,rad", "is in 'rad', not in deg"},
-        {"tones not orthogonal", "mfsk.csv", "spacing_hz,1,", "spacing_hz,0.05,", "the tones are not orthogonal"},
-        {"tones on a harmonic", "mfsk.csv", "first_tone_hz,300,", "first_tone_hz,100,", "reaches the third harmonic"},
-        {"no carrier left", "mfsk.csv", "32,deg", "90,deg", "no carrier is left"},
+        {"tones not orthogonal", "mfsk.csv", "spacing_hz,1,", "spacing_hz,0.05,", "the tones are not orthogonal", -3},
+        {"tones on a harmonic", "mfsk.csv", "first_tone_hz,300,", "first_tone_hz,100,", "reaches the third harmonic", -2},
+        {"no carrier left", "mfsk.csv", "32,deg", "90,deg", "no carrier is left", -5},
         {"negative frequency", "mfsk.csv", "spacing_hz,1,", "spacing_hz,-1,", "is not above 0"},
         // parameters
         {"default outside its range", "parameters.csv", "guidance_gain,5,", "guidance_gain,11,",

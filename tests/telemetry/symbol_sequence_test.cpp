@@ -38,7 +38,7 @@ std::vector<DecidedSymbol> decided(const std::vector<Sent>& sent, int hops, doub
                 if (h >= each.begin_hop && h < each.begin_hop + symbol_hops)
                     hop.sums[each.tone] += std::polar(static_cast<float>(energy), 0.3F * each.tone);
         }
-        sequence.push(std::move(hop), out);
+        sequence.push(hop, out);
     }
     sequence.finish(out);
     return out;
@@ -104,7 +104,7 @@ TEST_CASE("a symbol that could be either of two tones is erased", "[tones]") {
             hop.sums[7] = {0.42F, 0.0F};
             hop.sums[8] = {0.0F, 0.42F};
         }
-        sequence.push(std::move(hop), out);
+        sequence.push(hop, out);
     }
     sequence.finish(out);
     REQUIRE(out.size() == 1);
