@@ -32,9 +32,9 @@ enum class Stream : std::uint64_t {
     radar_b_dropout,
     gust,
     terrain,
+    x_band_noise,
     mass,
     slow_drag,
-    x_band_noise,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

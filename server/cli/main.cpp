@@ -178,17 +178,17 @@ int main(int argc, char** argv) {
     diff->callback([&] { exit_code = timeline_diff(comparing); });
 
     auto* tones_command = app.add_subcommand("tones", "X-band tones from samples")->require_subcommand(1);
-    TonesDecodeOptions decoding;
-    decoding.shared = serving.shared;
-    auto* decode = tones_command->add_subcommand("decode", "the tones in a file of complex samples, a line a symbol");
-    decode->add_option("--samples", decoding.samples, "the file: in-phase and quadrature, little-endian")->required();
-    decode->add_option("--rate", decoding.rate_hz, "samples a second")->required();
-    decode->add_option("--format", decoding.format, "cf32 or ci16")->required();
-    decode->add_option("--predict", decoding.predict, "CSV of the Doppler that was removed: time, doppler_hz");
-    decode->add_option("--start", decoding.start_s, "time of the first sample [s]")->capture_default_str();
-    decode->add_flag("--json", decoding.json, "a JSON object a line");
-    add_shared(*decode, decoding.shared);
-    decode->callback([&] { exit_code = tones_decode(decoding); });
+    TonesDecodeOptions listening;
+    listening.shared = serving.shared;
+    auto* heard = tones_command->add_subcommand("decode", "the tones in a file of complex samples, a line a symbol");
+    heard->add_option("--samples", listening.samples, "the file: in-phase and quadrature, little-endian")->required();
+    heard->add_option("--rate", listening.rate_hz, "samples a second")->required();
+    heard->add_option("--format", listening.format, "cf32 or ci16")->required();
+    heard->add_option("--predict", listening.predict, "CSV of the Doppler that was removed: time, doppler_hz");
+    heard->add_option("--start", listening.start_s, "time of the first sample [s]")->capture_default_str();
+    heard->add_flag("--json", listening.json, "a JSON object a line");
+    add_shared(*heard, listening.shared);
+    heard->callback([&] { exit_code = tones_decode(listening); });
     TonesSimulateOptions sending;
     sending.shared = serving.shared;
     auto* simulate = tones_command->add_subcommand("simulate", "writes such a file: from lists, or from a landing");

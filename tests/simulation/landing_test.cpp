@@ -2,6 +2,7 @@
 
 #include "generated/dictionary_flight.hpp"
 #include "simulation/devices/recorder.hpp"
+#include "telemetry/proximity_packets.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/telecommands.hpp"
@@ -27,6 +28,8 @@ std::vector<EventReportName> event_reports() {
 
 /// What came of a landing that was commanded `ticks` after its start.
 struct Flown {
+    telemetry::PltuReceiver pltus;
+    telemetry::ProximityPackets packets;
     std::vector<std::uint8_t> relayed;
     std::vector<std::vector<std::uint8_t>> live;
     std::set<std::string> events;
@@ -36,10 +39,16 @@ struct Flown {
         const CycleReport& report = landing.step();
         for (const ReceivedPacket& packet : report.packets) {
             CHECK_FALSE(packet.ert > landing.ert_now());
-            if (packet.link == LinkId::relay)
-                relayed.insert(relayed.end(), packet.octets.begin(), packet.octets.end());
-            else
-                live.push_back(packet.octets);
+            relayed.insert(relayed.end(), packet.octets.begin(), packet.octets.end());
+        }
+        for (const ReceivedOctets& piece : report.octets) {
+            CHECK_FALSE(piece.ert > landing.ert_now());
+            pltus.receive(piece.octets);
+            while (const auto frame = pltus.next()) {
+                packets.add(*frame);
+                while (const auto packet = packets.next())
+                    live.emplace_back(packet->begin(), packet->end());
+            }
         }
         for (const TruthEvent& event : report.events)
             events.insert(event.name);

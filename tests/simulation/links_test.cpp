@@ -59,7 +59,8 @@ TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then
     UhfLink link{radio, Random{1, 0, Stream::uhf}};
     const auto cycle = [&](UhfLink::Surroundings at) {
         link.offer(packet_of(16));
-        CHECK(link.cycle(at).size() == (link.up() ? 16 : 0));
+        const std::size_t arrived = link.cycle(at).size();
+        CHECK(arrived == (link.up() ? 16 : 0));
         return link.up();
     };
     CHECK_FALSE(cycle({-300.0, 800000.0, 5500.0, false}));
