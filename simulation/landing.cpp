@@ -83,6 +83,7 @@ struct Landing::State {
     InFlight<std::vector<std::uint8_t>> uplinks;
     InFlight<ReceivedPacket> packets;
     InFlight<ReceivedTone> tones;
+    InFlight<XBandField> fields;
     InFlight<LinkState> links;
     LinkTeller uhf_told{.link = LinkId::uhf_live}, x_band_told{.x_band = true}, relay_told{.link = LinkId::relay};
     InFlight<ReceivedOctets> octets;
@@ -220,7 +221,16 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    if (auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz})) {
+    auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz});
+    if (scenario.radio.tones_from_samples) {
+        XBandField field{{cycle_start_us + light_time_us}, truth.sclk - scenario.entry_sclk, doppler_hz, x_band.up(), {}, 0.0};
+        if (const auto symbol = x_band.sending()) {
+            field.tone = symbol->tone;
+            field.tone_age_s = truth.sclk - symbol->started;
+        }
+        fields.send(field.ert.microseconds, field);
+    }
+    if (tone) {
         tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
         tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
         tones.send(tone->end.microseconds, *tone);
@@ -295,6 +305,8 @@ const CycleReport& Landing::step() {
     s.report.octets.clear();
     s.report.packets.clear();
     s.report.tones.clear();
+    s.report.x_band.clear();
+    s.report.symbols.clear();
     s.report.links.clear();
     s.report.events.clear();
 
@@ -308,7 +320,9 @@ const CycleReport& Landing::step() {
     const std::int64_t now_us = s.now_us();
     s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) { s.report.octets.push_back(std::move(o)); });
     s.packets.arrive(now_us, [&](std::int64_t, ReceivedPacket&& p) { s.report.packets.push_back(std::move(p)); });
-    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { s.report.tones.push_back(t); });
+    auto& tones = s.scenario.radio.tones_from_samples ? s.report.symbols : s.report.tones;
+    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { tones.push_back(t); });
+    s.fields.arrive(now_us, [&](std::int64_t, const XBandField& f) { s.report.x_band.push_back(f); });
     s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
     return s.report;
 }
@@ -364,7 +378,7 @@ std::string Landing::outcome_reason() const {
 
 bool Landing::finished() const {
     const State& s = *state_;
-    return !s.computer_on && s.recording_down() && s.octets.empty() && s.packets.empty() && s.tones.empty() && s.links.empty();
+    return !s.computer_on && s.recording_down() && s.octets.empty() && s.packets.empty() && s.tones.empty() && s.fields.empty() && s.links.empty();
 }
 
 std::optional<TouchdownReport> Landing::touchdown() const {

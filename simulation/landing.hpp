@@ -59,6 +59,16 @@ struct ReceivedTone {
     Sclk sent_at;
 };
 
+/// X-band as it reaches Earth over a cycle: carrier, and what modulates it. For an antenna to make samples of.
+struct XBandField {
+    Ert ert;                    ///< of the cycle's start
+    double e_s = 0.0;           ///< when it left the vehicle, from the scenario's entry
+    double doppler_hz = 0.0;    ///< one way, at the cycle's start
+    bool up = false;            ///< else Earth has set: nothing but noise
+    std::optional<ToneId> tone; ///< none: the carrier alone
+    double tone_age_s = 0.0;    ///< since the symbol began
+};
+
 /// The state of a link, told when it changes.
 struct LinkState {
     LinkId link{};
@@ -119,6 +129,8 @@ struct CycleReport {
     std::vector<ReceivedOctets> octets;     ///< that reach Earth by the end of this cycle
     std::vector<ReceivedPacket> packets;    ///< likewise
     std::vector<ReceivedTone> tones;
+    std::vector<XBandField> x_band;    ///< when tones come from samples: what then arrives instead of `tones`
+    std::vector<ReceivedTone> symbols; ///< and the symbols that were sent in it, undecided: for the score only
     std::vector<LinkState> links;
     std::vector<TruthEvent> events;
 };

@@ -119,6 +119,7 @@ struct Radio {
     double uhf_loss_fraction = 0.0;         ///< of the octets outside the blackout, spoilt in bursts of errors
     double uhf_burst_s = 0.2;               ///< mean length of those. Ours
     double x_band_c_n0_dbhz = 22.0;         ///< total power to noise density; the statistical tone model uses it
+    bool tones_from_samples = false;        ///< by a real receiver from a real waveform; else drawn from its symbol error
     double earth_set_after_entry_s = 299.0; ///< no tone after that
     double relay_rate_bps = 2.0e6;          ///< of the recording, after landing
     double relay_start_after_touchdown_s = 20.0;

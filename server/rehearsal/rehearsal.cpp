@@ -3,6 +3,7 @@
 #include "generated/dictionary_flight.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
+#include "server/tones/flown_signal.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
 
@@ -11,6 +12,12 @@ namespace aeolis::server {
 namespace {
 
 constexpr const char* product_packet_name = "DataProduct";
+
+/// What ground expects to hear: the landing without any error.
+TimeTable predicted_doppler(const simulation::Scenario& scenario, std::uint64_t seed,
+                            const dictionary::Dictionary& dictionary) {
+    return fly_signal(simulation::undispersed(scenario), seed, 0, dictionary, scenario.start_before_entry_s).doppler_hz;
+}
 
 } // namespace
 
@@ -25,12 +32,15 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
         runner = executive_ = std::make_shared<ThreadedExecutive>(options);
     }
     if (runner != nullptr) flight_.run_prime_by(std::move(runner));
+    if (scenario.radio.tones_from_samples)
+        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler(scenario, seed, dictionary), seed,
+                                    case_number);
 }
 
 const simulation::CycleReport& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
     try {
-        const auto& report = flight_.step();
+        const auto& report = hear_tones(flight_.step());
         ++cycles_;
         take(report);
         return report;
@@ -38,6 +48,13 @@ const simulation::CycleReport& Rehearsal::step() {
         broken_ = text_of_bug(bug);
         return nothing_;
     }
+}
+
+const simulation::CycleReport& Rehearsal::hear_tones(const simulation::CycleReport& landed) {
+    if (!tones_from_samples_) return landed;
+    heard_ = landed;
+    tones_from_samples_->receive(landed, heard_.tones);
+    return heard_;
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
@@ -119,7 +136,7 @@ archive::RunStart Rehearsal::run_start(double pace) const {
     start.entry = scenario_.entry_sclk;
     start.correlation = landing().correlation();
     start.light_time_s = landing().light_time_s();
-    start.tone_model = "statistical"; // the only one that this landing has
+    start.tone_model = scenario_.radio.tones_from_samples ? "signal" : "statistical";
     start.scenario_text = scenario_to_text(scenario_);
     for (const auto& [name, value] : solution_arguments(landing().solution()))
         start.solution.emplace_back(name, value);

@@ -6,6 +6,7 @@
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/recorded_firings.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
+#include "server/station/tone_station.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
 #include "telemetry/product_assembler.hpp"
@@ -55,6 +56,7 @@ class Rehearsal {
     const simulation::Scenario& scenario() const { return scenario_; }
     const simulation::Landing& landing() const { return flight_.landing(); }
     const CommandGateway& gateway() const { return flight_.gateway(); }
+    const GroundStation& station() const { return flight_.station(); }
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 
@@ -72,6 +74,8 @@ class Rehearsal {
     }
 
   private:
+    /// The same with the tones that were decoded from its samples.
+    const simulation::CycleReport& hear_tones(const simulation::CycleReport& landed);
     void take(const simulation::CycleReport& report);
     /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
@@ -94,7 +98,8 @@ class Rehearsal {
     ToneScore tones_;
     telemetry::UnitRegister units_;
     telemetry::ProductAssembler products_;
-    simulation::CycleReport nothing_;
+    std::optional<ToneStation> tones_from_samples_; ///< where the scenario has them so
+    simulation::CycleReport heard_, nothing_;
 };
 
 } // namespace aeolis::server

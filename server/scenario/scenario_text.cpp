@@ -277,6 +277,8 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.stations(), station_fields, scenario.stations);
     read(message.dispersions(), dispersion_fields, scenario.dispersions);
     read(message.radio(), radio_fields, scenario.radio);
+    if (message.radio().has_tones_from_samples())
+        scenario.radio.tones_from_samples = message.radio().tones_from_samples();
     read(message.triggers(), trigger_fields, scenario);
     for (const auto& row : message.density_scale()) {
         simulation::DensityScale scale;
@@ -329,6 +331,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.stations, station_fields, *message.mutable_stations());
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
     write(scenario.radio, radio_fields, *message.mutable_radio());
+    message.mutable_radio()->set_tones_from_samples(scenario.radio.tones_from_samples);
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale)
         write(scale, density_fields, *message.add_density_scale());

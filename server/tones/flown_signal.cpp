@@ -8,13 +8,13 @@ namespace aeolis::server {
 namespace {
 
 constexpr double light_speed_mps = 299792458.0; // [bipm-si]
-constexpr double before_entry_s = 900.0;        // ours: before any tone of EDL's last minutes
 
 } // namespace
 
-FlownSignal fly_signal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                       const dictionary::Dictionary& dictionary) {
+FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
+                       const dictionary::Dictionary& dictionary, double from_before_entry_s) {
     FlownSignal flown;
+    scenario.radio.tones_from_samples = false; // what is sent is the same
     flown.earth_set_s = scenario.radio.earth_set_after_entry_s;
     ScriptedLanding landing{scenario, seed, case_number, dictionary};
     std::vector<double> time_s, doppler_hz;
@@ -29,7 +29,7 @@ FlownSignal fly_signal(const simulation::Scenario& scenario, std::uint64_t seed,
         if (landing.landing().outcome() != simulation::Outcome::running) continue;
         const simulation::TruthState truth = landing.landing().truth();
         entry_sclk_s = truth.sclk.seconds - truth.e_s;
-        if (truth.sclk.ticks() % 4 != 0 || truth.e_s < -before_entry_s) continue;
+        if (truth.sclk.ticks() % 4 != 0 || truth.e_s < -from_before_entry_s) continue;
         time_s.push_back(truth.e_s);
         doppler_hz.push_back(-simulation::earth_range_rate_mps(simulation::vector3(truth.p_MoB_M_m),
                                                                simulation::vector3(truth.v_MB_M_mps), truth.e_s) /

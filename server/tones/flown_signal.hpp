@@ -18,8 +18,8 @@ struct FlownSignal {
     double parachute_s = 0.0;     ///< line stretch; 0: none
 };
 
-/// Flies the scenario's case by the whole flight software, to its end.
-FlownSignal fly_signal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                       const dictionary::Dictionary& dictionary);
+/// Flies the scenario's case by the whole flight software, to its end. Doppler is kept from `from_before_entry_s` on.
+FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
+                       const dictionary::Dictionary& dictionary, double from_before_entry_s = 900.0);
 
 } // namespace aeolis::server

@@ -1,8 +1,7 @@
 #pragma once
 
 #include "common/time_table.hpp"
-#include "simulation/links/fast_normal.hpp"
-#include "simulation/links/tone_waveform.hpp"
+#include "simulation/links/x_band_sampler.hpp"
 
 #include <complex>
 #include <optional>
@@ -22,12 +21,10 @@ struct XBandPath {
     std::optional<double> set_s;    ///< nothing but noise from here on: Earth set
 };
 
-/// Complex baseband samples of a station that receives tones: phase-continuous Doppler with all its rates, amplitude
-/// against time, white noise of power 1 a sample (N0 = 1/rate).
+/// The samples (x_band_sampler.hpp) of a path and tones that are known from the start.
 ///
 /// In      tones in the order of their starts, each a symbol long and none before the last has ended; between them carrier
 /// Out     samples, as many as asked for at a time; the same whatever the portions
-/// Memory  one modulated tone's table; nothing grows
 class XBandChannel {
   public:
     XBandChannel(const MfskWaveform& waveform, XBandPath path, std::vector<SentTone> tones, std::uint64_t seed,
@@ -38,22 +35,19 @@ class XBandChannel {
   private:
     /// Over a step Doppler is linear and gain constant.
     void begin_step();
-    bool sending(double time_s);
+    double time_s() const { return path_.start_s + static_cast<double>(sample_) / path_.rate_hz; } ///< of the next sample
+    /// Samples from the next one that are alike: of one tone, or of none.
+    int alike() const;
 
-    MfskWaveform waveform_;
     XBandPath path_;
     std::vector<SentTone> tones_;
-    FastNormal noise_;
+    double symbol_s_;
+    XBandSampler sampler_;
     std::size_t tone_ = 0; ///< the one that is or will be sent
-    std::optional<ModulatedTone> modulated_;
-    std::optional<std::size_t> modulated_for_;
 
     std::int64_t sample_ = 0;
     int step_left_ = 0, step_samples_;
     double step_end_residual_hz_, step_end_doppler_hz_;
-    std::complex<double> carrier_{1.0, 0.0}, turn_, turn_of_turn_;
-    double lead_s_ = 0.0, lead_rate_ = 0.0; ///< the subcarrier's time runs ahead by this: ∫ Doppler / carrier
-    float amplitude_ = 0.0F;
 };
 
 } // namespace aeolis::simulation

@@ -47,7 +47,7 @@ ReceivedTone XBandLink::decide(bool broken, const Surroundings& at) {
     received.sent_at = symbol_->started;
     received.doppler_hz = at.doppler_hz;
     received.locked = up_;
-    if (broken || !up_) return received;
+    if (broken || !up_ || radio_.tones_from_samples) return received;
     const ToneDecision decision =
         detect_tone(symbol_->tone.value, radio_.x_band_c_n0_dbhz + tone_power_db(), symbol_s, random_);
     received.likelihood = decision.best_likelihood;

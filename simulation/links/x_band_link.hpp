@@ -16,6 +16,7 @@ namespace aeolis::simulation {
 /// search over 4 s needs (CarrierSearch).
 /// Erased: a decision of less than nine tenths likelihood (ours), no lock, a broken symbol, Earth setting meanwhile.
 /// Tones sent after Earth set are not heard of at all.
+/// Where tones come from samples, symbols are only told of, not decided.
 class XBandLink {
   public:
     XBandLink(const Radio& radio, Random random) : radio_(radio), random_(random) {}
@@ -28,6 +29,14 @@ class XBandLink {
     /// One cycle; a symbol that ended with it. Its `start` and `end` are still to be filled in.
     std::optional<ReceivedTone> cycle(std::optional<ToneId> tone, const Surroundings& at);
 
+    struct Symbol {
+        ToneId tone;
+        Sclk started;
+        int ticks = 0;
+    };
+    /// What it sends in the cycle that was last.
+    const std::optional<Symbol>& sending() const { return symbol_; }
+
     bool up() const { return up_; }
     const char* reason() const { return up_ ? "nominal" : reason_; } ///< static text
 
@@ -37,11 +46,6 @@ class XBandLink {
   private:
     ReceivedTone decide(bool broken, const Surroundings& at);
 
-    struct Symbol {
-        ToneId tone;
-        Sclk started;
-        int ticks = 0;
-    };
     Radio radio_;
     Random random_;
     std::optional<Symbol> symbol_;
