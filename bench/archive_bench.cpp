@@ -133,7 +133,7 @@ Cost archive_append(const std::filesystem::path& file, const std::vector<std::ui
             unit.packet = std::uint16_t{0};
             unit.sclk = Sclk{static_cast<double>(i) / 64.0};
             unit.ert = Ert{static_cast<std::int64_t>(i) * 15'625};
-            unit.link = archive::Link::uhf_live;
+            unit.link = "uhf_live";
             unit.source = archive::Source::realtime;
             unit.octets = {batch.octets.size(), octets.size()};
             batch.octets.insert(batch.octets.end(), octets.begin(), octets.end());
@@ -157,7 +157,7 @@ std::vector<simulation::ReceivedPacket> landing() {
         for (std::size_t f = 0; f < fields; ++f)
             bits.put_float(static_cast<float>(std::sin(static_cast<double>(i * (f + 1)) * 1e-4)));
         seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0}, 1);
-        packets[i] = {simulation::LinkId::relay, Ert{static_cast<std::int64_t>(i)}, std::move(octets)};
+        packets[i] = {simulation::relay_link, Ert{static_cast<std::int64_t>(i)}, std::move(octets)};
     }
     return packets;
 }

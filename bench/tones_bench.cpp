@@ -17,6 +17,9 @@ int main() {
     const char* full = std::getenv("AEOLIS_FULL");
     const bool met = server::tell_tone_figures(
         *loaded.dictionary, *landing, dispersed, full != nullptr && std::string{full} == "1",
-        [](const server::ToneFigure& figure) { std::printf("%s\n", figure.text().c_str()); });
+        [](const server::ToneFigure& figure) {
+            std::printf("%s\n", figure.text().c_str());
+            std::fflush(stdout); // the next may take minutes
+        });
     return met ? 0 : 1;
 }

@@ -84,10 +84,11 @@ void Fop::on(const Clcw& clcw) {
         if (done) state_ = State::active;
         return;
     }
+    // Locked: it may have forgotten what it took, and its count says nothing.
+    if (clcw.lockout) return halt(Halt::lockout);
     const auto acknowledged = static_cast<std::uint8_t>(clcw.expected - first_outstanding());
     if (acknowledged > outstanding_.size()) return halt(Halt::contradiction);
     acknowledge(acknowledged);
-    if (clcw.lockout) return halt(Halt::lockout);
     const bool asked_already = state_ == State::retransmitting && acknowledged == 0;
     if (clcw.wait)
         state_ = State::waiting;

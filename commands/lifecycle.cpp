@@ -95,6 +95,24 @@ void CommandLifecycle::ground_stage(Stage stage, Status status, std::string evid
     }
 }
 
+void CommandLifecycle::await_release(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    set(Stage::released, Status::pending, std::move(evidence), at, out);
+}
+
+void CommandLifecycle::radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    AEOLIS_CHECK(radiated_.has_value());
+    radiated_ = at;
+    out.push_back({Stage::radiated, Status::ok, std::move(evidence), at});
+}
+
+void CommandLifecycle::frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    set(Stage::received, Status::ok, std::move(evidence), at, out);
+}
+
+void CommandLifecycle::frame_not_acknowledged(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    set(Stage::received, Status::unknown, std::move(evidence), at, out);
+}
+
 /// Says of each later stage what it waits for, or that nothing will ever show it.
 void CommandLifecycle::await_answers(Ert at, std::vector<StageChange>& out) {
     set(Stage::received, Status::pending, "no answer yet; the command is there after " + seconds_text(light_time_s_),

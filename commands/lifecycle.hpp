@@ -43,7 +43,8 @@ struct Answer {
 ///
 /// In       notices of ground's own stages; answers; read-backs; time passing (Earth's clock)
 /// Out      changes, appended to `out`
-/// Rules    a stage is ok only by evidence. `received` is not observed: it is inferred from an answer, and says so.
+/// Rules    a stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else inferred from
+///          an answer, and says so.
 ///          Silence until the window (of the dictionary, from radiation) plus light time both ways is `unknown`, with
 ///          words: the answer may be lost, or come later with the recording; it then still counts. A refusal, or a
 ///          read-back that differs, is `failed`. Ok never changes again; failed only when a later read-back is equal.
@@ -56,6 +57,15 @@ class CommandLifecycle {
 
     /// One of ground's own stages, queued … radiated, was done (ok) or failed, which ends the command.
     void ground_stage(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
+
+    /// It may be sent, and waits on the ground.
+    void await_release(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// Its frame went out once more: the windows begin anew.
+    void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// The vehicle's receiver of frames reports that it took the frame: `received`, observed.
+    void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// No report will tell: the vehicle may have taken it or not.
+    void frame_not_acknowledged(std::string evidence, Ert at, std::vector<StageChange>& out);
 
     void on(const Answer& answer, std::vector<StageChange>& out);
     void on(const ReadBack& read_back, Ert at, std::vector<StageChange>& out);

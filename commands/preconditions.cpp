@@ -20,6 +20,18 @@ bool compare(double left, const std::string& comparison, double right) {
 
 } // namespace
 
+const char* name_of(PreconditionState::State state) {
+    switch (state) {
+    case State::holds:
+        return "holds";
+    case State::fails:
+        return "fails";
+    case State::unknown:
+        break;
+    }
+    return "unknown";
+}
+
 std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
                                      std::span<const LatestValue> latest) {
     std::vector<PreconditionState> states;

@@ -25,6 +25,9 @@ struct PreconditionState {
     std::string text; ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
 };
 
+/// "holds", "fails", "unknown"
+const char* name_of(PreconditionState::State state);
+
 /// Each transmission constraint of the command against the latest values, which are indexed by ChannelId.
 std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
                                      std::span<const LatestValue> latest);

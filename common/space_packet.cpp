@@ -14,7 +14,7 @@ bool whole_with_good_crc(std::span<const std::uint8_t> packet, const PrimaryHead
                read_bits(packet, (packet.size() - packet_crc_octets) * 8, 16);
 }
 
-void write_primary_header(BitWriter& writer, const PrimaryHeader& header) {
+void put_primary_header(BitWriter& writer, const PrimaryHeader& header) {
     writer.put(0, 3);
     writer.put(header.telecommand, 1);
     writer.put(header.secondary_header, 1);
@@ -35,6 +35,12 @@ void clear(std::span<std::uint8_t> octets) {
 }
 
 }  // namespace
+
+void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> packet) {
+    clear(packet.first(primary_header_octets));
+    BitWriter writer{packet.first(primary_header_octets)};
+    put_primary_header(writer, header);
+}
 
 std::optional<PrimaryHeader> read_primary_header(std::span<const std::uint8_t> octets) {
     if (octets.size() < primary_header_octets) return std::nullopt;
@@ -70,8 +76,8 @@ void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t cou
     AEOLIS_CHECK(packet.size() >= tm_overhead_octets && packet.size() <= 65536 + primary_header_octets);
     clear(packet.first(tm_data_offset_octets));
     BitWriter writer{packet};
-    write_primary_header(writer,
-                         {false, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    put_primary_header(writer,
+                       {false, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
     const auto coarse = static_cast<std::uint64_t>(time.seconds);
     writer.put(coarse, 32);
     writer.put(static_cast<std::uint64_t>((time.seconds - static_cast<double>(coarse)) * 65536.0), 16);
@@ -84,8 +90,8 @@ void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t cou
     clear(packet.first(tc_arguments_offset_octets));
     BitWriter writer{packet};
     // The opcode is the packet's secondary header.
-    write_primary_header(writer,
-                         {true, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    put_primary_header(writer,
+                       {true, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
     writer.put(opcode.value, 16);
     write_crc(packet);
 }

@@ -36,6 +36,10 @@ struct PrimaryHeader {
 std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets);
 inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 65536;
 inline constexpr std::uint16_t idle_apid = 0x7FF;
+inline constexpr Apid file_delivery_apid{0x7FD}; ///< packets whose data are a CFDP PDU; 2045, as reserved for it
+
+/// Into the first six octets; unsegmented.
+void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> packet);
 
 struct TmHeader {
     PrimaryHeader primary;

@@ -88,4 +88,10 @@ void write_clcw(const Clcw& clcw, std::span<std::uint8_t, clcw_octets> into) {
     writer.put(clcw.expected, 8);
 }
 
+std::uint32_t word_of(const Clcw& clcw) {
+    std::array<std::uint8_t, clcw_octets> octets{};
+    write_clcw(clcw, octets);
+    return static_cast<std::uint32_t>(read_bits(octets, 0, 32));
+}
+
 }  // namespace aeolis

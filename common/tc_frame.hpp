@@ -59,6 +59,8 @@ inline constexpr std::size_t clcw_octets = 4;
 
 /// Of four octets; bad_field when the type is not that of a CLCW, other_version.
 Parsed<Clcw> read_clcw(std::span<const std::uint8_t> octets);
+/// Its 32 bits as a number.
+std::uint32_t word_of(const Clcw& clcw);
 void write_clcw(const Clcw& clcw, std::span<std::uint8_t, clcw_octets> into);
 
 }  // namespace aeolis

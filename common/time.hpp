@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace aeolis {
 
@@ -36,6 +37,8 @@ struct Ert {
 /// Day-of-year form with milliseconds: 2012-219T05:10:47.400.
 std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
+/// Back from that form; fractions of a second may be left out. None for what is no such text or no such day.
+std::optional<Ert> ert_from_day_of_year(std::string_view text);
 
 /// SCLK and SCET run together through one known instant. Drift and leap seconds come with the time service.
 struct ClockCorrelation {

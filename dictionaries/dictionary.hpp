@@ -301,7 +301,8 @@ struct Loaded {
 
 /// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv,
 /// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv. All are on board, so `id` follows each; only the timeline's own two
-/// change what it does, so `timeline_version` follows those alone.
+/// change what it does, so `timeline_version` follows those alone. DIR may also be one file that holds them all:
+/// dictionaries/mission_files.hpp.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

@@ -3,6 +3,7 @@
 #include "common/crc.hpp"
 #include "dictionaries/findings.hpp"
 #include "dictionaries/enumerations.hpp"
+#include "dictionaries/mission_files.hpp"
 #include "dictionaries/spreadsheet/owners.hpp"
 #include "dictionaries/spreadsheet/state_machines.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
@@ -10,50 +11,12 @@
 #include "dictionaries/xtce/space_system.hpp"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
-#include <system_error>
 #include <tuple>
 
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::uintmax_t file_octets_max = 16U << 20U; // ours: a hundred times the landing's largest file
-
-struct File {
-    std::string name;
-    std::optional<std::string> text; ///< none: a finding says why
-};
-
-File read_file(const std::filesystem::path& path, std::vector<Finding>& all) {
-    File file{path.filename().string(), std::nullopt};
-    Findings findings{file.name, all};
-    std::error_code error;
-    const std::uintmax_t octets = std::filesystem::file_size(path, error);
-    std::ifstream in{path, std::ios::binary};
-    if (error || !in)
-        findings.add(1, "cannot be read: " + path.string());
-    else if (octets > file_octets_max)
-        findings.add(1, "is larger than " + std::to_string(file_octets_max) + " octets");
-    else
-        file.text = std::string{std::istreambuf_iterator<char>{in}, {}};
-    return file;
-}
-
-/// The one XTCE file of the folder.
-File read_xtce(const std::filesystem::path& directory, std::vector<Finding>& all) {
-    std::vector<std::filesystem::path> found;
-    std::error_code error;
-    for (std::filesystem::directory_iterator entry{directory, error}, end; !error && entry != end;
-         entry.increment(error))
-        if (entry->path().extension() == ".xml") found.push_back(entry->path());
-    if (found.size() == 1) return read_file(found.front(), all);
-    std::ranges::sort(found);
-    const std::string name = found.empty() ? directory.filename().string() : found[1].filename().string();
-    Findings{name, all}.add(1, found.empty() ? "there is no XTCE file (*.xml) in " + directory.string()
-                                             : "a second XTCE file beside " + found[0].filename().string());
-    return {name, std::nullopt};
-}
+using File = MissionFile;
 
 /// Changes with every change of any of the files, and with a move of content from one to the next.
 std::uint16_t hash(std::initializer_list<const File*> files) {
@@ -76,15 +39,16 @@ std::vector<TimelineContext::DeclaredEvent> declared(const xtce::SpaceSystem& sy
 
 } // namespace
 
-Loaded load(const std::filesystem::path& directory) {
+Loaded load(const std::filesystem::path& path) {
     Loaded loaded;
     auto& all = loaded.findings;
-    const File xml = read_xtce(directory, all);
-    const File anchors_csv = read_file(directory / "anchors.csv", all);
-    const File tones_csv = read_file(directory / "tones.csv", all);
-    const File mfsk_csv = read_file(directory / "mfsk.csv", all);
-    const File parameters_csv = read_file(directory / "parameters.csv", all);
-    const File timeline_csv = read_file(directory / "timeline.csv", all);
+    const MissionFiles files = read_mission_files(path, all);
+    const File& xml = files.xtce;
+    const File& anchors_csv = files.sheet("anchors.csv");
+    const File& tones_csv = files.sheet("tones.csv");
+    const File& mfsk_csv = files.sheet("mfsk.csv");
+    const File& parameters_csv = files.sheet("parameters.csv");
+    const File& timeline_csv = files.sheet("timeline.csv");
 
     const auto read = [&](const File& file, auto reader) -> decltype(reader(*file.text, std::declval<Findings&>())) {
         if (!file.text) return std::nullopt;
@@ -107,19 +71,19 @@ Loaded load(const std::filesystem::path& directory) {
         return read_timeline(text, context, findings);
     });
 
-    const File plan_csv = read_file(directory / "telemetry_plan.csv", all);
+    const File& plan_csv = files.sheet("telemetry_plan.csv");
     auto telemetry_plan = read(plan_csv, [&](std::string_view text, Findings& findings) {
         return read_telemetry_plan(text, system && is_sound(xml) ? &system->packets : nullptr, findings);
     });
 
-    const File constraints_csv = read_file(directory / "constraints.csv", all);
+    const File& constraints_csv = files.sheet("constraints.csv");
     const ConstraintContext moments{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
                                     anchors && is_sound(anchors_csv) ? &*anchors : nullptr};
     auto constraints = read(constraints_csv, [&](std::string_view text, Findings& findings) {
         return read_constraints(text, moments, findings);
     });
 
-    const File state_machines_csv = read_file(directory / "state_machines.csv", all);
+    const File& state_machines_csv = files.sheet("state_machines.csv");
     std::vector<const Type*> enumerations;
     const bool has_enumerations = system && is_sound(xml);
     if (has_enumerations) enumerations = enumerations_of(system->packets, system->commands);
@@ -127,7 +91,7 @@ Loaded load(const std::filesystem::path& directory) {
         return read_state_machines(text, has_enumerations ? &enumerations : nullptr, findings);
     });
 
-    const File owners_csv = read_file(directory / "owners.csv", all);
+    const File& owners_csv = files.sheet("owners.csv");
     const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
                              has_enumerations ? &enumerations : nullptr};
     auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {

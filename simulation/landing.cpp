@@ -4,8 +4,10 @@
 #include "simulation/devices/computers.hpp"
 #include "simulation/devices/load.hpp"
 #include "simulation/devices/recorder.hpp"
+#include "simulation/devices/relay_radio.hpp"
+#include "simulation/links/error_bursts.hpp"
 #include "simulation/links/in_flight.hpp"
-#include "simulation/links/relay_link.hpp"
+#include "simulation/links/orbiter_pass.hpp"
 #include "simulation/links/uhf_link.hpp"
 #include "simulation/links/x_band_link.hpp"
 #include "simulation/mars/earth.hpp"
@@ -16,7 +18,8 @@
 #include "simulation/world.hpp"
 
 #include <algorithm>
-#include <string_view>
+#include <deque>
+#include <string>
 
 namespace aeolis::simulation {
 namespace {
@@ -25,6 +28,7 @@ constexpr double x_band_hz = 8.4e9;           // [facts]
 constexpr double light_mps = 299792458.0;     // [bipm-si]
 constexpr std::size_t remembered_ticks = 256; // 4 s: an event report is recorded within a few cycles
 constexpr double symbol_s = 10.0;
+constexpr double uplink_burst_octets = 32.0; // ours: mean length of a burst of errors
 
 std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
@@ -34,18 +38,24 @@ std::int64_t microseconds(double seconds) {
 
 /// A link's last told state: a change is sent to Earth like everything else.
 struct LinkTeller {
-    LinkId link{};
-    bool x_band = false;
+    Link link;
     bool told = false, up = false;
-    std::string_view reason{};
+    std::string reason{};
 
-    std::optional<LinkState> change(bool up_now, const char* reason_now, Ert ert) {
+    std::optional<LinkState> change(bool up_now, const std::string& reason_now, Ert ert) {
         if (told && up_now == up && reason == reason_now) return {};
         told = true;
         up = up_now;
         reason = reason_now;
-        return LinkState{link, x_band, ert, up, reason_now};
+        return LinkState{link, ert, up, reason_now};
     }
+};
+
+/// An orbiter that records has links of its own, told of when it delivers.
+struct StoredLinks {
+    LinkTeller realtime, files;
+    explicit StoredLinks(const std::string& orbiter)
+        : realtime{.link = {"uhf_" + orbiter, false}}, files{.link = {"relay_" + orbiter, true}} {}
 };
 
 const char* name_of(Outcome outcome) {
@@ -77,15 +87,20 @@ struct Landing::State {
     Recorder recorder;
     UhfLink uhf;
     XBandLink x_band;
-    RelayLink relay;
+    std::vector<OrbiterPass> passes;
+    RelayRadio relay_radio;
+    std::deque<std::vector<std::uint8_t>> forwarded; ///< with an orbiter, for the rover
+    std::size_t delivery_restarts = 0;               ///< of the scenario's, so far
 
     std::int64_t light_time_us;
+    ErrorBursts uplink_errors;
     InFlight<std::vector<std::uint8_t>> uplinks;
-    InFlight<ReceivedPacket> packets;
     InFlight<ReceivedTone> tones;
     InFlight<XBandField> fields;
     InFlight<LinkState> links;
-    LinkTeller uhf_told{.link = LinkId::uhf_live}, x_band_told{.x_band = true}, relay_told{.link = LinkId::relay};
+    InFlight<std::vector<std::uint8_t>> forwards;
+    LinkTeller uhf_told{.link = simulation::uhf_live_link}, x_band_told{.link = simulation::x_band_link}, relay_told{.link = simulation::relay_link};
+    std::vector<StoredLinks> stored_told; ///< one a pass
     InFlight<ReceivedOctets> octets;
 
     std::array<TruthState, remembered_ticks> remembered{};
@@ -99,16 +114,21 @@ struct Landing::State {
     State(const Scenario& s, const flight::Load& load, std::uint64_t seed_in, std::uint64_t case_number_in,
           std::vector<EventReportName> names)
         : scenario(s), reports(std::move(names)), world(s, seed_in, case_number_in),
-          computers(load, world.sclk()), uhf(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::uhf}),
+          computers(load, world.sclk()), uhf(s.radio),
           x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
-          relay(s.radio.relay_rate_bps),
-          light_time_us(microseconds(s.radio.light_time_s)), seed(seed_in), case_number(case_number_in),
+          passes(passes_of(s, seed_in, links_case(s, case_number_in))), relay_radio(s.radio.light_time_s),
+          light_time_us(microseconds(s.radio.light_time_s)),
+          uplink_errors(s.radio.uplink_loss_fraction, uplink_burst_octets,
+                        Random{seed_in, links_case(s, case_number_in), Stream::uplink}), seed(seed_in), case_number(case_number_in),
           dispersed(!disperses_later(s)) {
         computer_on = world.outcome() == Outcome::running;
+        stored_told.reserve(passes.size());
+        for (const OrbiterPass& pass : passes) stored_told.emplace_back(pass.row().orbiter);
         if (s.test_venue == TestVenue::gnc_alone) gnc_alone.emplace(load, world.solution(), world.sclk());
         if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load);
     }
 
+    static std::vector<OrbiterPass> passes_of(const Scenario& s, std::uint64_t seed, std::uint64_t case_number);
     static std::uint64_t links_case(const Scenario& s, std::uint64_t case_number) {
         return disperses_later(s) ? 0 : case_number;
     }
@@ -131,14 +151,37 @@ struct Landing::State {
     void radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us);
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
+    /// Octets that leave Mars with this cycle.
+    void send_octets(const Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us);
+    void deliver_stored(std::int64_t cycle_start_us);
+    OrbiterPass* first_in_view(bool also_stored);
+    void hand_down(OrbiterPass& pass);
+    flight::RecordingDelivery::Recording recording() const { return {recorder.octets(), !computer_on}; }
     void note_parachute();
     void read_event_reports();
-    void tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us);
+    void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
+    bool tones_from_samples() const { return scenario.radio.tones_from_samples.value_or(false); }
     bool relaying() const;
-    bool recording_down() const { return !relaying() || relay.sent_octets() == recorder.octets().size(); }
+    bool passes_over() const;
+    bool recording_down() const { return !relaying() || relay_radio.done(recording()) || passes_over(); }
+    bool stored_down() const {
+        return std::ranges::all_of(passes, [](const OrbiterPass& pass) { return !pass.waits(); });
+    }
+    /// From the scenario's entry, as passes count.
+    double e_s() const { return sclk() - scenario.entry_sclk; }
 };
 
-void Landing::State::tell(LinkTeller& teller, bool up, const char* reason, std::int64_t at_us) {
+std::vector<OrbiterPass> Landing::State::passes_of(const Scenario& s, std::uint64_t seed, std::uint64_t case_number) {
+    Random random{seed, case_number, Stream::uhf};
+    if (s.radio.relay_passes.empty()) return {OrbiterPass{OrbiterPass::always(), s.radio, random}};
+    std::vector<OrbiterPass> passes;
+    passes.reserve(s.radio.relay_passes.size());
+    for (const RelayPass& row : s.radio.relay_passes)
+        passes.emplace_back(row, s.radio, Random{random.bits(), case_number, Stream::relay});
+    return passes;
+}
+
+void Landing::State::tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us) {
     const Ert ert{at_us + light_time_us};
     if (auto change = teller.change(up, reason, ert)) links.send(ert.microseconds, std::move(*change));
 }
@@ -211,19 +254,58 @@ const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
 void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     uhf.offer(pltus);
-    const auto arrived = uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on()});
+    const auto left = uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on(), world.parachute_antenna_on()});
+    OrbiterPass* live = first_in_view(false);
+    for (OrbiterPass& pass : passes) {
+        if (!pass.in_view(e_s()) || (!pass.row().stored && &pass != live)) continue;
+        send_octets(simulation::uhf_live_link, pass.hear(Traffic::realtime, left, e_s()), cycle_start_us);
+    }
+    const bool up = uhf.up() && live != nullptr;
+    tell(uhf_told, up, up && !live->row().orbiter.empty() ? "by " + live->row().orbiter : uhf.up() && !up ? "no orbiter in view" : uhf.reason(), cycle_start_us);
+}
+
+void Landing::State::send_octets(const Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us) {
     const Ert ert{cycle_start_us + microseconds(seconds_per_tick) + light_time_us};
-    if (!arrived.empty()) octets.send(ert.microseconds, {LinkId::uhf_live, ert, {arrived.begin(), arrived.end()}});
-    tell(uhf_told, uhf.up(), uhf.reason(), cycle_start_us);
+    if (!what.empty()) octets.send(ert.microseconds, {link, ert, {what.begin(), what.end()}});
+}
+
+OrbiterPass* Landing::State::first_in_view(bool also_stored) {
+    const auto found = std::ranges::find_if(
+        passes, [&](const OrbiterPass& pass) { return pass.in_view(e_s()) && (also_stored || !pass.row().stored); });
+    return found == passes.end() ? nullptr : &*found;
+}
+
+void Landing::State::deliver_stored(std::int64_t cycle_start_us) {
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        if (!passes[i].row().stored) continue;
+        // An orbiter has one link to Earth: what it recorded in an earlier pass goes first.
+        const bool busy = std::any_of(passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(i), [&](const OrbiterPass& earlier) {
+            return earlier.row().stored && earlier.row().orbiter == passes[i].row().orbiter && earlier.delivers(e_s());
+        });
+        if (busy) continue;
+        for (const Traffic traffic : {Traffic::realtime, Traffic::files}) {
+            LinkTeller& told = traffic == Traffic::realtime ? stored_told[i].realtime : stored_told[i].files;
+            const auto delivered = passes[i].deliver(traffic, e_s());
+            send_octets(told.link, delivered, cycle_start_us);
+            if (!delivered.empty()) tell(told, true, "delivers what it recorded", cycle_start_us);
+            if (delivered.empty() && told.up) tell(told, false, "delivered", cycle_start_us);
+        }
+    }
 }
 
 void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
-    auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz});
-    if (scenario.radio.tones_from_samples) {
-        XBandField field{{cycle_start_us + light_time_us}, truth.sclk - scenario.entry_sclk, doppler_hz, x_band.up(), {}, 0.0};
+    const World::EarthView earth = world.earth_view();
+    auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
+    if (tones_from_samples()) {
+        XBandField field;
+        field.ert = {cycle_start_us + light_time_us};
+        field.e_s = truth.sclk - scenario.entry_sclk;
+        field.doppler_hz = doppler_hz;
+        field.up = x_band.earth_up();
+        if (field.up) field.gain_db = 10.0 * std::log10(*earth.gain);
         if (const auto symbol = x_band.sending()) {
             field.tone = symbol->tone;
             field.tone_age_s = truth.sclk - symbol->started;
@@ -242,16 +324,36 @@ bool Landing::State::relaying() const {
     return world.outcome() == Outcome::touchdown;
 }
 
+bool Landing::State::passes_over() const {
+    return std::ranges::all_of(passes, [&](const OrbiterPass& pass) { return pass.is_over(e_s()); });
+}
+
+void Landing::State::hand_down(OrbiterPass& pass) {
+    for (; !forwarded.empty(); forwarded.pop_front()) {
+        pass.spoil_forward(forwarded.front(), e_s());
+        relay_radio.receive(forwarded.front());
+    }
+}
+
 void Landing::State::relay_recording(std::int64_t cycle_start_us) {
+    deliver_stored(cycle_start_us);
     if (!relaying()) return;
-    const bool started = sclk() - *world.contact() >= scenario.radio.relay_start_after_touchdown_s;
-    if (!started) return;
-    relay.cycle(recorder.octets(), [&](std::int64_t left_us, std::span<const std::uint8_t> packet) {
-        const Ert ert{cycle_start_us + left_us + light_time_us};
-        packets.send(ert.microseconds, {LinkId::relay, ert, {packet.begin(), packet.end()}});
-    });
-    const bool complete = !computer_on && recording_down();
-    tell(relay_told, !complete, complete ? "recording complete" : "nominal", cycle_start_us);
+    const double landed_s = sclk() - *world.contact();
+    if (landed_s < scenario.radio.relay_start_after_touchdown_s) return;
+    const auto& restarts = scenario.radio.delivery_restarts_after_touchdown_s;
+    if (delivery_restarts < restarts.size() && landed_s >= restarts[delivery_restarts]) {
+        relay_radio.restart();
+        ++delivery_restarts;
+    }
+    forwards.arrive(cycle_start_us, [&](std::int64_t, std::vector<std::uint8_t>&& pltu) { forwarded.push_back(std::move(pltu)); });
+    OrbiterPass* serving = first_in_view(true);
+    if (serving != nullptr) hand_down(*serving);
+    const auto sent = relay_radio.cycle(recording(), serving != nullptr ? serving->file_rate_bps(e_s()) : 0.0);
+    if (serving != nullptr) send_octets(simulation::relay_link, serving->hear(Traffic::files, sent, e_s()), cycle_start_us);
+    const bool complete = relay_radio.done(recording());
+    const bool up = !complete && serving != nullptr && !serving->row().stored;
+    const std::string by = serving != nullptr && !serving->row().orbiter.empty() ? "by " + serving->row().orbiter : "nominal";
+    tell(relay_told, up, complete ? "recording complete" : serving == nullptr ? "no orbiter in view" : serving->row().stored ? by + ", which delivers later" : by, cycle_start_us);
 }
 
 void Landing::State::note_parachute() {
@@ -319,8 +421,7 @@ const CycleReport& Landing::step() {
 
     const std::int64_t now_us = s.now_us();
     s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) { s.report.octets.push_back(std::move(o)); });
-    s.packets.arrive(now_us, [&](std::int64_t, ReceivedPacket&& p) { s.report.packets.push_back(std::move(p)); });
-    auto& tones = s.scenario.radio.tones_from_samples ? s.report.symbols : s.report.tones;
+    auto& tones = s.tones_from_samples() ? s.report.symbols : s.report.tones;
     s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { tones.push_back(t); });
     s.fields.arrive(now_us, [&](std::int64_t, const XBandField& f) { s.report.x_band.push_back(f); });
     s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
@@ -335,9 +436,16 @@ void Landing::take_case(std::uint64_t case_number) {
     state_->case_number = case_number;
 }
 
-void Landing::uplink(std::span<const std::uint8_t> packet) {
+void Landing::uplink(std::span<const std::uint8_t> octets) {
     State& s = *state_;
-    s.uplinks.send(s.now_us() + s.light_time_us, {packet.begin(), packet.end()});
+    std::vector<std::uint8_t> arriving{octets.begin(), octets.end()};
+    s.uplink_errors.spoil(arriving);
+    s.uplinks.send(s.now_us() + s.light_time_us, std::move(arriving));
+}
+
+void Landing::forward(std::span<const std::uint8_t> pltu) {
+    State& s = *state_;
+    s.forwards.send(s.now_us() + s.light_time_us, {pltu.begin(), pltu.end()});
 }
 
 void Landing::run_prime_by(std::shared_ptr<flight::CycleRunner> runner) {
@@ -376,9 +484,13 @@ std::string Landing::outcome_reason() const {
     return state_->world.outcome_reason();
 }
 
+bool Landing::flown() const {
+    return !state_->computer_on;
+}
+
 bool Landing::finished() const {
     const State& s = *state_;
-    return !s.computer_on && s.recording_down() && s.octets.empty() && s.packets.empty() && s.tones.empty() && s.fields.empty() && s.links.empty();
+    return !s.computer_on && s.recording_down() && s.stored_down() && s.octets.empty() && s.tones.empty() && s.fields.empty() && s.links.empty();
 }
 
 std::optional<TouchdownReport> Landing::touchdown() const {
@@ -403,13 +515,12 @@ std::span<const std::uint8_t> Landing::recording() const {
     return state_->recorder.octets();
 }
 
-double Landing::relay_progress() const {
-    const State& s = *state_;
-    const std::size_t recorded = s.recorder.octets().size();
-    if (recorded == 0 || !s.relaying()) return 0.0;
-    const double part = static_cast<double>(s.relay.sent_octets()) / static_cast<double>(recorded);
-    // While the computer still records, what has come down cannot be all.
-    return s.computer_on ? std::min(part, 0.999) : part;
+bool Landing::recording_closed() const {
+    return state_->recording().closed;
+}
+
+bool Landing::relaying() const {
+    return state_->relaying();
 }
 
 } // namespace aeolis::simulation

@@ -2,6 +2,7 @@
 
 #include "common/space_packet.hpp"
 #include "common/time.hpp"
+#include "common/tone_evidence.hpp"
 #include "flight/computer.hpp"
 #include "simulation/scenario.hpp"
 
@@ -29,32 +30,39 @@ struct NavigationSolution {
     double backshell_altitude_m = 1660.0;
 };
 
-enum class LinkId : std::uint8_t { uhf_live, relay };
+/// A way to Earth, by name: "uhf_live" through a bent pipe, "uhf_<orbiter>" recorded by one, "relay" and "relay_<orbiter>" the
+/// same for files after landing, "x_band".
+struct Link {
+    std::string name;
+    bool recorded = false; ///< it brings the recording; else what was sent live, however late
+    bool operator==(const Link&) const = default;
+};
+inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false};
 
 /// A space packet as it reaches Earth.
 struct ReceivedPacket {
-    LinkId link{};
+    Link link;
     Ert ert;
     std::vector<std::uint8_t> octets;
 };
 
 /// Octets of a link as they reach Earth, in order; what they are is for ground to find out.
 struct ReceivedOctets {
-    LinkId link{};
+    Link link;
     Ert ert; ///< of the last
     std::vector<std::uint8_t> octets;
 };
 
-/// A tone decision of the receiver (statistical model: drawn from the exact symbol error at the scenario's C/N0).
+/// A tone decision of the receiver and its evidence (statistical model: drawn from the exact symbol error at the scenario's C/N0).
 struct ReceivedTone {
     Ert start, end;             ///< of the symbol; 10 s
     std::optional<ToneId> tone; ///< none: erasure
     double likelihood = 0.0;    ///< 0 … 1 that the decision is right
-    std::optional<ToneId> runner_up;
-    double runner_up_likelihood = 0.0;
+    std::optional<BestTones> best;        ///< none: nothing was there to weigh
+    std::optional<ToneSpectrum> spectrum; ///< none: the decision does not come from samples
     double c_n0_dbhz = 0.0;  ///< total power to noise density as the receiver estimates it; 0 when erased
     double doppler_hz = 0.0; ///< one way at 8.4 GHz, from the flown trajectory and a fixed direction to Earth
-    bool locked = false;
+    CarrierLock lock = CarrierLock::searching;
     std::optional<ToneId> sent; ///< truth, for the run's score only: never shown as received
     Sclk sent_at;
 };
@@ -64,18 +72,18 @@ struct XBandField {
     Ert ert;                    ///< of the cycle's start
     double e_s = 0.0;           ///< when it left the vehicle, from the scenario's entry
     double doppler_hz = 0.0;    ///< one way, at the cycle's start
-    bool up = false;            ///< else Earth has set: nothing but noise
+    bool up = false;            ///< else Earth has set, or no antenna is selected: nothing but noise
+    double gain_db = 0.0;       ///< of the antenna towards Earth, against its best direction
     std::optional<ToneId> tone; ///< none: the carrier alone
     double tone_age_s = 0.0;    ///< since the symbol began
 };
 
 /// The state of a link, told when it changes.
 struct LinkState {
-    LinkId link{};
-    bool x_band = false; ///< else `link`
+    Link link;
     Ert ert;
     bool up = false;
-    std::string reason; ///< "plasma blackout", "Earth set", "not switched on", "nominal"
+    std::string reason; ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
 };
 
 /// A moment of the truth, named as in the design's table.
@@ -127,7 +135,7 @@ struct CycleReport {
     std::span<const std::uint8_t> recorded; ///< whole packets appended to NVM in this cycle
     std::span<const std::uint8_t> radiated; ///< PLTUs given to the UHF transmitter
     std::vector<ReceivedOctets> octets;     ///< that reach Earth by the end of this cycle
-    std::vector<ReceivedPacket> packets;    ///< likewise
+    std::vector<ReceivedPacket> packets;    ///< that ground finds in them
     std::vector<ReceivedTone> tones;
     std::vector<XBandField> x_band;    ///< when tones come from samples: what then arrives instead of `tones`
     std::vector<ReceivedTone> symbols; ///< and the symbols that were sent in it, undecided: for the score only
@@ -180,8 +188,11 @@ class Landing {
     /// It will be this case's flight. Only while it has not been dispersed.
     void take_case(std::uint64_t case_number);
 
-    /// A telecommand packet leaves the station now; it reaches the vehicle a light time later.
-    void uplink(std::span<const std::uint8_t> packet);
+    /// Octets leave the station now; what the uplink leaves of them reaches the vehicle a light time later.
+    void uplink(std::span<const std::uint8_t> octets);
+
+    /// A PLTU for the rover leaves the station now; the next orbiter in view when it is there hands it down.
+    void forward(std::span<const std::uint8_t> pltu);
 
     /// The prime computer's modules are run by a venue's executive from here on.
     void run_prime_by(std::shared_ptr<flight::CycleRunner> runner);
@@ -198,7 +209,8 @@ class Landing {
     TruthState truth() const;
     Outcome outcome() const;
     std::string outcome_reason() const;
-    bool finished() const; ///< outcome known, links empty, recording down
+    bool flown() const;    ///< the outcome is known, and the computers are off
+    bool finished() const; ///< and the links are empty, and the recording is down, as ground has told the rover, or no pass is left
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
     std::optional<ParachuteReport> parachute() const; ///< at deployment
@@ -206,7 +218,8 @@ class Landing {
     SeparationReport separation() const;
     flight::Computer::Counters counters() const;
     std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
-    double relay_progress() const;                   ///< 0 … 1 of the recording that has come down
+    bool recording_closed() const;                   ///< nothing will be added
+    bool relaying() const;                           ///< it comes, or came, down
 
   private:
     struct State;

@@ -35,6 +35,8 @@ enum class Stream : std::uint64_t {
     x_band_noise,
     mass,
     slow_drag,
+    uplink,
+    relay,
 };
 
 /// Random numbers of one stream of one case of one seed: SplitMix64, and Box–Muller for the normal distribution,

@@ -100,8 +100,11 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
         {"radio.blackout_start_altitude_m", s.radio.blackout_start_altitude_m, 0.0, 200000.0},
         {"radio.uhf_loss_fraction", s.radio.uhf_loss_fraction, 0.0, 0.9},
         {"radio.uhf_burst_s", s.radio.uhf_burst_s, 0.001, 60.0},
+        {"radio.uhf_loss_range_km", s.radio.uhf_loss_range_km, 1.0, 100000.0},
+        {"radio.uhf_hand_over_s", s.radio.uhf_hand_over_s, 0.0, 60.0},
+        {"radio.uplink_loss_fraction", s.radio.uplink_loss_fraction, 0.0, 0.9},
         {"radio.x_band_c_n0_dbhz", s.radio.x_band_c_n0_dbhz, -20.0, 60.0},
-        {"radio.earth_set_after_entry_s", s.radio.earth_set_after_entry_s, -86400.0, 86400.0},
+        {"radio.earth_set_after_entry_s", s.radio.earth_set_after_entry_s.value_or(0.0), -86400.0, 86400.0},
         {"radio.relay_rate_bps", s.radio.relay_rate_bps, 1000.0, 1.0e8},
         {"radio.relay_start_after_touchdown_s", s.radio.relay_start_after_touchdown_s, 0.0, 86400.0},
         {"bus_message_error_fraction", s.bus_message_error_fraction, 0.0, 0.5},
@@ -132,6 +135,51 @@ void check_density_scale(const std::vector<DensityScale>& scales, std::vector<st
         if (i > 0 && !(scales[i].altitude_m > scales[i - 1].altitude_m))
             found.push_back(name + ".altitude_m: " + number(scales[i].altitude_m) +
                             " does not lie above the one before");
+    }
+}
+
+bool is_word(const std::string& word) {
+    return !word.empty() && std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+void check_relay_pass(const RelayPass& pass, const std::string& name, std::vector<std::string>& found) {
+    const auto within = [&](const char* field, double value, double least, double most) {
+        if (!(value >= least && value <= most))
+            found.push_back(name + "." + field + ": " + number(value) + " is outside " + number(least) + " … " + number(most));
+    };
+    if (!is_word(pass.orbiter) || pass.orbiter.size() > 16 || pass.orbiter == "live") // it names links: uhf_<orbiter>
+        found.push_back(name + ".orbiter: '" + pass.orbiter + "' is not 1 … 16 of a-z, 0-9 and _, or is 'live'");
+    within("rise_after_entry_s", pass.rise_after_entry_s, -1.0e6, 1.0e6);
+    within("set_after_entry_s", pass.set_after_entry_s, -1.0e6, 1.0e6);
+    if (!(pass.set_after_entry_s > pass.rise_after_entry_s))
+        found.push_back(name + ".set_after_entry_s: " + number(pass.set_after_entry_s) + " is not after its rise");
+    within("horizon_km", pass.horizon_km, 0.0, 1.0e6);
+    within("nearest_km", pass.nearest_km, 0.0, pass.horizon_km);
+    within("delivery_after_set_s", pass.delivery_after_set_s, 0.0, 1.0e6);
+    within("delivery_rate_bps", pass.delivery_rate_bps, 1000.0, 1.0e8);
+    for (const RelayPass::Rate& rate : pass.rates) within("rates.bps", rate.bps, 1000.0, 1.0e8);
+    if (!std::ranges::is_sorted(pass.rates, {}, &RelayPass::Rate::after_rise_s))
+        found.push_back(name + ".rates: are not in the order of after_rise_s");
+}
+
+void check_relay_passes(const Radio& radio, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < radio.relay_passes.size(); ++i)
+        check_relay_pass(radio.relay_passes[i], "radio.relay_passes[" + std::to_string(i) + "]", found);
+    for (const double restart : radio.delivery_restarts_after_touchdown_s)
+        if (!(restart >= 0.0 && restart <= 1.0e6))
+            found.push_back("radio.delivery_restarts_after_touchdown_s: " + number(restart) + " is outside 0 … 1000000");
+    if (!std::ranges::is_sorted(radio.delivery_restarts_after_touchdown_s))
+        found.push_back("radio.delivery_restarts_after_touchdown_s: are not in order");
+}
+
+void check_tone_outages(const std::vector<ToneOutage>& outages, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < outages.size(); ++i) {
+        const std::string name = "radio.tone_outages[" + std::to_string(i) + "]";
+        if (!is_word(outages[i].event))
+            found.push_back(name + ".event: '" + outages[i].event + "' is no event, as parachute_deploy or earth_set");
+        if (!(outages[i].from_s >= -86400.0 && outages[i].to_s <= 86400.0 && outages[i].to_s > outages[i].from_s))
+            found.push_back(name + ": from_s " + number(outages[i].from_s) + " to to_s " + number(outages[i].to_s) +
+                            " is no stretch of time within a day");
     }
 }
 
@@ -286,6 +334,8 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
                         " is above the speed at which the blackout starts");
     check_target_range(scenario, found);
     check_masses(scenario.masses, found);
+    check_relay_passes(scenario.radio, found);
+    check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
     check_dispersion_moment(scenario, found);
     check_commands(scenario, found);

@@ -110,6 +110,29 @@ struct DensityScale {
     double scale = 1.0;
 };
 
+/// A pass of an orbiter: it hears the vehicle's UHF from rise to set, and hands on to Earth what it heard.
+struct RelayPass {
+    /// From `after_rise_s` on the rover sends its files at this rate.
+    struct Rate {
+        double after_rise_s = 0.0;
+        double bps = 0.0;
+    };
+    std::string orbiter;          ///< "odyssey": names its links
+    bool stored = false;          ///< it records, and delivers later; else a bent pipe
+    double rise_after_entry_s = 0.0, set_after_entry_s = 0.0;
+    double horizon_km = 0.0, nearest_km = 0.0; ///< range at rise and set, and half-way between
+    double delivery_after_set_s = 0.0;         ///< stored: from then on Earth receives what it recorded,
+    double delivery_rate_bps = 2.0e6;          ///< at that rate
+    std::vector<Rate> rates;      ///< none: the radio's relay_rate_bps throughout
+};
+
+/// When tones may be lost by plan: ground counts on none there.
+struct ToneOutage {
+    std::string name;  ///< "line stretch"
+    std::string event; ///< of the truth, as "parachute_deploy", or "earth_set"
+    double from_s = 0.0, to_s = 0.0; ///< after the event
+};
+
 struct Radio {
     double light_time_s = 0.0;
     double uhf_rate_bps = 8000.0;
@@ -118,11 +141,20 @@ struct Radio {
     double blackout_start_altitude_m = 65000.0;
     double uhf_loss_fraction = 0.0;         ///< of the octets outside the blackout, spoilt in bursts of errors
     double uhf_burst_s = 0.2;               ///< mean length of those. Ours
-    double x_band_c_n0_dbhz = 22.0;         ///< total power to noise density; the statistical tone model uses it
-    bool tones_from_samples = false;        ///< by a real receiver from a real waveform; else drawn from its symbol error
-    double earth_set_after_entry_s = 299.0; ///< no tone after that
+    double uplink_loss_fraction = 0.0;      ///< of the octets of the uplink, spoilt in bursts
+    double x_band_c_n0_dbhz = 22.0;         ///< total power to noise density in an antenna's best direction
+    /// Tones by a real receiver from a real waveform, or drawn from its symbol error. None: whoever flies the landing
+    /// chooses by the pace; nobody else does, so that they are drawn.
+    std::optional<bool> tones_from_samples;
+    std::optional<double> earth_set_after_entry_s; ///< no tone after that; none: when it sets behind the terrain
+    std::vector<ToneOutage> tone_outages;
     double relay_rate_bps = 2.0e6;          ///< of the recording, after landing
     double relay_start_after_touchdown_s = 20.0;
+    /// Outside its bursts a pass is as good as at this range; the part of spoilt octets grows with the square of the range.
+    double uhf_loss_range_km = 1000.0;
+    double uhf_hand_over_s = 0.0;           ///< nothing arrives for so long when the vehicle changes antennas. Ours
+    std::vector<RelayPass> relay_passes;    ///< none: one bent pipe, always in view, without regard to range
+    std::vector<double> delivery_restarts_after_touchdown_s; ///< the rover's delivery of files begins anew: a fault
 };
 
 /// A command of the scenario itself ("commands scripted"), by name as a controller would send it.

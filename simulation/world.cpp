@@ -2,6 +2,8 @@
 
 #include "simulation/buses/buses.hpp"
 #include "simulation/initial_state.hpp"
+#include "simulation/links/x_band_antenna.hpp"
+#include "simulation/mars/earth.hpp"
 #include "simulation/moments.hpp"
 #include "simulation/sensors/imu.hpp"
 #include "simulation/sensors/radar.hpp"
@@ -390,11 +392,11 @@ void World::advance_uncommanded() {
     state_->fly_on();
 }
 
-bool World::receive(std::span<const std::uint8_t> telecommand) {
+bool World::receive(std::span<const std::uint8_t> cltu) {
     flight::UplinkPacket packet;
-    if (telecommand.size() > packet.octets.size()) return false;
-    std::copy(telecommand.begin(), telecommand.end(), packet.octets.begin());
-    packet.size = static_cast<std::uint16_t>(telecommand.size());
+    if (cltu.size() > packet.octets.size()) return false;
+    std::copy(cltu.begin(), cltu.end(), packet.octets.begin());
+    packet.size = static_cast<std::uint16_t>(cltu.size());
     return state_->received.try_push_back(packet);
 }
 
@@ -436,6 +438,18 @@ const NavigationSolution& World::solution() const {
 
 bool World::uhf_on() const {
     return state_->buses.uhf_radiates();
+}
+bool World::parachute_antenna_on() const {
+    return state_->buses.parachute_antenna_on();
+}
+World::EarthView World::earth_view() const {
+    const State& s = *state_;
+    const double e_s = s.sclk() - s.scenario.entry_sclk;
+    EarthView view;
+    view.up = earth_is_up(s.vehicle.at().p_MoB_M, e_s, s.scenario.target.radius_m);
+    if (const auto antenna = s.buses.x_band_antenna())
+        view.gain = x_band_gain(*antenna, s.vehicle.q_MB().conjugate() * earth_direction_M(e_s));
+    return view;
 }
 const Bus::Counters& World::bus_64_hz() const {
     return state_->buses.counters_64_hz();

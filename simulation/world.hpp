@@ -57,8 +57,8 @@ class World {
     /// Flies on to the next tick while no computer runs the buses: thrusters close, engines keep their throttles for 2 s.
     void advance_uncommanded();
 
-    /// A telecommand packet reaches the receiver with the next tick; false when it is too long for one.
-    bool receive(std::span<const std::uint8_t> telecommand);
+    /// An uplinked unit (CLTU) reaches the receiver with the next tick; false when it is too long for one.
+    bool receive(std::span<const std::uint8_t> cltu);
     /// The vehicle's recorder tells the computer how full it is.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 
@@ -74,6 +74,13 @@ class World {
     SeparationReport separation() const;
     const NavigationSolution& solution() const;
     bool uhf_on() const; ///< the selected transmitter radiates through an antenna
+    bool parachute_antenna_on() const; ///< else that of entry
+    /// The way to Earth for X-band: above the terrain, and the selected antenna's gain towards it (none: none is selected).
+    struct EarthView {
+        bool up = false;
+        std::optional<double> gain;
+    };
+    EarthView earth_view() const;
     const Bus::Counters& bus_64_hz() const;
     const Bus::Counters& bus_8_hz() const;
 

@@ -123,7 +123,14 @@ bool CfdpReceiver::insert(const Range& range) {
     return true;
 }
 
+/// Who sends the file does not know, or has forgotten, how it ended.
+void CfdpReceiver::say_again() {
+    finished_due_ = true;
+    state_.outcome_acknowledged = false;
+}
+
 void CfdpReceiver::take(const cfdp::Metadata& metadata) {
+    if (state_.outcome != Outcome::under_way) return say_again();
     const bool known = state_.file_octets.has_value();
     const bool other = known && *state_.file_octets != metadata.file_octets;
     if (other || metadata.file_octets > file_octets_max || metadata.checksum != cfdp::Checksum::modular) ++refused_;
@@ -136,6 +143,7 @@ void CfdpReceiver::take(const cfdp::Metadata& metadata) {
 
 void CfdpReceiver::take(const cfdp::Eof& eof) {
     eof_ack_due_ = true;
+    if (state_.outcome != Outcome::under_way) say_again();
     if (state_.eof || state_.outcome != Outcome::under_way) return;
     if (eof.condition != cfdp::Condition::no_error) return end(Outcome::cancelled);
     if (eof.file_octets > file_octets_max) {

@@ -78,6 +78,7 @@ class CfdpReceiver {
     std::vector<Write> take(const cfdp::FileData& data);
     void take(const cfdp::Metadata& metadata);
     void take(const cfdp::Eof& eof);
+    void say_again();
     bool insert(const cfdp::Range& range);
     void conclude();
     void end(Reception::Outcome outcome);

@@ -1,13 +1,16 @@
 #include "telemetry/container_decoder.hpp"
 
 #include "common/bytes.hpp"
+#include "common/space_packet.hpp"
 #include "dictionaries/words.hpp"
 #include "telemetry/raw_number.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace aeolis::telemetry {
 namespace {
@@ -182,14 +185,35 @@ class Reading {
         if (entry.what == PacketEntry::What::container)
             return read_container(model_.containers[entry.index], position_, depth + 1);
         const PacketParameter& parameter = model_.parameters[entry.index];
+        reading_ = entry.index;
         const std::size_t before = contents.values.size();
         const PacketType& type = model_.types[parameter.type];
         const std::string name = parameter.name + suffix;
         const bool read = type.kind == PacketType::Kind::array && !entry.last_indices.empty()
                               ? read_array(type, entry.last_indices, name, depth + 1)
                               : read_type(type, name, depth + 1);
-        latest_[entry.index] = {before, contents.values.size() - before, name};
+        const std::size_t count = contents.values.size() - before;
+        latest_[entry.index] = {before, count, name};
+        if (parameter.valid.form != Condition::Form::always && !holds(parameter.valid))
+            for (auto& value : std::span{contents.values}.subspan(before, count)) value.calibrated = {};
+        else if (type.kind == PacketType::Kind::time && count == 1)
+            note_time(entry.index, type, contents.values.back());
         return read;
+    }
+
+    void note_time(std::size_t parameter, const PacketType& type, DecodedValue& value) {
+        auto* seconds = std::get_if<double>(&value.calibrated);
+        if (seconds == nullptr || type.relative) return;
+        if (type.time_since) {
+            const DecodedValue* from = value_of(*type.time_since, {});
+            const auto from_s = from == nullptr ? std::nullopt : number_of(from->calibrated);
+            value.calibrated = from_s ? defined(*seconds + static_cast<double>(*from_s)) : Datum{};
+            if (!from_s || !time_from_ || *time_from_ != *type.time_since) return;
+            contents.time->seconds = std::get<double>(value.calibrated);
+        } else if (!contents.time) {
+            contents.time = PacketTime{*seconds, type.epoch};
+            time_from_ = parameter;
+        }
     }
 
     bool read_type(const PacketType& type, const std::string& name, unsigned depth) {
@@ -258,24 +282,23 @@ class Reading {
     }
 
     bool read_octets(const std::string& name, std::size_t bits) {
+        const std::size_t position = position_;
         const Datum octets = take_octets(bits);
-        contents.values.push_back({name, octets, octets});
+        contents.values.push_back({name, octets, octets, position, bits, reading_});
         return true;
     }
 
     bool read_number(const PacketType& type, const std::string& name, unsigned bits) {
         if (bits == 0 || bits > 64) return stop(name + " is a number of " + std::to_string(bits) + " bits", type.line);
         const std::uint64_t field = read_bits(packet_, position_, bits);
-        position_ += bits;
+        const std::size_t position = std::exchange(position_, position_ + bits);
         Datum raw = std::visit([](auto value) -> Datum { return value; }, number_in(field, bits, type.coding));
         if (const auto* real = std::get_if<double>(&raw); real != nullptr && !std::isfinite(*real)) {
-            contents.values.push_back({name, field, {}});
+            contents.values.push_back({name, field, {}, position, bits, reading_});
             return true;
         }
         Datum calibrated = calibrated_value(type, raw);
-        if (type.kind == PacketType::Kind::time && !contents.time_s)
-            if (const auto* time_s = std::get_if<double>(&calibrated)) contents.time_s = *time_s;
-        contents.values.push_back({name, std::move(raw), std::move(calibrated)});
+        contents.values.push_back({name, std::move(raw), std::move(calibrated), position, bits, reading_});
         return true;
     }
 
@@ -301,6 +324,7 @@ class Reading {
         auto bits = evaluate(coding.bits);
         if (!bits) return stop("the size of " + name + " cannot be known", type.line);
         if (coding.boxed && !has(*bits)) return cut(name, *bits, type.line);
+        const std::size_t begin = position_;
         const std::size_t end = position_ + *bits;
         std::size_t terminator_bits = 0;
         if (coding.leading_size_bits > 0) {
@@ -324,7 +348,7 @@ class Reading {
         const std::size_t kept = octets.size() - static_cast<std::size_t>(std::ranges::find_if(
             octets.rbegin(), octets.rend(), [](std::uint8_t octet) { return octet != 0; }) - octets.rbegin());
         std::string text{octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(kept)};
-        contents.values.push_back({name, std::move(octets), std::move(text)});
+        contents.values.push_back({name, std::move(octets), std::move(text), begin, position_ - begin, reading_});
         return true;
     }
 
@@ -333,7 +357,29 @@ class Reading {
     std::vector<Latest> latest_; ///< by parameter
     std::size_t position_ = 0;
     std::size_t steps_ = 0;
+    std::size_t reading_ = 0; ///< the parameter
+    std::optional<std::size_t> time_from_; ///< the parameter that contents.time is of
 };
+
+bool is_named(const std::string& name, std::string_view part) {
+    const auto same = [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; };
+    return !std::ranges::search(name, part, same).empty();
+}
+
+/// By names alone: so instruments' files have it that leave time to the reader.
+std::optional<PacketTime> coarse_and_fine(const std::vector<DecodedValue>& values) {
+    constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24; // [ccsds-301.0-b-4], without its extension
+    const auto coarse = std::ranges::find(values, primary_header_octets * 8, &DecodedValue::position_bits);
+    if (coarse == values.end() || std::next(coarse) == values.end()) return std::nullopt;
+    const auto fine = std::next(coarse);
+    const auto* counts = std::get_if<std::uint64_t>(&coarse->raw);
+    const auto* fraction = std::get_if<std::uint64_t>(&fine->raw);
+    if (counts == nullptr || fraction == nullptr || coarse->bits > coarse_bits_max || fine->bits > fine_bits_max ||
+        fine->position_bits != coarse->position_bits + coarse->bits || !is_named(coarse->name, "coarse") ||
+        !is_named(fine->name, "fine"))
+        return std::nullopt;
+    return PacketTime{static_cast<double>(*counts) + std::ldexp(static_cast<double>(*fraction), -static_cast<int>(fine->bits)), {}};
+}
 
 } // namespace
 
@@ -385,13 +431,17 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
         }
         const PacketContainer& last = model_.containers[at];
         reading.contents.container = last.name;
+        reading.contents.container_index = at;
+        if (!reading.contents.time) reading.contents.time = coarse_and_fine(reading.contents.values);
         if (readable && last.abstract) reading.contents.problem = "no container describes it: " + last.name + " is abstract";
         const bool whole = reading.contents.problem.empty();
         if (!best || whole || reading.contents.values.size() > best->values.size()) best = std::move(reading.contents);
         if (whole) break;
     }
     if (best) return std::move(*best);
-    return {{}, {}, {}, "the XTCE file has no container to begin with"};
+    DecodedContents none;
+    none.problem = "the XTCE file has no container to begin with";
+    return none;
 }
 
 } // namespace aeolis::telemetry

@@ -89,6 +89,11 @@ std::optional<std::span<const std::uint8_t>> PacketSource::next() {
     return given_;
 }
 
+bool PacketSource::lost() const {
+    const auto* packets = std::get_if<BarePackets>(&source_);
+    return packets != nullptr && packets->lost();
+}
+
 LinkCounters PacketSource::link() const {
     if (const auto* frames = std::get_if<Frames>(&source_)) return frames->receiver.counters();
     if (const auto* pltus = std::get_if<Pltus>(&source_)) return pltus->receiver.counters();

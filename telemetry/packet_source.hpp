@@ -27,6 +27,7 @@ class BarePackets {
     std::optional<std::span<const std::uint8_t>> next();
     /// Nothing more will come.
     void end();
+    bool lost() const { return lost_; }
     const PacketCounters& counters() const { return counters_; }
 
   private:
@@ -51,6 +52,8 @@ class PacketSource {
     /// The next packet; its octets are good until the next call of anything.
     std::optional<std::span<const std::uint8_t>> next();
 
+    /// Bare packets that cannot be found any more: nothing will come.
+    bool lost() const;
     LinkCounters link() const;     ///< of frames; nothing for bare packets
     PacketCounters packets() const;
 

@@ -1,11 +1,11 @@
 #include "telemetry/pltu_receiver.hpp"
 
-
 #include <algorithm>
 
 namespace aeolis::telemetry {
 
 void PltuReceiver::receive(std::span<const std::uint8_t> octets) {
+    ended_ = false;
     window_.add(octets);
     counters_.octets += octets.size();
 }

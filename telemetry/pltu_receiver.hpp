@@ -30,7 +30,7 @@ class PltuReceiver {
     /// The next frame; none when more octets are needed.
     std::optional<Received> next();
 
-    /// Nothing more will come: what waits to become a frame is searched as it is by next().
+    /// Nothing more will come, or not for long: what waits to become a frame is searched as it is by next(), until more comes.
     void end() { ended_ = true; }
 
     const LinkCounters& counters() const { return counters_; }

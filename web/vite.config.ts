@@ -8,6 +8,6 @@ export default defineConfig({
   build: { target: 'es2023', sourcemap: false, modulePreload: { polyfill: false } },
   worker: { format: 'es' },
   oxc: { jsx: { runtime: 'automatic', importSource: 'preact' } },
-  server: { host: '127.0.0.1', proxy: { '/api': { target: server, ws: true, changeOrigin: true, headers: { origin: server } } } },
-  test: { environment: 'node', include: ['src/**/*.spec.{ts,tsx}'] },
+  server: { host: '127.0.0.1', fs: { allow: ['.', '../docs'] }, proxy: { '/api': { target: server, ws: true, changeOrigin: true, headers: { origin: server } } } },
+  test: { environment: 'node', css: true, include: ['src/**/*.spec.{ts,tsx}'] },
 });

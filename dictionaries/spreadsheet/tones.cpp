@@ -22,7 +22,7 @@ std::optional<ToneSet> to_set(const std::string& word) {
     return std::nullopt;
 }
 
-ToneRow read_row(RowReader& cells) {
+ToneRow read_tone_row(RowReader& cells) {
     ToneRow tone;
     if (const auto set = to_set(cells.text("set")))
         tone.set = *set;
@@ -75,7 +75,7 @@ std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& 
     for (const Sheet::Row& row : table->rows()) {
         RowReader cells{*table, row, "tone", "id", findings};
         const auto id = cells.integer("id", 0, static_cast<std::int64_t>(tones_count) - 1);
-        Read read{read_row(cells), row.line};
+        Read read{read_tone_row(cells), row.line};
         if (id) {
             read.tone.id = ToneId{static_cast<std::uint8_t>(*id)};
             const auto [first, added] = lines.emplace(*id, row.line);

@@ -14,7 +14,7 @@ class ContainerReader {
 
     PacketContainer read(const Symbol& symbol) {
         const pugi::xml_node element = symbol.element;
-        PacketContainer container{name_of(element), parts_.report.line(element), element.attribute("abstract").as_bool(),
+        PacketContainer container{name_of(element), symbol.path, parts_.report.line(element), element.attribute("abstract").as_bool(),
                                   std::nullopt, {}, {}};
         if (const pugi::xml_node base = element.child("BaseContainer")) {
             container.base = index_of(symbol, base);

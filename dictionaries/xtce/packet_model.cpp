@@ -123,9 +123,15 @@ Condition ModelParts::part(const std::string& scope, pugi::xml_node element, uns
 }
 
 Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent) const {
-    for (const pugi::xml_node child : parent.children())
-        if (child.type() == pugi::node_element) return part(scope, child, 0);
-    return {};
+    Condition found;
+    for (const pugi::xml_node child : parent.children()) {
+        if (child.type() != pugi::node_element) continue;
+        if (found.form != Condition::Form::always)
+            report.fault(child, std::string{child.name()} + " beside another condition is not supported: it is left out");
+        else
+            found = part(scope, child, 0);
+    }
+    return found;
 }
 
 Amount ModelParts::amount(const std::string& scope, pugi::xml_node parent) const {
@@ -185,7 +191,8 @@ std::optional<PacketModel> read_packet_model(const std::string& text, Findings& 
     for (const Symbol& symbol : symbols.all())
         if (symbol.kind == Kind::parameter)
             model.parameters.push_back(
-                {name_of(symbol.element), types.of(symbol.scope, symbol.element, "parameterTypeRef")});
+                {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
+                 parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition"))});
     model.containers = read_model_containers(parts);
     model.types = std::move(types.types);
     return model;

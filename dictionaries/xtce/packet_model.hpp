@@ -100,10 +100,14 @@ struct PacketType {
     std::string name{};
     unsigned line = 0;
     Kind kind = Kind::unknown; ///< unknown: not supported; a packet is read up to where it stands
+    std::string unit{};        ///< the first one; empty: the file says none
     Coding coding{};
     std::vector<Label> labels{};
     std::string zero = "False", one = "True"; ///< of a boolean
     double time_offset_s = 0.0, time_scale_s = 1.0;
+    bool relative = false;   ///< of a time: a duration, or a time since something other than an epoch
+    std::string epoch{};       ///< of a time: "UNIX", "TAI", "GPS", "J2000", a date; empty: the file does not say
+    std::optional<std::size_t> time_since{}; ///< of a time: counts from the time in this parameter
     std::vector<Member> members{};
     std::size_t element = 0;          ///< type of an array's elements
     std::vector<Amount> last_indices{}; ///< of an array's dimensions, which begin at 0
@@ -111,7 +115,9 @@ struct PacketType {
 
 struct PacketParameter {
     std::string name;
+    std::string path; ///< "/MSL/Events/opcode": no other has it
     std::size_t type = 0; ///< in PacketModel::types
+    Condition valid{};    ///< where it does not hold, the value is undefined
 };
 
 struct PacketEntry {
@@ -131,6 +137,7 @@ struct PacketEntry {
 
 struct PacketContainer {
     std::string name;
+    std::string path; ///< as of parameters
     unsigned line = 0;
     bool abstract = false;
     std::optional<std::size_t> base;

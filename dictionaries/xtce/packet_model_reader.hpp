@@ -57,6 +57,7 @@ class ModelTypes {
     Calibration calibration(pugi::xml_node calibrator);
     void read_labels(pugi::xml_node element, PacketType& type);
     void read_time(const Symbol& symbol, PacketType& type);
+    void read_reference_time(const Symbol& symbol, PacketType& type);
     void read_members(const Symbol& symbol, PacketType& type);
 
     const ModelParts& parts_;

@@ -76,6 +76,7 @@ PacketType ModelTypes::read(const Symbol& symbol) {
     type.name = name_of(element);
     type.line = parts_.report.line(element);
     type.kind = model_kind_of(element.name());
+    if (const pugi::xml_node unit = element.child("UnitSet").child("Unit")) type.unit = unit.text().as_string();
     switch (type.kind) {
     case PacketType::Kind::unknown:
         parts_.report.fault(element, std::string{element.name()} + " is unknown or not supported");
@@ -248,9 +249,29 @@ void ModelTypes::read_time(const Symbol& symbol, PacketType& type) {
         type.time_offset_s = encoding.attribute("offset").as_double(0.0);
         type.time_scale_s = encoding.attribute("scale").as_double(1.0);
     }
+    read_reference_time(symbol, type);
     read_coding(symbol, encoding ? encoding : symbol.element, type);
     if (type.kind == PacketType::Kind::time && type.coding.form == Coding::Form::octets)
         parts_.report.fault(encoding, "a time that is no number is given as its octets");
+}
+
+void ModelTypes::read_reference_time(const Symbol& symbol, PacketType& type) {
+    type.relative = std::string_view{symbol.element.name()} == "RelativeTimeParameterType";
+    const pugi::xml_node reference = symbol.element.child("ReferenceTime");
+    if (const pugi::xml_node epoch = reference.child("Epoch")) {
+        const auto letters = [](char c) { return static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c); };
+        type.epoch = epoch.text().as_string();
+        std::ranges::transform(type.epoch, type.epoch.begin(), letters);
+    }
+    if (const pugi::xml_node since = reference.child("OffsetFrom")) {
+        const auto found = parts_.parameter(symbol.scope, since, "parameterRef");
+        if (found && found->member.empty())
+            type.time_since = found->parameter;
+        else
+            type.relative = true;
+        if (found && !found->member.empty())
+            parts_.report.fault(since, "a time since a member is not supported: it is given without what it counts from");
+    }
 }
 
 void ModelTypes::read_members(const Symbol& symbol, PacketType& type) {

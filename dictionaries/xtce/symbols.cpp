@@ -16,7 +16,7 @@ void Symbols::read_space_system(pugi::xml_node system, const std::string& outer,
         report.fault(system, "SpaceSystems are nested deeper than " + std::to_string(system_depth_max));
         return;
     }
-    report.expect(system, {"LongDescription", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
+    report.expect(system, {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
                   {"name", "shortDescription", "xmlns", "xmlns:xtce", "xmlns:xsi", "xsi:schemaLocation"});
     const std::string scope = outer + "/" + name_of(system);
 

@@ -1,7 +1,9 @@
 #include "flight/commands/command_dispatcher.hpp"
 
+#include "common/cltu.hpp"
 #include "common/space_packet.hpp"
 
+#include <array>
 #include <span>
 
 namespace aeolis::flight {
@@ -33,15 +35,41 @@ void CommandDispatcher::on(const Resume& resume, Outbox&) {
     in_control_ |= resume.reason == ResumeReason::take_over;
 }
 
+void CommandDispatcher::unreadable(std::size_t octets, Outbox& out) {
+    if (is_deaf()) return;  // prime reports it
+    out.event(evr::UPLINK_UNREADABLE{.size_octets = static_cast<std::uint16_t>(octets), .refused = ++refused_});
+}
+
 void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
-    const auto packet = uplink.size <= uplink_octets_max
-                            ? read_tc_packet(std::span{uplink.octets}.first(uplink.size))
-                            : std::optional<TcPacket>{};
-    if (!packet && role_ == Role::second_chance && !in_control_) return;  // prime reports it
-    if (!packet) {
-        out.event(evr::UPLINK_UNREADABLE{.size_octets = uplink.size, .refused = ++refused_});
-        return;
+    if (uplink.size > uplink_octets_max) return unreadable(uplink.size, out);
+    std::array<std::uint8_t, uplink_octets_max> information{};
+    const auto octets = read_cltu(std::span{uplink.octets}.first(uplink.size), information);
+    if (!octets) return unreadable(uplink.size, out);
+    const auto frame = read_tc_frame(std::span{information}.first(*octets));
+    if (!frame) return unreadable(uplink.size, out);
+    take_frame(*frame, out);
+    out.send(ModuleId::edl_comm, UplinkStatus{word_of(farm_.clcw())});
+}
+
+void CommandDispatcher::take_frame(const TcFrame& frame, Outbox& out) {
+    const auto refused = [&](FrameRefusal why) {
+        if (!is_deaf())
+            out.event(evr::UPLINK_FRAME_REFUSED{.frame = frame.header.sequence, .frame_refusal = why, .expected_frame = farm_.clcw().expected});
+    };
+    switch (farm_.take(frame)) {
+    case Farm::Verdict::accepted: return take_packet(frame.data, out);
+    case Farm::Verdict::executed: return;
+    case Farm::Verdict::repeated: return refused(FrameRefusal::repeated);
+    case Farm::Verdict::out_of_sequence: return refused(FrameRefusal::out_of_sequence);
+    case Farm::Verdict::locked_out: return refused(FrameRefusal::locked_out);
+    case Farm::Verdict::not_for_this_channel: return refused(FrameRefusal::other_channel);
+    case Farm::Verdict::no_such_control: return refused(FrameRefusal::no_such_control);
     }
+}
+
+void CommandDispatcher::take_packet(std::span<const std::uint8_t> octets, Outbox& out) {
+    const auto packet = read_tc_packet(octets);
+    if (!packet) return unreadable(octets.size(), out);
     const CommandTag tag{packet->opcode, packet->primary.count};
     if (!is_for_this_computer(tag.opcode)) return;
     switch (packet->opcode.value) {

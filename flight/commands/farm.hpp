@@ -20,6 +20,9 @@ class Farm {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
         std::uint8_t window = 128;
+        /// Nothing in sequence is taken before ground has unlocked the channel: who has forgotten the sequence must not take for
+        /// new what it took before.
+        bool locked_at_start = false;
     };
 
     enum class Verdict : std::uint8_t {
@@ -32,7 +35,7 @@ class Farm {
         no_such_control,
     };
 
-    constexpr explicit Farm(const Settings& settings) : settings_(settings) {
+    constexpr explicit Farm(const Settings& settings) : settings_(settings), lockout_(settings.locked_at_start) {
         AEOLIS_CHECK(settings.window >= 2 && settings.window <= 254 && settings.window % 2 == 0);
     }
 
@@ -90,7 +93,7 @@ class Farm {
     Settings settings_;
     std::uint8_t expected_ = 0;  ///< V(R)
     std::uint8_t farm_b_ = 0;
-    bool lockout_ = false;
+    bool lockout_;
     bool retransmit_ = false;
 };
 

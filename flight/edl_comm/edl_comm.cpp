@@ -84,7 +84,7 @@ void EdlComm::send_frame(Outbox& out) {
         packets.append(queue_.front().span());
         queue_.pop();
     }
-    const ProximityHeader header{.spacecraft = spacecraft,
+    const ProximityHeader header{.spacecraft = spacecraft_id,
                                  .physical_channel = static_cast<std::uint8_t>(string_ == String::b),
                                  .sequence = frame_sequence_++};
     std::array<std::uint8_t, pltu_octets_max> pltu{};
@@ -111,6 +111,10 @@ void EdlComm::on(const ToneStatus& status, Outbox&) {
     tone_ = status;
 }
 
+void EdlComm::on(const UplinkStatus& status, Outbox&) {
+    uplink_ = status;
+}
+
 void EdlComm::on(const ClockTick& tick, Outbox& out) {
     if (at_resolution(tick.now, 1) == tick.now) out.record(status());
     products_.cycle(out);
@@ -133,7 +137,8 @@ packet::CommStatus EdlComm::status() const {
             .uhf_waiting_packets = static_cast<std::uint8_t>(queue_.waiting()),
             .uhf_low_queue_octets = low_octets,
             .nvm_unrecorded_packets = unrecorded_packets_,
-            .products_made = products_.made()};
+            .products_made = products_.made(),
+            .clcw = uplink_.clcw};
 }
 
 }  // namespace aeolis::flight

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/proximity_frame.hpp"
+#include "common/tc_frame.hpp"
 #include "flight/edl_comm/data_products.hpp"
 #include "flight/edl_comm/realtime_queue.hpp"
 #include "flight/edl_comm/telemetry_plan.hpp"
@@ -13,7 +14,7 @@ namespace aeolis::flight {
 /// All EDL telemetry: everything is recorded in non-volatile memory, and ground gets a subset of the same packets, bit
 /// for bit, as fast as the link is. R29, R30
 ///
-/// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, ClockTick (64 Hz)
+/// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1 Hz; data
 ///         products
 /// Memory  192 packets wait for the link; see RealtimeQueue for what gives way. Never the recording, never the cycle
@@ -32,6 +33,7 @@ class EdlComm {
     void on(const PhaseChanged& change, Outbox& out);
     void on(const NvmStatus& status, Outbox& out);
     void on(const ToneStatus& status, Outbox& out);
+    void on(const UplinkStatus& status, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
 
     std::uint32_t unrecorded_packets() const { return unrecorded_packets_; }
@@ -40,7 +42,6 @@ class EdlComm {
   private:
     static constexpr std::uint16_t counts_of_string_b = 0x2000;  ///< half of the 14 bits
     static constexpr std::uint32_t nvm_reserve_octets = 65536;
-    static constexpr std::uint16_t spacecraft = 76;  // ours: to ground it is a name and no more
     static constexpr std::size_t frame_packets_octets = 256;
     struct Stream {  // one for each APID of the dictionary, by its low 7 bits
         std::uint16_t count = 0;
@@ -71,6 +72,7 @@ class EdlComm {
     bool nvm_full_reported_ = false;
     bool queue_full_reported_ = false;
     ToneStatus tone_;
+    UplinkStatus uplink_{word_of({.lockout = true})};  // as of a dispatcher that has heard nothing
 };
 
 }  // namespace aeolis::flight

@@ -85,10 +85,13 @@ struct Resume {
     ResumeReason reason{};
 };
 
-inline constexpr std::size_t uplink_octets_max = 256;  ///< ours: the longest command of the dictionary is 150 octets
+inline constexpr std::size_t uplink_octets_max = 256;  ///< ours: the longest command of the dictionary makes a CLTU of 194
 struct UplinkReceived {
     std::array<std::uint8_t, uplink_octets_max> octets{};
-    std::uint16_t size = 0;  ///< as received; more than fits means that the rest is lost and the packet is refused
+    std::uint16_t size = 0;  ///< as received; more than fits means that the rest is lost and the unit is refused
+};
+struct UplinkStatus {  ///< from the command dispatcher to EdlComm, for its status channel
+    std::uint32_t clcw = 0;
 };
 struct NvmStatus {
     std::uint32_t used_octets = 0;
@@ -209,7 +212,7 @@ using Message =
                  InhibitEdl, SetParametersCommand,
                  ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
                  EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,
-                 Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus>;
+                 Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Copies what a message holds, not the room that the largest one takes.

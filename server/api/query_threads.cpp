@@ -3,10 +3,11 @@
 namespace aeolis::server {
 
 Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::path& archive,
-                                                         const dictionary::Dictionary& dictionary) {
+                                                         const dictionary::Dictionary& dictionary,
+                                                         const telemetry::OtherMission* other) {
     std::vector<archive::Reader> readers;
     for (std::size_t i = 0; i < threads; ++i) {
-        auto reader = archive::Reader::open(archive, dictionary);
+        auto reader = archive::Reader::open(archive, dictionary, other);
         if (!reader) return reader.error();
         readers.push_back(std::move(reader).value());
     }

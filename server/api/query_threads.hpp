@@ -23,7 +23,8 @@ class QueryThreads {
 
     /// The archive has been made. The dictionary must outlive this.
     static Result<std::unique_ptr<QueryThreads>> open(const std::filesystem::path& archive,
-                                                      const dictionary::Dictionary& dictionary);
+                                                      const dictionary::Dictionary& dictionary,
+                                                      const telemetry::OtherMission* other = nullptr);
     ~QueryThreads(); ///< does what waits, then ends
 
     /// False, and nothing done, when too much waits.

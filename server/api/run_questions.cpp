@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace aeolis::server {
 namespace {
@@ -108,6 +109,10 @@ HttpResponse packets(const dictionary::Dictionary& dictionary, archive::Reader& 
     if (!range) return error_response(400, range.error().message);
     const auto page = page_of(query, 100, archive::packets_page_max);
     if (!page) return error_response(400, page.error().message);
+    packets.verdict = query.text("verdict").value_or("");
+    if (!packets.verdict.empty() && std::ranges::none_of(archive::verdicts, [&](const char* name) { return packets.verdict == name; }))
+        return error_response(400, fmt::format("verdict: there is no '{}'; verdicts are {}", packets.verdict,
+                                               fmt::join(archive::verdicts, ", ")));
     packets.range = *range;
     packets.after = page->after;
     packets.limit = page->limit;
@@ -184,6 +189,28 @@ HttpResponse recording(const dictionary::Dictionary&, archive::Reader& reader, a
     return answer(reader.recording(run));
 }
 
+std::string csv_of(const v1::ProofReport& report) {
+    std::string csv = "of,name,realtime,identical,differs,missing_in_recording,recorded,never_seen_live,not_decoded,pending\n";
+    const auto add = [&](const char* of, const auto& rows) {
+        for (const auto& row : rows)
+            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{}\n", of, row.name(), row.realtime(),
+                           row.identical(), row.differs(), row.missing_in_recording(), row.recorded(),
+                           row.never_seen_live(), row.not_decoded(), row.pending());
+    };
+    add("packet", report.streams());
+    add("link", report.links());
+    return csv;
+}
+
+HttpResponse proof(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto format = query.text("format").value_or("json");
+    if (format != "json" && format != "csv")
+        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
+    const auto report = reader.proof(run);
+    if (format == "json" || !report) return answer(report);
+    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
+}
+
 /// The newest value of every channel at an instant: a series of one sample each.
 HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
                    const QueryText& query) {
@@ -211,13 +238,14 @@ HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& re
 const std::array questions{
     RunQuestionEntry{"", {}, run_itself},
     RunQuestionEntry{"channels", {"names", "from", "to", "points", "format"}, channels},
-    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "after", "limit"}, packets},
+    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit"}, packets},
     RunQuestionEntry{"tones", {"from", "to"}, tones},
     RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates"}, events},
     RunQuestionEntry{"commands", {}, commands},
     RunQuestionEntry{"timepoints", {}, timepoints},
     RunQuestionEntry{"explanations", {"decision", "from", "to", "after", "limit", "duplicates"}, explanations},
     RunQuestionEntry{"recording", {}, recording},
+    RunQuestionEntry{"proof", {"format"}, proof},
     RunQuestionEntry{"state", {"at"}, state},
 };
 

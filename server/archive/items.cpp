@@ -26,7 +26,7 @@ v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* diction
     unit.set_sclk(record.sclk.seconds);
     unit.set_ert(day_of_year_text(record.ert));
     unit.set_octets(static_cast<std::uint32_t>(record.octets.count));
-    unit.set_link(name_of(record.link));
+    unit.set_link(record.link);
     unit.set_source(source_of(record.source));
     unit.set_duplicate(record.duplicate());
     return item;
@@ -80,6 +80,13 @@ v1::Item to_item(const ToneRecord& record) {
     tone.set_locked(record.locked);
     tone.set_model(record.model);
     tone.set_sclk(record.sclk.seconds);
+    tone.set_lock(record.lock);
+    for (const ToneLikelihood& each : record.best) {
+        auto& written = *tone.add_best();
+        written.set_tone(each.tone);
+        written.set_likelihood(each.likelihood);
+    }
+    if (record.spectrum) tone.set_spectrum(record.spectrum->data(), record.spectrum->size());
     return item;
 }
 
@@ -137,7 +144,7 @@ v1::Item to_item(const LinkRecord& record) {
     v1::Item item;
     item.set_seq(record.seq);
     auto& link = *item.mutable_link();
-    link.set_link(name_of(record.link));
+    link.set_link(record.link);
     link.set_up(record.up);
     link.set_reason(record.reason);
     link.set_ert(day_of_year_text(record.ert));

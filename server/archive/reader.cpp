@@ -28,11 +28,12 @@ Result<void> check_limit(std::size_t limit, std::size_t most) {
     return Error{"limit " + std::to_string(limit) + " is not 1 … " + std::to_string(most)};
 }
 
-Result<Reader> Reader::open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
+Result<Reader> Reader::open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
+                            const telemetry::OtherMission* other) {
     auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
     if (!database) return database.error();
     if (auto done = check_for_reading(*database); !done) return done.error();
-    return Reader(std::make_unique<State>(std::move(database).value(), dictionary));
+    return Reader(std::make_unique<State>(std::move(database).value(), dictionary, other));
 }
 
 Result<Query> Reader::State::query(const char* sql) {

@@ -5,7 +5,9 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
+#include "telemetry/other_mission.hpp"
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -40,9 +42,14 @@ struct SeriesQuery {
     std::optional<std::size_t> points; ///< thin to at most so many; none: exact
 };
 
+/// Verdicts on a unit against the other path. Before the whole recording is down, nothing is missing in it: pending.
+inline constexpr std::array<const char*, 6> verdicts{"identical", "differs", "missing_in_recording",
+                                                     "never_seen_live", "not_decoded", "pending"};
+
 struct PacketQuery {
     std::optional<std::string> name; ///< of the packet: "GncNavigation"
     SclkRange range;
+    std::string verdict; ///< only units of this one, by name; empty: all
     Sequence after = 0;
     std::size_t limit = 100;
     bool fields = true;
@@ -81,7 +88,9 @@ struct ChannelValue {
 /// Threads  one owner a Reader; many Readers may be open. The dictionary must outlive it.
 class Reader {
   public:
-    static Result<Reader> open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary);
+    /// @param other  the mission whose dictionary that is, where it is not ours; it must outlive this as well
+    static Result<Reader> open(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
+                               const telemetry::OtherMission* other = nullptr);
 
     Reader(Reader&&) noexcept;
     Reader& operator=(Reader&&) noexcept;
@@ -113,11 +122,15 @@ class Reader {
     Result<v1::CommandList> commands(RunId run);
     Result<v1::TimepointList> timepoints(RunId run);
     Result<v1::RecordingSummary> recording(RunId run);
+    /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
+    Result<v1::ProofReport> proof(RunId run);
 
     struct State; ///< reader_state.hpp: shared by the reader's parts
 
   private:
     explicit Reader(std::unique_ptr<State> state);
+    Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
+    Result<void> add_counters(RunId run, v1::ProofReport& report);
     std::unique_ptr<State> state_;
 };
 

@@ -64,7 +64,7 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
         // With another dictionary the values cannot be told; the item still takes its place.
         const SampleRecord sample{unit.seq + 1, unit.packet.value_or(0), unit.sclk, unit.source, {}};
         values.clear();
-        if (words != nullptr && !reader.decommutator.decode((*rows)->octets(row::unit_octets_column), reader.decoded)) {
+        if (words != nullptr && reader.decode((*rows)->octets(row::unit_octets_column))) {
             reader.columns.append_values(reader.decoded, values);
             page.items.push_back(to_item(sample, reader.columns.channels(reader.decoded.packet), values));
         } else {
@@ -98,8 +98,9 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
         return [read](const sqlite::Statement& row) -> Result<v1::Item> { return to_item(read(row)); };
     };
     const auto explanation = [this](const sqlite::Statement& row) { return state_->explanation_item(row); };
+    const auto tone = [this](const sqlite::Statement& row) { return state_->tone_item(row); };
     auto done = collect(*state_, row::event_rows, page, as_item(row::event));
-    if (done) done = collect(*state_, row::tone_rows, page, as_item(row::tone));
+    if (done) done = collect(*state_, row::tone_rows, page, tone);
     if (done) done = collect(*state_, row::stage_rows, page, as_item(row::stage));
     if (done) done = collect(*state_, row::firing_rows, page, as_item(row::firing));
     if (done) done = collect(*state_, row::explanation_rows, page, explanation);
@@ -115,6 +116,19 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
         page.through = page.items.back().seq();
     }
     return ItemPage{std::move(page.items), page.through, page.through < *last};
+}
+
+Result<v1::Item> Reader::State::tone_item(const sqlite::Statement& row) {
+    auto record = row::tone(row);
+    auto best = query(row::tone_likelihood_rows);
+    if (!best) return best.error();
+    (*best)->bind(1, row.integer(0));
+    for (;;) {
+        auto found = (*best)->step();
+        if (!found) return found.error();
+        if (!*found) return to_item(record);
+        record.best.push_back(row::tone_likelihood(**best));
+    }
 }
 
 Result<v1::Item> Reader::State::explanation_item(const sqlite::Statement& row) {

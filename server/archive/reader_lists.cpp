@@ -63,6 +63,17 @@ void add_fields(v1::PacketRow& row, const dictionary::Packet& packet, const tele
     }
 }
 
+/// Of another mission: everything in it, also text, octets and lists of any length.
+void add_contents(v1::PacketRow& row, const telemetry::DecodedContents& contents) {
+    for (const auto& value : contents.values) {
+        auto& written = *row.add_fields();
+        written.set_name(value.name);
+        written.set_text(telemetry::datum_text(value.calibrated));
+        written.set_position_bits(static_cast<std::uint32_t>(value.position_bits));
+        written.set_bits(static_cast<std::uint32_t>(value.bits));
+    }
+}
+
 } // namespace
 
 Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
@@ -80,16 +91,25 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
         if (packet == nullptr) return Error{"no packet '" + *query.name + "'"};
         wanted = static_cast<std::uint16_t>(packet - state_->dictionary.packets.data());
     }
+    const auto complete = state_->recording_complete(run);
+    if (!complete) return complete.error();
     const auto* words = state_->words_of(*info);
     v1::PacketList list;
     const auto next = scan(*state_, row::unit_rows, run, query.after, [&](const auto& row) -> Result<bool> {
         const auto unit = row::unit(row);
         if ((wanted && unit.packet != wanted) || !range->holds(unit.sclk.seconds)) return false;
+        const auto verdict = state_->verdict_on(run, unit, *complete);
+        if (!verdict) return verdict.error();
+        if (!query.verdict.empty() && query.verdict != verdict->name) return false;
         auto& written = *list.add_packets();
+        written.set_verdict(verdict->name);
+        written.set_other_hex(hex(verdict->other_octets));
         *written.mutable_unit() = std::move(*to_item(unit, words).mutable_unit());
         const auto octets = row.octets(row::unit_octets_column);
         written.set_hex(hex(octets));
-        if (query.fields && words != nullptr && unit.packet && !state_->decommutator.decode(octets, state_->decoded))
+        if (query.fields && words != nullptr && state_->other != nullptr)
+            add_contents(written, state_->other->contents(octets));
+        else if (query.fields && words != nullptr && unit.packet && state_->decode(octets))
             add_fields(written, words->packets[state_->decoded.packet], state_->decoded);
         return static_cast<std::size_t>(list.packets_size()) == query.limit;
     });
@@ -132,8 +152,9 @@ Result<v1::ToneList> Reader::tones(RunId run, SclkRange asked) {
     if (const auto info = state_->info(run); !info) return info.error();
     v1::ToneList list;
     const auto done = scan(*state_, row::tone_rows, run, 0, [&](const auto& row) -> Result<bool> {
-        const auto tone = row::tone(row);
-        if (range->holds(tone.sclk.seconds)) *list.add_tones() = to_item(tone);
+        auto tone = state_->tone_item(row);
+        if (!tone) return tone.error();
+        if (range->holds(tone->tone().sclk())) *list.add_tones() = std::move(*tone);
         return false;
     });
     if (!done) return done.error();

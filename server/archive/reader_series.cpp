@@ -10,6 +10,10 @@ namespace {
 
 constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
+// Of another mission's packets, whose container may come with any APID.
+constexpr char newest_of_any_apid_sql[] =
+    "SELECT octets, sclk FROM units WHERE run = ?1 AND ?2 IS NOT NULL AND sclk <= ?3 AND packet = ?4 AND source = ?5"
+    " AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 
 Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::Dictionary& dictionary,
                                                               const std::vector<std::string>& names) {
@@ -68,17 +72,18 @@ Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, S
                          std::vector<std::optional<ChannelValue>>& newest) {
     const auto& channels = reader.columns.channels(packet);
     if (channels.empty()) return {};
-    auto rows = reader.query(newest_sql);
+    const Apid apid = reader.dictionary.packets[packet].apid;
+    auto rows = reader.query(apid == telemetry::OtherMission::any_apid ? newest_of_any_apid_sql : newest_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.value})
-        .bind(2, std::int64_t{reader.dictionary.packets[packet].apid.value})
+        .bind(2, std::int64_t{apid.value})
         .bind(3, to_s)
         .bind(4, static_cast<std::int64_t>(packet))
         .bind(5, static_cast<std::int64_t>(source));
     auto found = row.step();
     if (!found) return found.error();
-    if (!*found || reader.decommutator.decode(row.octets(0), reader.decoded)) return {};
+    if (!*found || !reader.decode(row.octets(0))) return {};
     std::vector<double> values;
     reader.columns.append_values(reader.decoded, values);
     const Sclk sclk = reader.decoded.header.time;

@@ -6,6 +6,7 @@
 #include "telemetry/decommutator.hpp"
 
 #include <map>
+#include <vector>
 
 // What the parts of the reader share; not for others.
 namespace aeolis::archive {
@@ -43,9 +44,15 @@ Result<ClosedRange> closed(const SclkRange& range);
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
 struct Reader::State {
-    State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in)
-        : database(std::move(database_in)), dictionary(dictionary_in), columns(dictionary_in),
-          decommutator(dictionary_in) {}
+    State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
+        : database(std::move(database_in)), dictionary(dictionary_in), columns(dictionary_in), other(other_in) {
+        if (other == nullptr) decommutator.emplace(dictionary_in);
+    }
+
+    /// Into `decoded`.
+    bool decode(std::span<const std::uint8_t> packet) {
+        return other != nullptr ? !other->decode(packet, decoded) : !decommutator->decode(packet, decoded);
+    }
 
     /// Prepared once; `sql` is a constant.
     Result<Query> query(const char* sql);
@@ -53,6 +60,15 @@ struct Reader::State {
     Result<Sequence> last_seq(RunId run);
     Result<v1::RunState> run_state(const sqlite::Statement& row);
     Result<v1::Item> explanation_item(const sqlite::Statement& row);
+    Result<v1::Item> tone_item(const sqlite::Statement& row);
+    /// Whether the whole recording of a run is down.
+    Result<bool> recording_complete(RunId run);
+    /// A unit against the other path; of one that differs, that one's octets.
+    struct Verdict {
+        const char* name = "";
+        std::vector<std::uint8_t> other_octets{};
+    };
+    Result<Verdict> verdict_on(RunId run, const UnitRecord& unit, bool recording_complete);
     /// Null when the run was recorded with another dictionary.
     const dictionary::Dictionary* words_of(const RunInfo& run) const {
         return run.dictionary == dictionary.id ? &dictionary : nullptr;
@@ -62,7 +78,8 @@ struct Reader::State {
     sqlite::Database database;
     const dictionary::Dictionary& dictionary;
     PacketColumns columns;
-    telemetry::Decommutator decommutator;
+    const telemetry::OtherMission* other; ///< none: our own
+    std::optional<telemetry::Decommutator> decommutator;
     telemetry::Decoded decoded;
     std::map<const char*, sqlite::Statement> statements;
 };

@@ -2,18 +2,6 @@
 
 namespace aeolis::archive {
 
-const char* name_of(Link link) {
-    switch (link) {
-    case Link::uhf_live:
-        return "uhf_live";
-    case Link::relay:
-        return "relay";
-    case Link::x_band:
-        return "x_band";
-    }
-    return "unknown";
-}
-
 void Batch::clear() {
     first_seq = last_seq = 0;
     octets.clear();
@@ -29,6 +17,7 @@ void Batch::clear() {
     alarms.clear();
     segments.clear();
     totals.reset();
+    link_totals.clear();
     end.reset();
 }
 

@@ -2,7 +2,9 @@
 
 #include "common/ids.hpp"
 #include "common/time.hpp"
+#include "common/tone_evidence.hpp"
 #include "telemetry/explanation.hpp"
+#include "telemetry/link_counters.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <cstdint>
@@ -22,9 +24,6 @@ using Sequence = std::uint64_t;
 /// Numbers are those of Source in schema/aeolis/v1/items.proto.
 enum class Source : std::uint8_t { realtime = 1, recorded = 2, ground = 3 };
 
-enum class Link : std::uint8_t { uhf_live = 1, relay = 2, x_band = 3 };
-const char* name_of(Link link);
-
 /// Octets, or numbers, that stand in a buffer of the batch.
 struct Slice {
     std::size_t first = 0;
@@ -39,7 +38,7 @@ struct UnitRecord {
     std::string refusal;                 ///< why not decoded
     Sclk sclk;
     Ert ert;
-    Link link{};
+    std::string link; ///< "uhf_live", "uhf_<orbiter>", "relay", …
     Source source{};
     telemetry::Standing standing{};
     bool sampled = false; ///< its values are in the series
@@ -85,6 +84,9 @@ struct ToneRecord {
     bool locked = false;
     std::string model;
     Sclk sclk; ///< of the vehicle when the symbol began, by light time
+    std::string lock;                     ///< worst of the symbol: locked, fluctuating, coasting, searching; empty: not kept
+    std::vector<ToneLikelihood> best;     ///< the likeliest first, five; or none
+    std::optional<ToneSpectrum> spectrum; ///< of a decision from samples
 };
 
 /// A stage of a command. The first record of a command carries its arguments and octets.
@@ -119,7 +121,7 @@ struct ExplanationRecord {
 
 struct LinkRecord {
     Sequence seq = 0;
-    Link link{};
+    std::string link;
     bool up = false;
     std::string reason;
     Ert ert;
@@ -150,6 +152,13 @@ struct RecordingTotals {
     std::uint64_t recorded = 0, recorded_octets = 0, realtime = 0, realtime_not_recorded = 0, realtime_differs = 0,
                   never_seen_live = 0, not_decoded = 0;
     double progress = 0.0;
+};
+
+/// What a UHF link has brought so far; see telemetry::LinkCounters.
+struct LinkTotals {
+    std::string link;
+    telemetry::LinkCounters counters;
+    double octets_per_s = 0.0;
 };
 
 struct RunStart {
@@ -190,9 +199,10 @@ struct Batch {
     std::vector<AlarmRecord> alarms;
     std::vector<SegmentRecord> segments;
     std::optional<RecordingTotals> totals;
+    std::vector<LinkTotals> link_totals; ///< those that changed
     std::optional<RunEnd> end;
 
-    bool empty() const { return last_seq == 0 && segments.empty() && !totals && !end; }
+    bool empty() const { return last_seq == 0 && segments.empty() && !totals && link_totals.empty() && !end; }
     void clear(); ///< keeps capacity
 };
 

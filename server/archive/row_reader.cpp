@@ -2,6 +2,7 @@
 
 #include "server/archive/schema.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace aeolis::archive::row {
@@ -36,7 +37,7 @@ UnitRecord unit(const sqlite::Statement& row) {
     record.refusal = text(row, 3);
     record.sclk = Sclk{row.real(4)};
     record.ert = Ert{row.integer(5)};
-    record.link = static_cast<Link>(row.integer(6));
+    record.link = text(row, 6);
     record.source = source(row, 7);
     record.standing = static_cast<telemetry::Standing>(row.integer(8));
     record.sampled = row.integer(9) != 0;
@@ -58,9 +59,29 @@ EventRecord event(const sqlite::Statement& row) {
 }
 
 ToneRecord tone(const sqlite::Statement& row) {
-    return {seq(row),     Ert{row.integer(1)},  Ert{row.integer(2)}, maybe_tone(row, 3), text(row, 4),
-            text(row, 5), row.real(6),          maybe_tone(row, 7),  row.real(8),        row.real(9),
-            row.real(10), row.integer(11) != 0, text(row, 12),       Sclk{row.real(13)}};
+    ToneRecord record;
+    record.seq = seq(row);
+    record.start = Ert{row.integer(1)};
+    record.end = Ert{row.integer(2)};
+    record.tone = maybe_tone(row, 3);
+    record.name = text(row, 4);
+    record.meaning = text(row, 5);
+    record.likelihood = row.real(6);
+    record.runner_up = maybe_tone(row, 7);
+    record.runner_up_likelihood = row.real(8);
+    record.c_n0_dbhz = row.real(9);
+    record.doppler_hz = row.real(10);
+    record.locked = row.integer(11) != 0;
+    record.model = text(row, 12);
+    record.sclk = Sclk{row.real(13)};
+    record.lock = text(row, 14);
+    if (const auto octets = row.octets(15); octets.size() == ToneSpectrum{}.size())
+        std::ranges::copy(octets, record.spectrum.emplace().begin());
+    return record;
+}
+
+ToneLikelihood tone_likelihood(const sqlite::Statement& row) {
+    return {static_cast<std::uint8_t>(row.integer(0)), row.real(1)};
 }
 
 StageRecord stage(const sqlite::Statement& row) {
@@ -107,7 +128,7 @@ telemetry::Condition condition(const sqlite::Statement& row) {
 }
 
 LinkRecord link(const sqlite::Statement& row) {
-    return {seq(row), static_cast<Link>(row.integer(1)), row.integer(2) != 0, text(row, 3), Ert{row.integer(4)}};
+    return {seq(row), text(row, 1), row.integer(2) != 0, text(row, 3), Ert{row.integer(4)}};
 }
 
 AlarmRecord alarm(const sqlite::Statement& row) {

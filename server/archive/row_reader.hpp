@@ -8,7 +8,7 @@
 namespace aeolis::archive::row {
 
 inline constexpr char unit_rows[] =
-    "SELECT key, apid, packet, refusal, sclk, ert_us, link, source, standing, sampled, octets"
+    "SELECT key, apid, packet, refusal, sclk, ert_us, (SELECT word FROM words WHERE kind = 'link' AND number = link), source, standing, sampled, octets"
     " FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 /// The octets themselves stay in the row: column unit_octets_column.
 UnitRecord unit(const sqlite::Statement& row);
@@ -18,10 +18,15 @@ inline constexpr char event_rows[] = "SELECT key, unit, event, name, level, text
                                      " FROM events WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 EventRecord event(const sqlite::Statement& row);
 
-inline constexpr char tone_rows[] = "SELECT key, start_us, end_us, tone, name, meaning, likelihood, runner_up, "
-                                    "runner_up_likelihood, c_n0_dbhz, doppler_hz, locked, model, sclk"
-                                    " FROM tones WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+/// Without its best tones, which have rows of their own.
+inline constexpr char tone_rows[] =
+    "SELECT t.key, start_us, end_us, t.tone, name, meaning, likelihood, runner_up, runner_up_likelihood, c_n0_dbhz,"
+    " doppler_hz, locked, model, sclk, coalesce(lock, ''), spectrum FROM tones t LEFT JOIN tone_evidence e ON e.key = t.key"
+    " WHERE t.key BETWEEN ?1 AND ?2 ORDER BY t.key LIMIT ?3";
 ToneRecord tone(const sqlite::Statement& row);
+inline constexpr char tone_likelihood_rows[] =
+    "SELECT tone, likelihood FROM tone_likelihoods WHERE key = ?1 ORDER BY position";
+ToneLikelihood tone_likelihood(const sqlite::Statement& row);
 
 inline constexpr char stage_rows[] = "SELECT key, command, name, stage, status, evidence, at_us, arguments, count"
                                      " FROM command_stages WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
@@ -40,7 +45,7 @@ inline constexpr char condition_rows[] = "SELECT quantity, value, comparison, bo
                                          " FROM explanation_conditions WHERE key = ?1 ORDER BY position";
 telemetry::Condition condition(const sqlite::Statement& row);
 
-inline constexpr char link_rows[] = "SELECT key, link, up, reason, ert_us"
+inline constexpr char link_rows[] = "SELECT key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us"
                                     " FROM link_changes WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 LinkRecord link(const sqlite::Statement& row);
 

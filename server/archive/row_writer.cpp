@@ -44,6 +44,8 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::unit_, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::event_, "INSERT INTO events VALUES (?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::tone_, "INSERT INTO tones VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::tone_evidence_, "INSERT INTO tone_evidence VALUES (?,?,?)"},
+        {&RowWriter::tone_likelihood_, "INSERT INTO tone_likelihoods VALUES (?,?,?,?)"},
         {&RowWriter::command_, "INSERT OR IGNORE INTO commands VALUES (?,?,?,?,?,?)"},
         {&RowWriter::stage_, "INSERT INTO command_stages VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::firing_, "INSERT INTO timepoint_firings VALUES (?,?,?,?,?,?,?,?,?)"},
@@ -53,6 +55,9 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::alarm_, "INSERT INTO alarms VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::segment_, "INSERT INTO segments VALUES (NULL,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
+        {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
+        {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
     };
     for (const auto& [member, sql] : statements) {
@@ -73,11 +78,30 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
     if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
     if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r); }); !done) return done;
+    if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
     if (batch.totals) return totals(run, *batch.totals);
     return {};
 }
 
+Result<std::int64_t> RowWriter::number_of_link(const std::string& name) {
+    // Nearly every unit comes over one of these.
+    if (name == "uhf_live") return std::int64_t{1};
+    if (name == "relay") return std::int64_t{2};
+    for (int attempt = 0;; ++attempt) {
+        link_number_.bind(1, std::string_view(name));
+        auto found = link_number_.step();
+        if (!found) return found.error();
+        const std::int64_t number = *found ? link_number_.integer(0) : 0;
+        link_number_.reset();
+        if (number > 0 || attempt > 0) return number;
+        link_word_.bind(1, std::string_view(name));
+        if (auto done = link_word_.run(); !done) return done.error();
+    }
+}
+
 Result<void> RowWriter::unit(RunId run, const UnitRecord& record, const Batch& batch) {
+    const auto link = number_of_link(record.link);
+    if (!link) return link.error();
     unit_.bind(1, item_key(run, record.seq)).bind(2, std::int64_t{run.value}).bind(3, std::int64_t{record.apid.value});
     if (record.packet)
         unit_.bind(4, std::int64_t{*record.packet}).bind_null(11);
@@ -85,7 +109,7 @@ Result<void> RowWriter::unit(RunId run, const UnitRecord& record, const Batch& b
         unit_.bind_null(4).bind(11, std::string_view(record.refusal));
     unit_.bind(5, record.sclk.seconds)
         .bind(6, record.ert.microseconds)
-        .bind(7, static_cast<std::int64_t>(record.link))
+        .bind(7, *link)
         .bind(8, static_cast<std::int64_t>(record.source))
         .bind(9, static_cast<std::int64_t>(record.standing))
         .bind(10, std::int64_t{record.sampled})
@@ -124,7 +148,21 @@ Result<void> RowWriter::tone(RunId run, const ToneRecord& record) {
         .bind(12, std::int64_t{record.locked})
         .bind(13, std::string_view(record.model))
         .bind(14, record.sclk.seconds);
-    return tone_.run();
+    if (auto done = tone_.run(); !done) return done;
+    tone_evidence_.bind(1, item_key(run, record.seq)).bind(2, std::string_view(record.lock));
+    if (record.spectrum)
+        tone_evidence_.bind_octets(3, *record.spectrum);
+    else
+        tone_evidence_.bind_null(3);
+    if (auto done = tone_evidence_.run(); !done) return done;
+    for (std::size_t i = 0; i < record.best.size(); ++i) {
+        tone_likelihood_.bind(1, item_key(run, record.seq))
+            .bind(2, number(i))
+            .bind(3, std::int64_t{record.best[i].tone})
+            .bind(4, record.best[i].likelihood);
+        if (auto done = tone_likelihood_.run(); !done) return done;
+    }
+    return {};
 }
 
 Result<void> RowWriter::stage(RunId run, const StageRecord& record) {
@@ -188,8 +226,10 @@ Result<void> RowWriter::explanation(RunId run, const ExplanationRecord& record) 
 }
 
 Result<void> RowWriter::link(RunId run, const LinkRecord& record) {
+    const auto number = number_of_link(record.link);
+    if (!number) return number.error();
     link_.bind(1, item_key(run, record.seq))
-        .bind(2, static_cast<std::int64_t>(record.link))
+        .bind(2, *number)
         .bind(3, std::int64_t{record.up})
         .bind(4, std::string_view(record.reason))
         .bind(5, record.ert.microseconds);
@@ -267,6 +307,22 @@ Result<void> RowWriter::totals(RunId run, const RecordingTotals& totals) {
         .bind(8, number(totals.not_decoded))
         .bind(9, totals.progress);
     return totals_.run();
+}
+
+Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
+    const telemetry::LinkCounters& counted = totals.counters;
+    link_totals_.bind(1, std::int64_t{run.value})
+        .bind(2, std::string_view(totals.link))
+        .bind(3, number(counted.octets))
+        .bind(4, number(counted.frames))
+        .bind(5, number(counted.bad_crc))
+        .bind(6, number(counted.bad_header))
+        .bind(7, number(counted.skipped_octets))
+        .bind(8, number(counted.gaps))
+        .bind(9, number(counted.missing_frames))
+        .bind(10, number(counted.repeated_frames))
+        .bind(11, totals.octets_per_s);
+    return link_totals_.run();
 }
 
 } // namespace aeolis::archive

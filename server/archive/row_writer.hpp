@@ -3,6 +3,8 @@
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
+#include <string>
+
 namespace aeolis::archive {
 
 /// Adds rows inside the transaction that its owner has begun. One prepared statement a table.
@@ -13,6 +15,8 @@ class RowWriter {
     Result<void> write(RunId run, const Batch& batch);
 
   private:
+    /// As the words of the archive have it; a new name becomes one of them.
+    Result<std::int64_t> number_of_link(const std::string& name);
     Result<void> unit(RunId run, const UnitRecord& record, const Batch& batch);
     Result<void> event(RunId run, const EventRecord& record);
     Result<void> tone(RunId run, const ToneRecord& record);
@@ -24,10 +28,11 @@ class RowWriter {
     Result<void> segment(RunId run, const SegmentRecord& record);
     Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);
     Result<void> totals(RunId run, const RecordingTotals& totals);
+    Result<void> link_totals(RunId run, const LinkTotals& totals);
 
     sqlite::Database* database_ = nullptr;
     sqlite::Statement unit_, event_, tone_, command_, stage_, firing_, explanation_, condition_, link_, alarm_,
-        segment_, column_, totals_;
+        segment_, column_, link_number_, link_word_, totals_, link_totals_, tone_evidence_, tone_likelihood_;
 };
 
 } // namespace aeolis::archive

@@ -24,10 +24,14 @@ constexpr char extremes_sql[] =
 // Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
 // SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
 constexpr char tail_by_time_sql[] =
-    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND sclk BETWEEN ?3 AND ?4 AND +key > ?5"
+    "SELECT octets, sclk FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND sclk BETWEEN ?3 AND ?4 AND +key > ?5"
     " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
 constexpr char tail_by_key_sql[] =
-    "SELECT octets FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
+    "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
+    " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
+// Of another mission's packets, whose container may come with any APID.
+constexpr char tail_of_any_apid_sql[] =
+    "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
 struct Segment {
@@ -100,11 +104,15 @@ Result<void> read_tail(Reader::State& reader, RunId run, PacketColumns::Place pl
     const auto last = reader.last_seq(run);
     if (!last) return last.error();
 
-    auto rows = reader.query(sealed_samples < *last - last_unit ? tail_by_time_sql : tail_by_key_sql);
+    const Apid apid = reader.dictionary.packets[place.packet].apid;
+    const char* const sql = apid == telemetry::OtherMission::any_apid      ? tail_of_any_apid_sql
+                            : sealed_samples < *last - last_unit ? tail_by_time_sql
+                                                                 : tail_by_key_sql;
+    auto rows = reader.query(sql);
     if (!rows) return rows.error();
     (*rows)
         ->bind(1, std::int64_t{run.value})
-        .bind(2, std::int64_t{reader.dictionary.packets[place.packet].apid.value})
+        .bind(2, std::int64_t{apid.value})
         .bind(3, range.from_s)
         .bind(4, range.to_s)
         .bind(5, item_key(run, last_unit))
@@ -115,9 +123,9 @@ Result<void> read_tail(Reader::State& reader, RunId run, PacketColumns::Place pl
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) return {};
-        if (reader.decommutator.decode((*rows)->octets(0), reader.decoded)) continue;
+        if (!reader.decode((*rows)->octets(0))) continue;
         const double value = reader.columns.value(reader.decoded, place.column);
-        if (!std::isnan(value)) take(Sample{reader.decoded.header.time.seconds, value, source});
+        if (!std::isnan(value)) take(Sample{(*rows)->real(1), value, source});
     }
 }
 

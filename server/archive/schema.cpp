@@ -2,6 +2,8 @@
 
 #include "server/archive/archive.hpp"
 
+#include <string_view>
+
 namespace aeolis::archive {
 
 const char* const last_key_sql = R"sql(
@@ -149,12 +151,39 @@ CREATE VIEW channel_segments AS
     JOIN words s ON s.kind = 'source' AND s.number = g.source;
 )sql";
 
+/// What a version of the schema added to the one before.
+struct Addition {
+    std::int32_t version;
+    const char* sql; ///< CREATE TABLE and CREATE VIEW only
+};
+const Addition additions[] = {
+    {2, R"sql(
+CREATE TABLE tone_evidence (key INTEGER PRIMARY KEY, lock TEXT NOT NULL, spectrum BLOB) STRICT;
+CREATE TABLE tone_likelihoods (
+    key INTEGER NOT NULL, position INTEGER NOT NULL, tone INTEGER NOT NULL, likelihood REAL NOT NULL,
+    PRIMARY KEY (key, position)) STRICT, WITHOUT ROWID;
+CREATE VIEW tone_evidence_log AS
+    SELECT t.key >> 40 AS run, t.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', t.start_us / 1e6 + 946728000, 'unixepoch') AS ert_start, t.tone, t.c_n0_dbhz,
+           t.doppler_hz, e.lock, t.model, hex(e.spectrum) AS spectrum,
+           (SELECT group_concat(tone || ': ' || round(likelihood, 6), ', ')
+            FROM (SELECT tone, likelihood FROM tone_likelihoods WHERE key = t.key ORDER BY position)) AS best
+    FROM tones t JOIN tone_evidence e ON e.key = t.key;
+)sql"},
+    {3, R"sql(
+CREATE TABLE link_totals (
+    run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
+    bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
+    repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+)sql"},
+};
+
 Error not_ours(const sqlite::Database& database) {
     return {database.file() + " is not an Aeolis archive"};
 }
 
-/// 0: an empty database; 1: ours.
-Result<bool> is_ours(sqlite::Database& database) {
+/// The schema's version; 0: an empty database.
+Result<std::int32_t> version_of(sqlite::Database& database) {
     auto id = database.integer_of("PRAGMA application_id");
     if (!id) {
         // SQLite says so of files with other contents; other failures it names well itself.
@@ -165,34 +194,53 @@ Result<bool> is_ours(sqlite::Database& database) {
     auto tables = database.integer_of("SELECT count(*) FROM sqlite_schema");
     if (!version) return version.error();
     if (!tables) return tables.error();
-    if (*id == 0 && *version == 0 && *tables == 0) return false;
-    if (*id != application_id) return not_ours(database);
+    if (*id == 0 && *version == 0 && *tables == 0) return 0;
+    if (*id != application_id || *version < 1) return not_ours(database);
     if (*version > schema_version)
         return Error{database.file() + " was written by a newer Aeolis: its schema is " + std::to_string(*version) +
                      ", this program knows " + std::to_string(schema_version)};
-    return true;
+    return static_cast<std::int32_t>(*version);
+}
+
+/// The same for this connection only: nothing is written to the file.
+std::string temporary(std::string_view sql) {
+    constexpr std::string_view create = "CREATE ";
+    std::string text;
+    for (std::size_t at = sql.find(create); at != std::string_view::npos; at = sql.find(create)) {
+        text.append(sql.substr(0, at)).append("CREATE TEMP ");
+        sql.remove_prefix(at + create.size());
+    }
+    return text.append(sql);
 }
 
 } // namespace
 
 Result<void> prepare_for_writing(sqlite::Database& database) {
-    auto ours = is_ours(database);
-    if (!ours) return ours.error();
-    if (*ours) return {};
-    // One transaction, before WAL is switched on: a crash leaves an empty file or an archive, nothing between.
+    auto version = version_of(database);
+    if (!version) return version.error();
+    if (*version == schema_version) return {};
+    // One transaction, before WAL is switched on: a crash leaves the file as it was, or a whole archive, nothing between.
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
     const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +
                               "; PRAGMA user_version = " + std::to_string(schema_version);
-    for (const char* sql : {marks.c_str(), tables_sql, views_sql})
-        if (auto done = database.execute(sql); !done) return done;
+    if (auto done = database.execute(marks.c_str()); !done) return done;
+    if (*version == 0)
+        for (const char* sql : {tables_sql, views_sql})
+            if (auto done = database.execute(sql); !done) return done;
+    for (const Addition& addition : additions)
+        if (addition.version > *version)
+            if (auto done = database.execute(addition.sql); !done) return done;
     return transaction->commit();
 }
 
 Result<void> check_for_reading(sqlite::Database& database) {
-    auto ours = is_ours(database);
-    if (!ours) return ours.error();
-    if (!*ours) return not_ours(database);
+    auto version = version_of(database);
+    if (!version) return version.error();
+    if (*version == 0) return not_ours(database);
+    for (const Addition& addition : additions)
+        if (addition.version > *version)
+            if (auto done = database.execute(temporary(addition.sql).c_str()); !done) return done;
     return {};
 }
 

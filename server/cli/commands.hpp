@@ -1,5 +1,7 @@
 #pragma once
 
+#include "server/downlink/frame_format.hpp"
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -20,6 +22,9 @@ struct ServeOptions {
     std::string scenario; ///< empty: none is started
     std::uint64_t seed = 1;
     double pace = 1.0;
+    std::optional<std::string> downlink; ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
+    std::filesystem::path xtce;          ///< of that mission
+    DownlinkForm format{};
 };
 int serve(const ServeOptions& options);
 
@@ -62,15 +67,17 @@ int entry_reference(const EntryReferenceOptions& options);
 
 struct DecodeOptions {
     std::filesystem::path xtce, packets;
-    std::string format = "packets";
-    std::size_t skip = 0;                     ///< octets before each packet or bare frame
-    std::optional<std::size_t> frame_octets;  ///< left out: found by trying
+    DownlinkForm format{};
+    std::optional<std::filesystem::path> clock_kernel, leap_seconds; ///< SPICE text kernels: both, or leap seconds alone
+    std::optional<std::size_t> partition;                            ///< of the clock
     bool csv = false;
 };
 /// Prints any mission's packets by its XTCE file; 0 when every octet was decoded.
 int decode(const DecodeOptions& options);
 
-int dictionary_check(const std::filesystem::path& directory);
+int dictionary_check(const std::filesystem::path& path);
+/// Writes the whole dictionary as one XTCE file, to `out` or, where it is empty, to the standard output.
+int dictionary_export(const std::filesystem::path& path, const std::filesystem::path& out);
 /// Prints the state machines as diagrams.
 int dictionary_diagram(const std::filesystem::path& directory);
 
@@ -107,6 +114,7 @@ struct TonesSimulateOptions {
     std::string format = "cf32";
     std::optional<std::string> scenario;          ///< the tones and Doppler of a landing, from entry interface
     std::optional<std::filesystem::path> tones, doppler, predict;
+    std::optional<std::filesystem::path> predict_out; ///< made here instead: what ground expects
     std::optional<double> from_s, length_s;
     double c_n0_dbhz = 22.0;
     std::uint64_t seed = 1, case_number = 0;

@@ -3,8 +3,10 @@
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/xtce_file.hpp"
 #include "telemetry/container_decoder.hpp"
 #include "telemetry/packet_source.hpp"
+#include "telemetry/packet_time.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -16,52 +18,34 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::size_t piece_octets = std::size_t{1} << 20U;
-constexpr std::uintmax_t xtce_octets_max = std::uintmax_t{256} << 20U; // ours
-constexpr std::size_t findings_shown_max = 200;                         // ours: a person reads no more
 
-/// The text of the XTCE file.
-Result<std::string> text_of_file(const std::filesystem::path& path) {
-    std::error_code error;
-    const auto size = std::filesystem::file_size(path, error);
-    std::ifstream in{path, std::ios::binary};
-    if (error || !in) return Error{path.string() + " cannot be read"};
-    if (size > xtce_octets_max) return Error{path.string() + " is larger than " + std::to_string(xtce_octets_max) + " octets"};
-    return std::string{std::istreambuf_iterator<char>{in}, {}};
+Result<telemetry::TextKernel> text_kernel(const std::filesystem::path& path) {
+    const auto text = text_of_file(path);
+    if (!text) return text.error();
+    return telemetry::TextKernel::parse(*text, path.string());
 }
 
-/// How the frames of the file are, from what was said and from its first octets.
-Result<telemetry::FrameStream> frames_of(const DecodeOptions& options, telemetry::DownlinkFormat format,
-                                         std::span<const std::uint8_t> beginning) {
-    telemetry::FrameStream stream;
-    if (format == telemetry::DownlinkFormat::cadu) {
-        const auto found = telemetry::recognise_cadus(beginning);
-        if (!found && !options.frame_octets)
-            return Error{"no two sync markers 1ACFFC1D in " + options.packets.string() + ": say --frame-octets"};
-        if (found) stream = *found;
-    } else {
-        stream.kind = format == telemetry::DownlinkFormat::tm ? telemetry::FrameStream::Kind::tm : telemetry::FrameStream::Kind::aos;
-        stream.marker = false;
-        stream.prefix_octets = options.skip;
-        const auto found = telemetry::crc_frame_octets(beginning, options.skip);
-        if (!found && !options.frame_octets)
-            return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
-        stream.agreed.crc = found.has_value();
-        stream.frame_octets = found.value_or(stream.frame_octets);
+Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
+    telemetry::TimeKernels kernels;
+    kernels.partition = options.partition;
+    if (options.leap_seconds) {
+        const auto text = text_kernel(*options.leap_seconds);
+        if (!text) return text.error();
+        auto leaps = telemetry::LeapSeconds::read(*text);
+        if (!leaps) return leaps.error();
+        kernels.leaps = std::move(*leaps);
     }
-    if (options.frame_octets && *options.frame_octets != stream.frame_octets) {
-        stream.frame_octets = *options.frame_octets;
-        stream.suffix_octets = 0;
+    if (options.clock_kernel) {
+        const auto text = text_kernel(*options.clock_kernel);
+        if (!text) return text.error();
+        auto clock = telemetry::ClockKernel::read(*text);
+        if (!clock) return clock.error();
+        if (options.partition && (*options.partition == 0 || *options.partition > clock->partitions()))
+            return Error{fmt::format("--partition {}: {} has {}, from 1", *options.partition, options.clock_kernel->string(),
+                                     clock->partitions())};
+        kernels.clock = std::move(*clock);
     }
-    return stream;
-}
-
-Result<telemetry::PacketSource> source_of(const DecodeOptions& options, telemetry::DownlinkFormat format,
-                                          std::span<const std::uint8_t> beginning) {
-    if (format == telemetry::DownlinkFormat::packets) return telemetry::PacketSource::of_packets(options.skip);
-    if (format == telemetry::DownlinkFormat::pltu) return telemetry::PacketSource::of_pltus();
-    const auto frames = frames_of(options, format, beginning);
-    if (!frames) return frames.error();
-    return telemetry::PacketSource::of_frames(*frames);
+    return kernels;
 }
 
 std::string csv_cell(const std::string& text) {
@@ -77,7 +61,8 @@ std::string csv_cell(const std::string& text) {
 /// What is printed: a row a packet, or in the end a line a container.
 class Printed {
   public:
-    explicit Printed(const telemetry::ContainerDecoder& decoder, bool csv) : decoder_(decoder), csv_(csv) {
+    Printed(const telemetry::ContainerDecoder& decoder, const telemetry::TimeKernels& kernels, bool csv)
+        : decoder_(decoder), kernels_(kernels), csv_(csv) {
         if (csv_) fmt::print("index,apid,count,time,values\n");
     }
 
@@ -85,7 +70,7 @@ class Printed {
         const auto apid = read_bits(packet, 5, 11);
         const auto contents = decoder_.decode(packet);
         ++kinds_[{apid, contents.container}];
-        if (!contents.problem.empty()) ++problems_[contents.problem];
+        if (!contents.problem.empty()) note(contents.problem);
         if (csv_) print_row(packet, apid, contents);
         ++index_;
     }
@@ -99,9 +84,14 @@ class Printed {
     const std::map<std::string, std::uint64_t>& problems() const { return problems_; }
 
   private:
+    /// Some say where in the packet, so that each may be a text of its own.
+    void note(const std::string& problem) {
+        const bool room = problems_.size() < problems_max || problems_.contains(problem);
+        ++problems_[room ? problem : "other problems"];
+    }
     void print_row(std::span<const std::uint8_t> packet, std::uint64_t apid, const telemetry::DecodedContents& contents) {
         fmt::print("{},{},{},{}", index_, apid, read_bits(packet, 18, 14),
-                   contents.time_s ? telemetry::datum_text(*contents.time_s) : std::string{});
+                   contents.time ? telemetry::time_text(*contents.time, kernels_) : std::string{});
         for (const auto& value : contents.values)
             fmt::print(",{}", csv_cell(value.name + "=" + telemetry::datum_text(value.raw) + "|" +
                                        telemetry::datum_text(value.calibrated)));
@@ -109,18 +99,13 @@ class Printed {
     }
 
     const telemetry::ContainerDecoder& decoder_;
+    const telemetry::TimeKernels& kernels_;
     bool csv_;
     std::uint64_t index_ = 0;
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
+    static constexpr std::size_t problems_max = 50; ///< ours: more nobody reads
     std::map<std::string, std::uint64_t> problems_;
 };
-
-void print_findings(const std::vector<dictionary::Finding>& findings) {
-    for (std::size_t i = 0; i < findings.size() && i < findings_shown_max; ++i)
-        fmt::print(stderr, "{}:{}: {}\n", findings[i].file, findings[i].line, findings[i].message);
-    if (findings.size() > findings_shown_max)
-        fmt::print(stderr, "and {} more\n", findings.size() - findings_shown_max);
-}
 
 /// What of the file was not decoded; true when there is nothing of that kind.
 bool print_losses(const telemetry::PacketSource& source, const Printed& printed) {
@@ -139,15 +124,12 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
 } // namespace
 
 int decode(const DecodeOptions& options) {
-    const auto format = telemetry::downlink_format(options.format);
-    if (!format) return failed("there is no format '" + options.format + "': packets, tm, aos, cadu or pltu", 2);
-    const auto text = text_of_file(options.xtce);
-    if (!text) return failed(text.error().message, 2);
-    std::vector<dictionary::Finding> all;
-    dictionary::Findings findings{options.xtce.string(), all};
-    const auto model = dictionary::xtce::read_packet_model(*text, findings);
-    print_findings(all);
-    if (!model) return 1;
+    if (!telemetry::downlink_format(options.format.name)) return failed(packet_source(options.format, {}).error().message, 2);
+    const auto kernels = time_kernels(options);
+    if (!kernels) return failed(kernels.error().message, 2);
+    const auto xtce = read_xtce_file(options.xtce);
+    if (!xtce) return xtce.exit_code;
+    const auto& model = xtce.model;
 
     std::ifstream in{options.packets, std::ios::binary};
     std::vector<std::uint8_t> piece(piece_octets);
@@ -158,11 +140,11 @@ int decode(const DecodeOptions& options) {
     };
     if (!in || std::filesystem::is_directory(options.packets)) return failed(options.packets.string() + " cannot be read", 2);
     auto octets = read_piece();
-    auto source = source_of(options, *format, octets);
-    if (!source) return failed(source.error().message, 2);
+    auto source = packet_source(options.format, octets);
+    if (!source) return failed(options.packets.string() + ": " + source.error().message, 2);
 
     const telemetry::ContainerDecoder decoder{*model};
-    Printed printed{decoder, options.csv};
+    Printed printed{decoder, *kernels, options.csv};
     const auto take = [&] {
         while (const auto packet = source->next()) printed.add(*packet);
     };

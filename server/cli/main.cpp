@@ -39,6 +39,18 @@ CLI::Validator whole_number() {
             "NUMBER"};
 }
 
+/// @return the options, of which any may need another
+std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& format) {
+    return {command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
+            command.add_option("--skip", format.skip, "octets without meaning before each packet, TM or AOS frame")
+                ->check(whole_number())
+                ->check(CLI::Range(std::size_t{0}, decode_skip_max))
+                ->capture_default_str(),
+            command.add_option("--frame-octets", format.frame_octets, "of a TM or AOS frame; left out: found by trying")
+                ->check(whole_number())
+                ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -61,8 +73,20 @@ int main(int argc, char** argv) {
     serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
         ->capture_default_str();
     serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
-    serve_command->add_option("--scenario", serving.scenario,
-                              "start this rehearsal at once: a file, or a name that ships");
+    auto* scenario_option = serve_command->add_option("--scenario", serving.scenario,
+                                                      "start this rehearsal at once: a file, or a name that ships");
+    auto* downlink = serve_command
+                         ->add_option("--downlink", serving.downlink,
+                                      "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and again "
+                                      "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
+                                      "--format packets each datagram holds whole packets). What comes is a run of its own: "
+                                      "its packets and their numbers, as channels, are in stream, archive and API")
+                         ->excludes(scenario_option);
+    auto* xtce = serve_command->add_option("--xtce", serving.xtce,
+                                           "that mission's XTCE file; what in it is not supported is named with its line")
+                     ->needs(downlink);
+    downlink->needs(xtce);
+    for (auto* option : add_stream_format(*serve_command, serving.format)) option->needs(downlink);
     serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->check(whole_number())->capture_default_str();
     serve_command->add_option("--pace", serving.pace, "of that rehearsal: 1 … 1000, 0 as fast as it goes")
         ->check(CLI::Validator{[](std::string& text) {
@@ -137,29 +161,39 @@ int main(int argc, char** argv) {
         "decode", "any mission's packets by its XTCE file; 1 when not every octet could be decoded");
     decode_command->add_option("--xtce", decoding.xtce, "the mission's XTCE file, 1.0 to 1.3")->required();
     decode_command->add_option("--packets", decoding.packets, "the file of packets or frames")->required();
-    decode_command->add_option("--format", decoding.format, "packets, tm, aos, cadu or pltu")->capture_default_str();
-    decode_command->add_option("--skip", decoding.skip, "octets without meaning before each packet, TM or AOS frame")
+    add_stream_format(*decode_command, decoding.format);
+    auto* leap_seconds = decode_command->add_option(
+        "--lsk", decoding.leap_seconds, "leap seconds, a SPICE text kernel: packets' time in GPS or TAI becomes UTC");
+    auto* clock_kernel = decode_command
+                             ->add_option("--sclk", decoding.clock_kernel,
+                                          "the spacecraft's clock, a SPICE text kernel of type 1: packets' time becomes SCET, "
+                                          "UTC as 2012-219T05:17:57.123")
+                             ->needs(leap_seconds);
+    decode_command->add_option("--partition", decoding.partition, "of the clock; left out: the first that holds the count")
         ->check(whole_number())
-        ->check(CLI::Range(std::size_t{0}, decode_skip_max))
-        ->capture_default_str();
-    decode_command->add_option("--frame-octets", decoding.frame_octets, "of a TM or AOS frame; left out: found by trying")
-        ->check(whole_number())
-        ->check(CLI::Range(std::size_t{9}, std::size_t{65536}));
+        ->needs(clock_kernel);
     decode_command->add_flag("--csv", decoding.csv,
-                             "a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each");
+                             "a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each. Time is the first "
+                             "absolute time in the packet, seconds since its epoch (UNIX: as UTC); where the XTCE file "
+                             "has none, the two numbers right behind the primary header when their names hold 'coarse' "
+                             "and 'fine': counts and their binary fraction (CUC). Else it is empty");
     decode_command->callback([&] { exit_code = decode(decoding); });
 
     auto* dictionary_command = app.add_subcommand("dictionary", "the mission's words")->require_subcommand(1);
     auto checked = serving.shared.dictionary;
     auto* check = dictionary_command->add_subcommand("check", "every rule, every error with file and line");
-    check->add_option("DIR", checked, "the dictionary's directory")->capture_default_str();
+    check->add_option("DIR", checked, "the dictionary's directory, or what export wrote")->capture_default_str();
     check->callback([&] { exit_code = dictionary_check(checked); });
     auto* diagram = dictionary_command->add_subcommand("diagram", "the state machines as diagrams (Mermaid)");
     diagram->add_option("DIR", checked, "the dictionary's directory")->capture_default_str();
     diagram->callback([&] { exit_code = dictionary_diagram(checked); });
-    auto* exported = dictionary_command->add_subcommand("export", "(comes with a later issue)");
-    exported->allow_extras();
-    exported->callback([&] { exit_code = failed("dictionary export comes with a later issue", 2); });
+    std::filesystem::path export_to;
+    auto* exported = dictionary_command->add_subcommand(
+        "export", "the whole dictionary as one XTCE 1.2 file: packets and commands, and the spreadsheets as ancillary data; "
+                  "it can be given wherever a dictionary's directory can");
+    exported->add_option("DIR", checked, "the dictionary's directory, or such a file")->capture_default_str();
+    exported->add_option("--out", export_to, "the file to write; left out: standard output");
+    exported->callback([&] { exit_code = dictionary_export(checked, export_to); });
 
     auto* timeline_command =
         app.add_subcommand("timeline", "constraints proven or refuted; two versions compared")->require_subcommand(1);
@@ -201,6 +235,8 @@ int main(int argc, char** argv) {
     simulate->get_option("--tones")->excludes(flown);
     simulate->get_option("--doppler")->excludes(flown);
     simulate->add_option("--predict", sending.predict, "CSV of the Doppler to remove: time, doppler_hz");
+    simulate->add_option("--predict-out", sending.predict_out, "make what ground expects, remove it, and write it here")
+        ->excludes(simulate->get_option("--predict"));
     simulate->add_option("--from", sending.from_s, "time of the first sample [s]");
     simulate->add_option("--length", sending.length_s, "[s]");
     simulate->add_option("--c-n0", sending.c_n0_dbhz, "total power to noise density [dB-Hz]")->capture_default_str();

@@ -76,7 +76,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
     if (const auto run = pipeline.begin(rehearsal.run_start(0.0)); !run) return run.error();
     Delivery delivery;
     const auto hand_over = [&] {
-        delivery.relay_progress = rehearsal.landing().relay_progress();
+        delivery.relay_progress = rehearsal.recording_progress();
         return pipeline.deliver(std::exchange(delivery, {}));
     };
     while (!rehearsal.finished()) {
@@ -86,6 +86,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
             delivery.entries.emplace_back(std::move(stage));
         if (delivery.entries.size() >= delivery_entries && !hand_over()) return Error{pipeline.fault()};
     }
+    delivery.links = rehearsal.link_totals();
     if (!hand_over()) return Error{pipeline.fault()};
     return pipeline.finish({rehearsal.outcome(), rehearsal.outcome_reason(), rehearsal.digest(), wall_clock_text()});
 }

@@ -1,5 +1,6 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
 
 #include <charconv>
@@ -45,7 +46,25 @@ int serve(const ServeOptions& options) {
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
-    const auto dictionary = dictionary_of_flight(options.shared.dictionary);
+    std::optional<DownlinkFollower::Settings> downlink;
+    std::unique_ptr<telemetry::OtherMission> other;
+    Result<dictionary::Dictionary> dictionary = dictionary::Dictionary{};
+    if (options.downlink) {
+        auto address = DownlinkAddress::parse(*options.downlink);
+        if (!address) return failed("--downlink " + address.error().message, 2);
+        if (!telemetry::downlink_format(options.format.name)) return failed(packet_source(options.format, {}).error().message, 2);
+        auto xtce = read_xtce_file(options.xtce);
+        if (!xtce) return xtce.exit_code;
+        other = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
+        if (other->left_out() > 0)
+            spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.string());
+        dictionary = other->dictionary();
+        downlink = DownlinkFollower::Settings{.address = *address, .format = options.format, .xtce = options.xtce.filename().string(),
+                                              .retry_first = std::chrono::milliseconds{250},
+                                              .retry_max = std::chrono::milliseconds{30'000}};
+    } else {
+        dictionary = dictionary_of_flight(options.shared.dictionary);
+    }
     if (!dictionary) return failed(dictionary.error().message);
     std::optional<simulation::Scenario> scenario;
     if (!options.scenario.empty()) {
@@ -62,13 +81,17 @@ int serve(const ServeOptions& options) {
     pthread_sigmask(SIG_BLOCK, &ending, nullptr);
 
     auto backend = ConsoleBackend::open(
-        {listen->address, listen->port, options.archive, options.shared.scenarios, options.web}, *dictionary);
+        {listen->address, listen->port, options.archive, options.shared.scenarios, options.web, other.get()},
+        *dictionary);
     if (!backend) return failed(backend.error().message);
+    if (downlink)
+        if (auto following = (*backend)->follow(*downlink); !following) return failed("--downlink " + following.error().message);
     if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
 
     fmt::print("Aeolis is at http://{}:{}/\n  {}\n  archive {}; end with Ctrl-C\n",
                listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
-               (*backend)->port(), what_to_do(scenario),
+               (*backend)->port(),
+               downlink ? "Open it in a browser: it follows " + downlink->address.text() + "." : what_to_do(scenario),
                std::filesystem::absolute(options.archive).lexically_normal().string());
     std::fflush(stdout);
 

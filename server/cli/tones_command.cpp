@@ -2,6 +2,7 @@
 #include "server/cli/shipped_paths.hpp"
 #include "server/tones/doppler_file.hpp"
 #include "server/tones/flown_signal.hpp"
+#include "server/tones/predicted_doppler.hpp"
 #include "server/tones/sample_file.hpp"
 #include "server/tones/tone_bench.hpp"
 #include "simulation/links/x_band_channel.hpp"
@@ -14,7 +15,6 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::size_t block_samples = 65536;
-constexpr double carrier_worth_a_word_s = 30.0; // ours: three symbols long and no symbol
 
 Result<TimeTable> optional_doppler(const std::optional<std::filesystem::path>& file) {
     return file ? read_doppler(*file) : Result<TimeTable>{TimeTable{}};
@@ -32,8 +32,8 @@ void print(const telemetry::ToneReception& heard, const dictionary::Dictionary& 
     std::string best, spectrum;
     for (const auto& each : heard.evidence.best)
         best += fmt::format("{}{{\"tone\":{},\"likelihood\":{:.6g}}}", best.empty() ? "" : ",", each.tone, each.likelihood);
-    for (const float level : heard.evidence.spectrum_db)
-        spectrum += fmt::format("{}{:.1f}", spectrum.empty() ? "" : ",", level);
+    for (const std::uint8_t level : heard.evidence.spectrum)
+        spectrum += fmt::format("{}{:.1f}", spectrum.empty() ? "" : ",", spectrum_db(level));
     fmt::print("{{\"start_s\":{:.3f},\"tone\":{},\"c_n0_dbhz\":{:.2f},\"doppler_hz\":{:.2f},\"lock\":\"{}\","
                "\"seen_fraction\":{:.3f},\"log_likelihood_ratio\":{:.2f},\"best\":[{}],\"spectrum_db\":[{}]}}\n",
                heard.start_s, heard.tone ? std::to_string(*heard.tone) : "null", heard.total_c_n0_dbhz, heard.doppler_hz,
@@ -44,6 +44,7 @@ struct Sending {
     std::vector<simulation::SentTone> tones;
     simulation::XBandPath path;
     double length_s = 0.0;
+    TimeTable expected_hz; ///< Doppler as ground would predict it
 };
 
 Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
@@ -54,8 +55,10 @@ Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dic
     Sending sending;
     sending.tones = flown.tones;
     sending.path.doppler_hz = flown.doppler_hz;
+    sending.path.gain_db = flown.gain_db;
     sending.path.start_s = options.from_s.value_or(flown.doppler_hz.first_s());
     sending.path.set_s = flown.earth_set_s;
+    sending.expected_hz = predicted_doppler_hz(flyable_landing->scenario, dictionary.mfsk);
     sending.length_s = options.length_s.value_or(flown.earth_set_s + 20.0 - sending.path.start_s);
     return sending;
 }
@@ -69,7 +72,7 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
     }
     auto doppler = optional_doppler(options.doppler);
     if (!doppler) return doppler.error();
-    sending.path.doppler_hz = std::move(*doppler);
+    sending.path.doppler_hz = sending.expected_hz = std::move(*doppler);
     const bool has_doppler = !sending.path.doppler_hz.empty();
     sending.path.start_s = options.from_s.value_or(has_doppler ? sending.path.doppler_hz.first_s() : 0.0);
     const double last_s = std::max(sending.tones.empty() ? 0.0 : sending.tones.back().start_s + 20.0,
@@ -116,9 +119,12 @@ int tones_decode(const TonesDecodeOptions& options) {
     if (status.carrier_s == 0.0)
         return failed(fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", options.samples.string(), length_s,
                                   options.rate_hz, options.format));
-    if (symbols == 0 && status.carrier_s > carrier_worth_a_word_s)
+    if (symbols == 0 && length_s > dictionary->mfsk.symbol_s)
         return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", options.samples.string(),
                                   status.carrier_s, options.rate_hz));
+    if (reader->left_over_octets() > 0)
+        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}", options.samples.string(),
+                                  reader->left_over_octets(), options.format));
     return 0;
 }
 
@@ -134,12 +140,15 @@ int tones_simulate(const TonesSimulateOptions& options) {
         return failed(possible.error().message, 2);
     auto sending = options.scenario ? sending_of_flight(options, *words) : sending_of_files(options, *words);
     if (!sending) return failed(sending.error().message);
-    auto predict = optional_doppler(options.predict);
-    if (!predict) return failed(predict.error().message);
     if (!(sending->length_s > 0.0)) return failed("there is nothing to send: give tones, Doppler, a scenario or --length", 2);
-    const double residual_hz = sending->path.doppler_hz.at(sending->path.start_s) - predict->at(sending->path.start_s);
+    const double start_s = sending->path.start_s;
+    auto predict = options.predict_out
+                       ? write_doppler(*options.predict_out, sending->expected_hz, start_s, start_s + sending->length_s)
+                       : optional_doppler(options.predict);
+    if (!predict) return failed(predict.error().message);
+    const double residual_hz = sending->path.doppler_hz.at(start_s) - predict->at(start_s);
     if (std::abs(residual_hz) > 0.5 * options.rate_hz)
-        return failed(fmt::format("Doppler minus predict is {:.0f} Hz: outside of samples at {} Hz; give --predict",
+        return failed(fmt::format("Doppler minus predict is {:.0f} Hz: outside of samples at {} Hz; give --predict or --predict-out",
                                   residual_hz, options.rate_hz), 2);
     sending->path.predict_hz = std::move(*predict);
     sending->path.rate_hz = options.rate_hz;

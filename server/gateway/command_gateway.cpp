@@ -3,9 +3,12 @@
 #include "commands/authorise.hpp"
 #include "commands/preconditions.hpp"
 #include "commands/read_back.hpp"
+#include "common/bytes.hpp"
+#include "common/tc_frame.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 
 namespace aeolis::server {
@@ -23,6 +26,15 @@ std::optional<double> argument_value(const dictionary::Packet& packet, const tel
                                      std::string_view name) {
     const auto index = telemetry::field_index(packet, name);
     return index ? decoded.value[*index] : std::nullopt;
+}
+
+/// None: as the link chooses.
+Result<std::optional<commands::Fop::Service>> service_named(const std::string& name) {
+    using Service = commands::Fop::Service;
+    if (name.empty()) return std::optional<Service>{};
+    if (name == "AD") return std::optional{Service::sequence_controlled};
+    if (name == "BD") return std::optional{Service::expedited};
+    return Error{fmt::format("unknown service '{}': AD, BD, or none for what suits", name)};
 }
 
 } // namespace
@@ -49,81 +61,226 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
 
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                                std::vector<commands::NamedValue> solution)
-    : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), solution_(std::move(solution)),
-      heard_(dictionary.channels.size()) {}
+    : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), clcw_(clcw_place(dictionary)),
+      link_(light_time_s), solution_(std::move(solution)), heard_(dictionary.channels.size()) {}
 
-CommandGateway::Submitted CommandGateway::submit(const v1::CommandRequest& request, Ert now,
-                                                 std::vector<archive::StageRecord>& stages) {
-    Submitted submitted;
-    submitted.reply.set_request(request.request());
-    const auto refuse = [&](std::string reason) {
-        submitted.reply.set_reason(std::move(reason));
-        return submitted;
-    };
+std::optional<CommandGateway::FieldPlace> CommandGateway::clcw_place(const dictionary::Dictionary& dictionary) {
+    for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
+        if (const auto field = telemetry::field_index(dictionary.packets[packet], "clcw")) return FieldPlace{packet, *field};
+    return std::nullopt;
+}
 
+Result<CommandGateway::Prepared> CommandGateway::prepare(const v1::CommandRequest& request, Ert now) const {
     const auto* command = dictionary_.command(request.command());
     if (command == nullptr)
-        return refuse(fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command(),
-                                  dictionary_.mission));
-    if (commands_ >= commands_max) return refuse(fmt::format("this run has had its {} commands", commands_max));
+        return Error{fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command(),
+                                 dictionary_.mission)};
+    if (commands_ >= commands_max) return Error{fmt::format("this run has had its {} commands", commands_max)};
 
     std::vector<commands::NamedValue> arguments;
     for (const auto& argument : request.arguments())
         arguments.push_back({argument.name(), argument.value()});
     if (request.from_solution()) arguments = commands::fill_from_solution(*command, arguments, solution_);
     auto packet = commands::encode(*command, arguments, count_);
-    if (!packet) return refuse(packet.error().message);
-
-    // What ground does not know is no reason to refuse: flight holds the same conditions and decides by what it knows.
-    auto preconditions = commands::check(dictionary_, *command, latest(now));
-    std::string not_known;
-    for (const auto& condition : preconditions)
-        if (condition.state == commands::PreconditionState::State::unknown)
-            not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
-    std::erase_if(preconditions, [](const commands::PreconditionState& condition) {
-        return condition.state == commands::PreconditionState::State::unknown;
-    });
-    const auto authorised = commands::authorise(*command, {request.armed(), request.confirmation()}, preconditions);
-    if (!authorised) return refuse(authorised.error().message);
-
-    const auto* report = commands::read_back_packet(dictionary_, *command);
+    if (!packet) return packet.error();
+    const auto wanted = service_named(request.service());
+    if (!wanted) return wanted.error();
+    std::optional<Ert> release_at;
+    if (!request.release_at().empty()) {
+        release_at = ert_from_day_of_year(request.release_at());
+        if (!release_at)
+            return Error{fmt::format("release_at: '{}' is no time as {}", request.release_at(), day_of_year_text(now))};
+        if (*release_at < now)
+            return Error{fmt::format("release_at: {} is past, it is {}", request.release_at(), day_of_year_text(now))};
+    }
     const auto held = commands::decode(*command, *packet); // as encoded: defaults are in it
-    auto& underway = underway_.emplace_back(
-        Underway{++commands_, *packet, commands::arguments_text(held ? *held : arguments), report,
-                 commands::CommandLifecycle{*command, count_, light_time_s_, report != nullptr}});
-    count_ = static_cast<std::uint16_t>((count_ + 1) % commands::count_modulus);
+    return Prepared{command, *packet, commands::arguments_text(held ? *held : arguments),
+                    commands::check(dictionary_, *command, latest(now)), *wanted, release_at};
+}
 
+void CommandGateway::tell(const Prepared& prepared, Ert now, v1::CommandReply& reply) const {
+    reply.set_octets(hex_text(prepared.packet));
+    reply.set_arguments(prepared.arguments);
+    for (const auto& condition : prepared.preconditions) {
+        auto& told = *reply.add_preconditions();
+        told.set_text(condition.text);
+        told.set_state(commands::name_of(condition.state));
+    }
+    reply.set_service(prepared.wanted.value_or(link_.suitable(now)) == commands::Fop::Service::expedited ? "BD" : "AD");
+    const auto light_time_us = static_cast<std::int64_t>(light_time_s_ * 1.0e6);
+    const Ert leaves = prepared.release_at.value_or(now);
+    reply.set_arrives(day_of_year_text(Scet{leaves.microseconds + light_time_us}));
+    reply.set_effect_seen(day_of_year_text(Ert{leaves.microseconds + 2 * light_time_us}));
+}
+
+v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert now,
+                                        std::vector<archive::StageRecord>& stages) {
+    if (!request.action().empty()) return act(request, now, stages);
+    v1::CommandReply reply;
+    reply.set_request(request.request());
+    reply.set_dry_run(request.dry_run());
+    const auto refuse = [&](std::string reason) {
+        reply.set_reason(std::move(reason));
+        return reply;
+    };
+    auto prepared = prepare(request, now);
+    if (!prepared) return refuse(prepared.error().message);
+    tell(*prepared, now, reply);
+    const auto authorised =
+        commands::authorise(*prepared->command, {request.armed(), request.confirmation()}, prepared->preconditions);
+    if (!authorised) return refuse(authorised.error().message);
+    if (request.dry_run())
+        reply.set_accepted(true);
+    else
+        queue(*prepared, request, now, reply, stages);
+    return reply;
+}
+
+void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& request, Ert now,
+                           v1::CommandReply& reply, std::vector<archive::StageRecord>& stages) {
     using commands::Stage;
     using commands::Status;
+    // What ground does not know is no reason to refuse: flight holds the same conditions and decides by what it knows.
+    std::string not_known;
+    for (const auto& condition : prepared.preconditions)
+        if (condition.state == commands::PreconditionState::State::unknown)
+            not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
+    const auto* report = commands::read_back_packet(dictionary_, *prepared.command);
+    auto& underway = underway_.emplace_back(
+        Underway{++commands_, prepared.packet, prepared.arguments, prepared.wanted, report,
+                 commands::CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
+    count_ = static_cast<std::uint16_t>((count_ + 1) % commands::count_modulus);
+
     changes_.clear();
     auto& lifecycle = underway.lifecycle;
     lifecycle.ground_stage(Stage::queued, Status::ok, fmt::format("accepted as command {}", underway.number), now,
                            changes_);
-    lifecycle.ground_stage(Stage::authorised, Status::ok,
-                           (commands::is_hazardous(*command) ? "armed and confirmed by name" : "no arming needed") +
-                               not_known,
-                           now, changes_);
-    lifecycle.ground_stage(Stage::released, Status::ok, "nothing is ahead in the uplink queue", now, changes_);
-    lifecycle.ground_stage(Stage::radiated, Status::ok,
-                           fmt::format("{} octets left the station, count {}; at the vehicle {:.1f} s later",
-                                       underway.packet.size(), lifecycle.count(), light_time_s_),
-                           now, changes_);
+    lifecycle.ground_stage(
+        Stage::authorised, Status::ok,
+        (commands::is_hazardous(*prepared.command) ? "armed and confirmed by name" : "no arming needed") + not_known, now,
+        changes_);
     append(underway, changes_, stages);
-
-    submitted.reply.set_accepted(true);
-    submitted.reply.set_command(underway.number);
-    submitted.reply.set_octets(hex_text(underway.packet));
-    submitted.packet = underway.packet;
-    return submitted;
+    reply.set_accepted(true);
+    reply.set_command(underway.number);
+    queue_.add({underway.number, request.priority(), prepared.release_at, request.hold()});
+    if (request.hold() || prepared.release_at) tell_wait(underway, now, stages);
+    release_due(now, stages);
 }
 
-void CommandGateway::receive(std::span<const std::uint8_t> packet, bool realtime, Ert ert,
+void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive::StageRecord>& stages) {
+    const auto& waiting = queue_.waiting();
+    const auto entry = std::ranges::find(waiting, underway.number, &commands::CommandQueue::Entry::number);
+    if (entry == waiting.end()) return;
+    const std::string when = entry->release_at ? "leaves at " + day_of_year_text(*entry->release_at) : "then leaves at once";
+    changes_.clear();
+    underway.lifecycle.await_release(entry->held ? "held until a controller releases it; " + when : when, now, changes_);
+    append(underway, changes_, stages);
+}
+
+v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
+                                     std::vector<archive::StageRecord>& stages) {
+    v1::CommandReply reply;
+    reply.set_request(request.request());
+    const std::string& action = request.action();
+    auto* command = underway(request.number());
+    const bool known = action == "hold" || action == "release" || action == "cancel";
+    const bool done = known && (action == "hold"      ? queue_.hold(request.number())
+                                : action == "release" ? queue_.release(request.number())
+                                                      : queue_.cancel(request.number()));
+    if (!known) {
+        reply.set_reason(fmt::format("unknown action '{}': release, hold or cancel", action));
+    } else if (!done || command == nullptr) {
+        reply.set_reason(fmt::format("command {} does not wait: it has left, was cancelled, or there is none", request.number()));
+    } else {
+        reply.set_accepted(true);
+        reply.set_command(command->number);
+        if (action == "cancel") {
+            changes_.clear();
+            command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by a controller", now,
+                                            changes_);
+            append(*command, changes_, stages);
+        } else {
+            tell_wait(*command, now, stages);
+        }
+        release_due(now, stages);
+    }
+    return reply;
+}
+
+void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& stages) {
+    using commands::Stage;
+    using commands::Status;
+    for (const std::uint64_t number : queue_.take_due(now)) {
+        auto* command = underway(number);
+        if (command == nullptr) continue;
+        std::string failing;
+        for (const auto& condition : commands::check(dictionary_, command->lifecycle.command(), latest(now)))
+            if (condition.state == commands::PreconditionState::State::fails)
+                failing += (failing.empty() ? "" : "; ") + condition.text;
+        const auto service = command->wanted.value_or(link_.suitable(now));
+        const auto taken = failing.empty() ? link_.send(number, command->packet, service)
+                                           : Result<void>{Error{"it must not be sent any more: " + failing}};
+        changes_.clear();
+        if (taken)
+            command->lifecycle.ground_stage(
+                Stage::released, Status::ok,
+                fmt::format("to the uplink, {}; ahead of it: {}", name_of(service), link_.waiting() - 1), now, changes_);
+        else
+            command->lifecycle.ground_stage(Stage::released, Status::failed, taken.error().message, now, changes_);
+        append(*command, changes_, stages);
+    }
+    radiate(now, stages);
+}
+
+CommandGateway::Underway* CommandGateway::underway(std::optional<std::uint64_t> number) {
+    const auto found = std::ranges::find_if(underway_, [&](const Underway& each) { return each.number == number; });
+    return found == underway_.end() ? nullptr : &*found;
+}
+
+void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages) {
+    while (auto unit = link_.next(now)) {
+        if (auto* command = underway(unit->tag)) {
+            const std::string frame =
+                fmt::format("{} octets left the station, packet {} in frame {}, {}; at the vehicle {:.1f} s later",
+                            unit->cltu.size(), command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
+            changes_.clear();
+            if (unit->transmission == 1)
+                command->lifecycle.ground_stage(commands::Stage::radiated, commands::Status::ok, frame, now, changes_);
+            else
+                command->lifecycle.radiated_again(fmt::format("transmission {}: {}", unit->transmission, frame), now, changes_);
+            append(*command, changes_, stages);
+        }
+        uplinks_.push_back(std::move(unit->cltu));
+    }
+    note_frames(now, stages);
+}
+
+void CommandGateway::note_frames(Ert now, std::vector<archive::StageRecord>& stages) {
+    using Fate = commands::Fop::Fate;
+    for (const auto& frame : link_.take_reports()) {
+        auto* command = underway(frame.tag);
+        if (command == nullptr || frame.fate == Fate::radiated) continue;
+        changes_.clear();
+        if (frame.fate == Fate::acknowledged)
+            command->lifecycle.frame_taken(fmt::format("the vehicle reports its frame as taken (CLCW: {} comes next)",
+                                                       link_.last_heard()->expected),
+                                           now, changes_);
+        else
+            command->lifecycle.frame_not_acknowledged(
+                fmt::format("radiated {} x, and no report of the vehicle has its frame: taken or not", frame.transmissions), now,
+                changes_);
+        append(*command, changes_, stages);
+    }
+}
+
+void CommandGateway::receive(std::span<const std::uint8_t> packet, bool live, Ert ert,
                              std::vector<archive::StageRecord>& stages) {
-    // The recording tells the past: it decides no precondition, but an answer that was lost live still counts.
-    if (!realtime && underway_.empty()) return;
+    // What comes later tells the past: it decides no precondition, but an answer that was lost live still counts.
+    if (!live && underway_.empty()) return;
     if (decommutator_.decode(packet, decoded_)) return;
     const auto& container = dictionary_.packets[decoded_.packet];
-    if (realtime) note_channels(container, ert);
+    if (live) note_channels(container, ert);
+    if (live && clcw_ && decoded_.packet == clcw_->packet && decoded_.value[clcw_->field]) hear_clcw(ert, stages);
     if (underway_.empty()) return;
     if (container.event) note_answer(ert, stages);
     note_report(container, packet, ert, stages);
@@ -136,6 +293,17 @@ void CommandGateway::pass(Ert now, std::vector<archive::StageRecord>& stages) {
         underway.lifecycle.pass(now, changes_);
         append(underway, changes_, stages);
     }
+    link_.pass(now);
+    release_due(now, stages);
+}
+
+void CommandGateway::hear_clcw(Ert ert, std::vector<archive::StageRecord>& stages) {
+    std::array<std::uint8_t, clcw_octets> octets{};
+    BitWriter{octets}.put(static_cast<std::uint32_t>(*decoded_.value[clcw_->field]), 32);
+    const auto clcw = read_clcw(octets);
+    if (!clcw) return;
+    link_.hear(*clcw, ert);
+    radiate(ert, stages);
 }
 
 std::vector<commands::LatestValue> CommandGateway::latest(Ert now) const {

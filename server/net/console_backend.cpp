@@ -34,14 +34,15 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     if (!archive) return archive.error();
     for (const auto run : archive->interrupted())
         spdlog::warn("run {} was cut off: marked interrupted", run.value);
-    auto queries = QueryThreads::open(chosen.archive, dictionary);
+    auto queries = QueryThreads::open(chosen.archive, dictionary, chosen.other);
     if (!queries) return queries.error();
     backend->queries_ = std::move(*queries);
     backend->pipeline_ = std::make_unique<PipelineThread>(
         std::move(*archive), dictionary, PipelineThread::Faults::hold,
         [self, post](std::shared_ptr<const pipeline::PublishedBatch> batch) {
             post([self, batch = std::move(batch)]() mutable { self->hub_->published(std::move(batch)); });
-        });
+        },
+        chosen.other);
     backend->pipeline_->want_items(false);
     backend->desk_ = std::make_unique<RehearsalDesk>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
@@ -57,6 +58,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
 ConsoleBackend::~ConsoleBackend() {
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
     api_.reset();
+    downlink_.reset();
     desk_.reset();
     pipeline_.reset();
     queries_.reset();
@@ -98,7 +100,7 @@ StreamHub::Services ConsoleBackend::stream_services() {
 
 /// Until a rehearsal starts, "the run" of a client is the last one that was flown.
 void ConsoleBackend::adopt_newest_run() {
-    auto reader = archive::Reader::open(settings_.archive, dictionary_);
+    auto reader = archive::Reader::open(settings_.archive, dictionary_, settings_.other);
     if (!reader) return;
     auto runs = reader->runs();
     if (runs && !runs->runs().empty()) hub_->run_state(runs->runs(0));
@@ -108,6 +110,17 @@ void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, do
     desk_->start(std::move(scenario), seed, pace, [](const Result<v1::RunState>& began) {
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);
     });
+}
+
+Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
+    AEOLIS_CHECK(settings_.other != nullptr);
+    desk_->close("this server follows the downlink of another mission: rehearsals need one of their own");
+    auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
+        server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
+    });
+    if (!follower) return follower.error();
+    downlink_ = std::move(*follower);
+    return {};
 }
 
 void ConsoleBackend::run() {

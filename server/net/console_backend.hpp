@@ -3,6 +3,7 @@
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
+#include "server/downlink/downlink_follower.hpp"
 #include "server/net/web_server.hpp"
 
 #include <filesystem>
@@ -20,6 +21,7 @@ class ConsoleBackend {
         std::string address = "127.0.0.1";
         std::uint16_t port = 8080; ///< 0: a free one
         std::filesystem::path archive, scenarios, web;
+        const telemetry::OtherMission* other = nullptr; ///< whose dictionary it then is; it must outlive this
     };
     /// Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
@@ -27,6 +29,9 @@ class ConsoleBackend {
 
     /// Before run(): a rehearsal to start with.
     void start(simulation::Scenario scenario, std::uint64_t seed, double pace);
+    /// Before run(), with another mission: follows its packets in a run of its own. No rehearsal can be started then.
+    Result<void> follow(DownlinkFollower::Settings settings);
+    std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
     void run();
     void stop(); ///< from any thread
     std::uint16_t port() const { return server_->port(); }
@@ -45,6 +50,7 @@ class ConsoleBackend {
     std::unique_ptr<QueryThreads> queries_;
     std::unique_ptr<PipelineThread> pipeline_;
     std::unique_ptr<RehearsalDesk> desk_;
+    std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;
 };
 

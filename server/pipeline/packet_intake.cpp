@@ -15,9 +15,12 @@ using archive::Source;
 using archive::UnitRecord;
 using telemetry::Standing;
 
-PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns)
-    : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), decommutator_(dictionary),
-      alarms_(dictionary), segments_(columns, segment_samples), latest_(dictionary.channels.size()) {}
+PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
+                           const telemetry::OtherMission* other)
+    : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other), alarms_(dictionary),
+      segments_(columns, segment_samples), latest_(dictionary.channels.size()) {
+    if (other_ == nullptr) decommutator_.emplace(dictionary);
+}
 
 std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const dictionary::Dictionary& dictionary) {
     const auto* packet = dictionary.packet("TimepointFired");
@@ -33,17 +36,18 @@ std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const
 
 void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
                         const Observer& observer) {
-    const bool recorded = packet.link == simulation::LinkId::relay;
+    const bool recorded = packet.link.recorded;
     UnitRecord unit;
     unit.seq = numbering.next(batch);
     unit.ert = packet.ert;
-    unit.link = recorded ? archive::Link::relay : archive::Link::uhf_live;
+    unit.link = packet.link.name;
     unit.source = recorded ? Source::recorded : Source::realtime;
     unit.octets = {batch.octets.size(), packet.octets.size()};
     batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
     if (recorded) recorded_octets_ += packet.octets.size();
 
-    if (const auto refusal = decommutator_.decode(packet.octets, decoded_)) {
+    AEOLIS_CHECK(decommutator_.has_value());
+    if (const auto refusal = decommutator_->decode(packet.octets, decoded_)) {
         ++not_decoded_;
         unit.refusal = telemetry::name_of(*refusal);
         if (const auto header = read_primary_header(packet.octets)) unit.apid = header->apid;
@@ -61,6 +65,32 @@ void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& num
     if (unit.sampled) sample(unit, numbering, batch);
     interpret(unit, numbering, batch);
     if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
+}
+
+void PacketIntake::take(const DownlinkPacket& packet, Numbering& numbering, Batch& batch) {
+    AEOLIS_CHECK(other_ != nullptr);
+    UnitRecord unit;
+    unit.seq = numbering.next(batch);
+    unit.ert = packet.ert;
+    unit.link = "downlink";
+    unit.source = Source::realtime;
+    unit.standing = Standing::unregistered; // what names a unit of ours is not in the packets of others
+    unit.octets = {batch.octets.size(), packet.octets.size()};
+    batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
+    ++downlinked_;
+    if (packet.octets.size() >= primary_header_octets)
+        unit.apid = Apid{static_cast<std::uint16_t>((packet.octets[0] & 7U) << 8U | packet.octets[1])};
+    if (auto refusal = other_->decode(packet.octets, decoded_)) {
+        ++not_decoded_;
+        unit.refusal = std::move(*refusal);
+        batch.units.push_back(std::move(unit));
+        return;
+    }
+    unit.packet = static_cast<std::uint16_t>(decoded_.packet);
+    unit.sclk = decoded_.header.time;
+    unit.sampled = !columns_.channels(decoded_.packet).empty();
+    batch.units.push_back(unit);
+    if (unit.sampled) sample(unit, numbering, batch);
 }
 
 void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& batch) {
@@ -113,7 +143,7 @@ archive::RecordingTotals PacketIntake::totals() const {
     archive::RecordingTotals totals;
     totals.recorded = proof.recorded;
     totals.recorded_octets = recorded_octets_;
-    totals.realtime = proof.realtime;
+    totals.realtime = proof.realtime + downlinked_;
     totals.realtime_not_recorded = proof.realtime_not_recorded;
     totals.realtime_differs = proof.realtime_differs;
     totals.never_seen_live = proof.never_seen_live;

@@ -6,6 +6,7 @@
 #include "simulation/landing.hpp"
 #include "telemetry/alarms.hpp"
 #include "telemetry/decommutator.hpp"
+#include "telemetry/other_mission.hpp"
 #include "telemetry/unit_identity.hpp"
 
 #include <optional>
@@ -36,11 +37,15 @@ class Numbering {
 /// Memory   the register of units (telemetry/unit_identity.hpp) and the open segments
 class PacketIntake {
   public:
-    PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns);
+    PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
+                 const telemetry::OtherMission* other);
 
     void take(const simulation::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
               const Observer& observer);
     void seal(archive::Batch& batch) { segments_.seal(batch.segments); }
+
+    /// Of another mission: packets in real time only, each for itself.
+    void take(const DownlinkPacket& packet, Numbering& numbering, archive::Batch& batch);
 
     archive::RecordingTotals totals() const;
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
@@ -60,7 +65,8 @@ class PacketIntake {
     const dictionary::Dictionary& dictionary_;
     const archive::PacketColumns& columns_;
     std::optional<FiringFields> firing_;
-    telemetry::Decommutator decommutator_;
+    const telemetry::OtherMission* other_; ///< none: our own
+    std::optional<telemetry::Decommutator> decommutator_;
     telemetry::Decoded decoded_;
     telemetry::UnitRegister register_;
     telemetry::AlarmMonitor alarms_;
@@ -69,6 +75,7 @@ class PacketIntake {
     std::vector<std::optional<LatestValue>> latest_;
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;
+    std::uint64_t downlinked_ = 0;
 };
 
 } // namespace aeolis::pipeline

@@ -8,23 +8,14 @@
 
 namespace aeolis::pipeline {
 
-namespace {
-
-archive::Link link_of(const simulation::LinkState& state) {
-    if (state.x_band) return archive::Link::x_band;
-    return state.link == simulation::LinkId::relay ? archive::Link::relay : archive::Link::uhf_live;
-}
-
-} // namespace
-
 struct Pipeline::State {
-    State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in)
-        : archive(archive_in), dictionary(dictionary_in), columns(dictionary_in) {}
+    State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
+        : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in) {}
 
     /// All that belongs to the run that goes on.
     struct Run {
         Run(RunId id_in, archive::RunStart start_in, const State& state)
-            : id(id_in), start(std::move(start_in)), intake(state.dictionary, state.columns) {}
+            : id(id_in), start(std::move(start_in)), intake(state.dictionary, state.columns, state.other) {}
         RunId id;
         archive::RunStart start;
         Numbering numbering;
@@ -48,6 +39,7 @@ struct Pipeline::State {
 
     archive::Archive& archive;
     const dictionary::Dictionary& dictionary;
+    const telemetry::OtherMission* other;
     archive::PacketColumns columns;
     Publish publish;
     Observer observer;
@@ -56,8 +48,8 @@ struct Pipeline::State {
     std::chrono::steady_clock::time_point last_commit{};
 };
 
-Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary)
-    : state_(std::make_unique<State>(archive, dictionary)) {}
+Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other)
+    : state_(std::make_unique<State>(archive, dictionary, other)) {}
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 Pipeline::~Pipeline() = default;
@@ -134,6 +126,20 @@ Result<void> Pipeline::accept(const simulation::LinkState& link) {
     return {};
 }
 
+Result<void> Pipeline::accept(const DownlinkPacket& packet) {
+    if (auto room = state_->room(); !room) return room;
+    auto& run = *state_->run;
+    run.intake.take(packet, run.numbering, run.pending);
+    return {};
+}
+
+Result<void> Pipeline::accept(const DownlinkState& state) {
+    if (auto room = state_->room(); !room) return room;
+    auto& run = *state_->run;
+    run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert});
+    return {};
+}
+
 Result<void> Pipeline::accept(archive::StageRecord stage) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
@@ -147,7 +153,7 @@ void Pipeline::State::take(const simulation::ReceivedPacket& packet) {
 }
 
 void Pipeline::State::take(const simulation::LinkState& link) {
-    run->pending.links.push_back({run->numbering.next(run->pending), link_of(link), link.up, link.reason, link.ert});
+    run->pending.links.push_back({run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert});
 }
 
 void Pipeline::State::take(const simulation::ReceivedTone& tone) {
@@ -161,11 +167,16 @@ void Pipeline::State::take(const simulation::ReceivedTone& tone) {
         record.meaning = dictionary.tones[tone.tone->value].meaning;
     }
     record.likelihood = tone.likelihood;
-    record.runner_up = tone.runner_up;
-    record.runner_up_likelihood = tone.runner_up_likelihood;
+    if (tone.best) {
+        record.best.assign(tone.best->begin(), tone.best->end());
+        record.runner_up = ToneId{record.best[1].tone};
+        record.runner_up_likelihood = record.best[1].likelihood;
+    }
+    record.spectrum = tone.spectrum;
     record.c_n0_dbhz = tone.c_n0_dbhz;
     record.doppler_hz = tone.doppler_hz;
-    record.locked = tone.locked;
+    record.lock = to_text(tone.lock);
+    record.locked = tone.lock == CarrierLock::locked;
     record.model = run->start.tone_model;
     // Ground knows when the symbol began on board by light time alone; what was sent is the simulation's secret.
     const double sent_s =
@@ -178,6 +189,10 @@ void Pipeline::State::take(const simulation::ReceivedTone& tone) {
 void Pipeline::relay_progress(double progress) {
     AEOLIS_CHECK(state_->run.has_value());
     state_->run->progress = progress;
+}
+
+void Pipeline::link_totals(std::vector<archive::LinkTotals> links) {
+    if (state_->run) state_->run->pending.link_totals = std::move(links);
 }
 
 archive::RecordingTotals Pipeline::totals() const {

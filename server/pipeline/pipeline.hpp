@@ -7,6 +7,7 @@
 #include "server/archive/records.hpp"
 #include "simulation/landing.hpp"
 #include "telemetry/decommutator.hpp"
+#include "telemetry/other_mission.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -46,6 +47,18 @@ struct LatestValue {
     Ert ert;
 };
 
+/// A packet of another mission, as it came.
+struct DownlinkPacket {
+    std::vector<std::uint8_t> octets;
+    Ert ert;
+};
+/// Whether such packets can come.
+struct DownlinkState {
+    bool up = false;
+    std::string reason;
+    Ert ert;
+};
+
 /// Turns what one run's links and gateway deliver into numbered items: commits them to the archive, then publishes.
 ///
 /// In       received packets, tones, link changes, command stages; the caller's steady clock
@@ -56,8 +69,9 @@ struct LatestValue {
 /// Threads  none, no locks and no clock: one owner calls everything, callbacks come from within its calls
 class Pipeline {
   public:
-    /// Archive and dictionary must outlive this.
-    Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary);
+    /// Archive and dictionary must outlive this. With `other`, whose dictionary it then is, only packets of that mission
+    /// may come.
+    Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other = nullptr);
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;
     ~Pipeline();
@@ -75,10 +89,14 @@ class Pipeline {
     Result<void> accept(const simulation::ReceivedPacket& packet);
     Result<void> accept(const simulation::ReceivedTone& tone);
     Result<void> accept(const simulation::LinkState& link);
+    Result<void> accept(const DownlinkPacket& packet);
+    Result<void> accept(const DownlinkState& state);
     /// `stage.seq` is given here.
     Result<void> accept(archive::StageRecord stage);
     /// 0 … 1 of the recording that has come down; durable with the next commit.
     void relay_progress(double progress);
+    /// Counters of links, stored with the next commit.
+    void link_totals(std::vector<archive::LinkTotals> links);
 
     /// Commits when due; `now` starts the interval of the next. Call it at least every commit_interval in real time.
     Result<void> commit_if_due(std::chrono::steady_clock::time_point now);

@@ -17,8 +17,8 @@ void Delivery::add(const simulation::CycleReport& report) {
 }
 
 PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
-                               pipeline::Publish publish)
-    : archive_(std::move(archive)), pipeline_(archive_, dictionary), faults_(faults) {
+                               pipeline::Publish publish, const telemetry::OtherMission* other)
+    : archive_(std::move(archive)), pipeline_(archive_, dictionary, other), faults_(faults) {
     pipeline_.on_publish([this, publish = std::move(publish)](std::shared_ptr<const pipeline::PublishedBatch> batch) {
         ++batches_;
         items_ += batch->last_seq - batch->first_seq + 1;
@@ -96,6 +96,7 @@ void PipelineThread::take(Delivery& delivery) {
         if (!accepted) return;
     }
     pipeline_.relay_progress(delivery.relay_progress);
+    if (!delivery.links.empty()) pipeline_.link_totals(std::move(delivery.links));
     if (delivery.when_durable.empty()) return;
     if (!insist([&] { return pipeline_.commit(); })) return;
     for (const auto& tell : delivery.when_durable)

@@ -19,9 +19,11 @@ namespace aeolis::server {
 /// What a run hands to the archive at once, in the order in which it reached Earth.
 struct Delivery {
     using Entry =
-        std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord>;
+        std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord,
+                     pipeline::DownlinkPacket, pipeline::DownlinkState>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
+    std::vector<archive::LinkTotals> links; ///< empty: as told before
     std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
 
     void add(const simulation::CycleReport& report);
@@ -39,7 +41,7 @@ class PipelineThread {
 
     enum class Faults { hold, give_up };
     PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
-                   pipeline::Publish publish);
+                   pipeline::Publish publish, const telemetry::OtherMission* other = nullptr);
     ~PipelineThread(); ///< takes what is in the queue, then ends
 
     /// Waits until the run is in the archive.

@@ -3,21 +3,14 @@
 #include "generated/dictionary_flight.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
-#include "server/tones/flown_signal.hpp"
+#include "server/tones/predicted_doppler.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
-
 
 namespace aeolis::server {
 namespace {
 
 constexpr const char* product_packet_name = "DataProduct";
-
-/// What ground expects to hear: the landing without any error.
-TimeTable predicted_doppler(const simulation::Scenario& scenario, std::uint64_t seed,
-                            const dictionary::Dictionary& dictionary) {
-    return fly_signal(simulation::undispersed(scenario), seed, 0, dictionary, scenario.start_before_entry_s).doppler_hz;
-}
 
 } // namespace
 
@@ -32,8 +25,8 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
         runner = executive_ = std::make_shared<ThreadedExecutive>(options);
     }
     if (runner != nullptr) flight_.run_prime_by(std::move(runner));
-    if (scenario.radio.tones_from_samples)
-        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler(scenario, seed, dictionary), seed,
+    if (scenario.radio.tones_from_samples.value_or(false))
+        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler_hz(scenario, dictionary.mfsk), seed,
                                     case_number);
 }
 
@@ -70,8 +63,7 @@ void Rehearsal::take(const simulation::CycleReport& report) {
     firings_.read(report.recorded);
     flight_.hear(report);
     for (const auto& packet : report.packets) {
-        const bool realtime = packet.link == simulation::LinkId::uhf_live;
-        units_.add(packet.octets, realtime ? telemetry::Path::realtime : telemetry::Path::recorded);
+        units_.add(packet.octets, packet.link.recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
         note_product(packet.octets);
     }
     for (const auto& tone : report.tones) {
@@ -115,8 +107,15 @@ std::string Rehearsal::outcome_reason() const {
     return broken_.empty() ? landing().outcome_reason() : broken_;
 }
 
+std::vector<archive::LinkTotals> Rehearsal::link_totals() const {
+    std::vector<archive::LinkTotals> totals;
+    for (const auto& link : station().links())
+        totals.push_back({link.link.name, link.pltus.counters(), link.rate.per_second(landing().ert_now())});
+    return totals;
+}
+
 telemetry::Proof Rehearsal::proof() const {
-    if (landing().relay_progress() >= 1.0) return telemetry::prove(units_);
+    if (landing().relaying()) return telemetry::prove(units_); // by what came down, be it all or not
     auto units = units_;
     telemetry::PacketStream recording{landing().recording()};
     while (const auto packet = recording.next())
@@ -136,7 +135,7 @@ archive::RunStart Rehearsal::run_start(double pace) const {
     start.entry = scenario_.entry_sclk;
     start.correlation = landing().correlation();
     start.light_time_s = landing().light_time_s();
-    start.tone_model = scenario_.radio.tones_from_samples ? "signal" : "statistical";
+    start.tone_model = tones_from_samples_ ? "signal" : "statistical";
     start.scenario_text = scenario_to_text(scenario_);
     for (const auto& [name, value] : solution_arguments(landing().solution()))
         start.solution.emplace_back(name, value);

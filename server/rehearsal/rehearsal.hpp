@@ -57,6 +57,9 @@ class Rehearsal {
     const simulation::Landing& landing() const { return flight_.landing(); }
     const CommandGateway& gateway() const { return flight_.gateway(); }
     const GroundStation& station() const { return flight_.station(); }
+    /// What each UHF link has brought so far.
+    std::vector<archive::LinkTotals> link_totals() const;
+    double recording_progress() const { return flight_.recording_progress(); } ///< 0 … 1 that has come down
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 

@@ -25,6 +25,7 @@ RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary:
 RehearsalDesk::~RehearsalDesk() = default;
 
 Result<void> RehearsalDesk::refusal_while_going_on() const {
+    if (!closed_.empty()) return Error{closed_};
     if (!going_on()) return {};
     return Error{fmt::format("run {} goes on: stop it first, or wait until it has ended", state_.run())};
 }

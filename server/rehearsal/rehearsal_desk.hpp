@@ -35,6 +35,8 @@ class RehearsalDesk {
     Result<void> control(const v1::RehearsalControl& control, Began began);
     void command(v1::CommandRequest request, RehearsalRunner::Reply reply);
 
+    /// From now on none can be started, because of `reason`.
+    void close(std::string reason) { closed_ = std::move(reason); }
     const v1::RunState& current() const { return state_; } ///< run 0: none since the server started
     bool going_on() const { return runner_ && !runner_->over(); }
 
@@ -47,6 +49,7 @@ class RehearsalDesk {
     Post post_;
     Callbacks callbacks_;
     v1::RunState state_;
+    std::string closed_;
     std::unique_ptr<RehearsalRunner> runner_;
 };
 

@@ -16,6 +16,7 @@ constexpr milliseconds delivery_interval{5};  // half a commit's: a commit then 
 constexpr std::size_t delivery_entries = 256; // or so many, when it goes fast
 constexpr milliseconds clocks_interval{100};  // ten times a second: brief of the stream
 constexpr milliseconds state_interval{1000};
+constexpr milliseconds links_interval{1000};
 constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pace
 constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
 
@@ -27,6 +28,7 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
     : scenario_(std::move(scenario)), seed_(seed), dictionary_(dictionary), pipeline_(pipeline),
       callbacks_(std::move(callbacks)) {
     control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
+    scenario_.radio.tones_from_samples = from_samples(scenario_.radio, pace_);
     thread_ = std::thread{[this] { run(); }};
 }
 
@@ -199,7 +201,11 @@ void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleRepor
 bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now) {
     delivered_ = now;
     if (delivery_.entries.empty() && delivery_.when_durable.empty()) return true;
-    delivery_.relay_progress = rehearsal.landing().relay_progress();
+    delivery_.relay_progress = rehearsal.recording_progress();
+    if (now - links_told_ >= links_interval || rehearsal.finished()) {
+        links_told_ = now;
+        delivery_.links = rehearsal.link_totals();
+    }
     return pipeline_.deliver(std::exchange(delivery_, {}));
 }
 
@@ -244,7 +250,7 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     state.set_start_sclk(start_.start.seconds);
     state.set_light_time_s(start_.light_time_s);
     *state.mutable_clocks() = rehearsal.clocks();
-    state.set_relay_progress(rehearsal.landing().relay_progress());
+    state.set_relay_progress(rehearsal.recording_progress());
     for (const auto& [name, value] : start_.solution) {
         auto& argument = *state.add_solution();
         argument.set_name(name);

@@ -23,10 +23,15 @@ class Rehearsal;
 /// Out      deliveries to the pipeline; state on every change and once a second, clocks ten times a second
 /// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
 ///          slower, nothing is skipped, and `attained_pace` says so.
+/// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else drawn
+///          from the symbol error: the pace asked for at the start decides, for the whole run, so that none is lost or
+///          doubled when the pace changes (decision 0019)
 /// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error
 class RehearsalRunner {
   public:
     static constexpr double pace_max = 1000.0;
+    /// A quarter of what a shared core was measured to sustain, headless (docs/tones.md). Ours
+    static constexpr double signal_pace_max = 50.0;
     static constexpr std::size_t requests_max = 64; ///< commands waiting for the next cycle; ours
 
     /// Called on the rehearsal's thread.
@@ -36,6 +41,11 @@ class RehearsalRunner {
         std::function<void(v1::Clocks)> on_clocks;
     };
     using Reply = std::function<void(v1::CommandReply)>;
+
+    /// Whether tones of a run that begins at `pace` come from samples.
+    static bool from_samples(const simulation::Radio& radio, double pace) {
+        return radio.tones_from_samples.value_or(pace > 0.0 && pace <= signal_pace_max);
+    }
 
     /// Dictionary and pipeline must outlive this.
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
@@ -85,7 +95,7 @@ class RehearsalRunner {
     bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
     std::string digest_;
-    Clock::time_point delivered_{}, clocks_told_{}, state_told_{};
+    Clock::time_point delivered_{}, clocks_told_{}, state_told_{}, links_told_{};
     std::uint64_t cycles_told_ = 0;
 
     std::thread thread_;

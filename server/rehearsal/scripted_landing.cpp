@@ -24,13 +24,16 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary)
-    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary)),
+    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary)), station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
       script_(scenario.commands), dispersed_(landing_.dispersed()) {}
 
 const simulation::CycleReport& ScriptedLanding::step() {
     send_script();
-    const auto& report = station_.receive(landing_.step());
+    const auto& landed = landing_.step();
+    const auto& report = station_.receive(landed, landing_.ert_now());
+    for (const auto& pltu : station_.take_forward())
+        landing_.forward(pltu);
     ++cycles_;
     if (landing_.dispersed() && !std::exchange(dispersed_, true))
         gateway_.renew_solution(solution_arguments(landing_.solution()));
@@ -39,9 +42,10 @@ const simulation::CycleReport& ScriptedLanding::step() {
 
 void ScriptedLanding::hear(const simulation::CycleReport& report) {
     for (const auto& packet : report.packets)
-        gateway_.receive(packet.octets, packet.link == simulation::LinkId::uhf_live, packet.ert, stages_);
+        gateway_.receive(packet.octets, packet.link == simulation::uhf_live_link, packet.ert, stages_);
     // Once a second is enough for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
+    radiate();
 }
 
 void ScriptedLanding::send_script() {
@@ -68,9 +72,23 @@ void ScriptedLanding::send_script() {
 }
 
 v1::CommandReply ScriptedLanding::submit(const v1::CommandRequest& request) {
-    const auto submitted = gateway_.submit(request, landing_.ert_now(), stages_);
-    if (!submitted.packet.empty()) landing_.uplink(submitted.packet);
-    return submitted.reply;
+    auto reply = gateway_.submit(request, landing_.ert_now(), stages_);
+    radiate();
+    return reply;
+}
+
+void ScriptedLanding::radiate() {
+    for (const auto& cltu : gateway_.take_uplinks())
+        landing_.uplink(cltu);
+}
+
+double ScriptedLanding::recording_progress() const {
+    const std::size_t recorded = landing_.recording().size();
+    if (recorded == 0 || !landing_.relaying()) return 0.0;
+    const double part = static_cast<double>(station_.recording().received_octets()) / static_cast<double>(recorded);
+    const bool whole = landing_.recording_closed() && station_.recording().files_under_way() == 0;
+    // While the computer still records, or a file is not whole, what has come down cannot be all.
+    return whole ? part : std::min(part, 0.999);
 }
 
 std::string text_of_bug(const CheckFailed& bug) {

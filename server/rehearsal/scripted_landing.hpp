@@ -47,9 +47,11 @@ class ScriptedLanding {
     const simulation::Landing& landing() const { return landing_; }
     const CommandGateway& gateway() const { return gateway_; }
     const GroundStation& station() const { return station_; }
+    double recording_progress() const; ///< 0 … 1 of the recording that has come down
 
   private:
     void send_script();
+    void radiate();
 
     Sclk entry_;
     simulation::Landing landing_;

@@ -108,10 +108,12 @@ const Bindings<simulation::Radio> radio_fields = {
     AEOLIS_BIND(Radio, blackout_start_altitude_m),
     AEOLIS_BIND(Radio, uhf_loss_fraction),
     AEOLIS_BIND(Radio, uhf_burst_s),
+    AEOLIS_BIND(Radio, uplink_loss_fraction),
     AEOLIS_BIND(Radio, x_band_c_n0_dbhz),
-    AEOLIS_BIND(Radio, earth_set_after_entry_s),
     AEOLIS_BIND(Radio, relay_rate_bps),
     AEOLIS_BIND(Radio, relay_start_after_touchdown_s),
+    AEOLIS_BIND(Radio, uhf_loss_range_km),
+    AEOLIS_BIND(Radio, uhf_hand_over_s),
 };
 const Bindings<Scenario> scenario_fields = {
     AEOLIS_BIND(Scenario, start_before_entry_s),       AEOLIS_BIND(Scenario, end_after_touchdown_s),
@@ -136,6 +138,11 @@ const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, begin_before_entry_s),
     AEOLIS_BIND(DeviceFault, duration_s),
     AEOLIS_BIND(DeviceFault, late_s),
+};
+const Bindings<simulation::RelayPass> pass_fields = {
+    AEOLIS_BIND(RelayPass, rise_after_entry_s),  AEOLIS_BIND(RelayPass, set_after_entry_s),
+    AEOLIS_BIND(RelayPass, horizon_km),          AEOLIS_BIND(RelayPass, nearest_km),
+    AEOLIS_BIND(RelayPass, delivery_after_set_s), AEOLIS_BIND(RelayPass, delivery_rate_bps),
 };
 const Bindings<simulation::ComputerReset> reset_fields = {
     AEOLIS_BIND(ComputerReset, before_entry_s),
@@ -248,6 +255,50 @@ void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& r
     write(fault, device_fault_fields, row);
 }
 
+void read_links(const v1::Radio& message, simulation::Radio& radio) {
+    read(message, radio_fields, radio);
+    if (message.has_earth_set_after_entry_s()) radio.earth_set_after_entry_s = message.earth_set_after_entry_s();
+    if (message.has_tones_from_samples()) radio.tones_from_samples = message.tones_from_samples();
+    for (const auto& row : message.relay_passes()) {
+        auto& pass = radio.relay_passes.emplace_back();
+        read(row, pass_fields, pass);
+        pass.orbiter = row.orbiter();
+        pass.stored = row.stored();
+        for (const auto& rate : row.rates())
+            pass.rates.push_back({rate.after_rise_s(), rate.bps()});
+    }
+    for (const auto& row : message.tone_outages())
+        radio.tone_outages.push_back({row.name(), row.event(), row.from_s(), row.to_s()});
+    radio.delivery_restarts_after_touchdown_s.assign(message.delivery_restarts_after_touchdown_s().begin(),
+                                                     message.delivery_restarts_after_touchdown_s().end());
+}
+
+void write_links(const simulation::Radio& radio, v1::Radio& message) {
+    write(radio, radio_fields, message);
+    if (radio.earth_set_after_entry_s) message.set_earth_set_after_entry_s(*radio.earth_set_after_entry_s);
+    if (radio.tones_from_samples) message.set_tones_from_samples(*radio.tones_from_samples);
+    for (const auto& pass : radio.relay_passes) {
+        auto& row = *message.add_relay_passes();
+        write(pass, pass_fields, row);
+        row.set_orbiter(pass.orbiter);
+        row.set_stored(pass.stored);
+        for (const auto& rate : pass.rates) {
+            auto& step = *row.add_rates();
+            step.set_after_rise_s(rate.after_rise_s);
+            step.set_bps(rate.bps);
+        }
+    }
+    for (const auto& outage : radio.tone_outages) {
+        auto& row = *message.add_tone_outages();
+        row.set_name(outage.name);
+        row.set_event(outage.event);
+        row.set_from_s(outage.from_s);
+        row.set_to_s(outage.to_s);
+    }
+    for (const double restart : radio.delivery_restarts_after_touchdown_s)
+        message.add_delivery_restarts_after_touchdown_s(restart);
+}
+
 } // namespace
 
 Result<Scenario> scenario_from_message(const v1::Scenario& message) {
@@ -276,9 +327,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     read(message.gyration(), gyration_fields, scenario.gyration);
     read(message.stations(), station_fields, scenario.stations);
     read(message.dispersions(), dispersion_fields, scenario.dispersions);
-    read(message.radio(), radio_fields, scenario.radio);
-    if (message.radio().has_tones_from_samples())
-        scenario.radio.tones_from_samples = message.radio().tones_from_samples();
+    read_links(message.radio(), scenario.radio);
     read(message.triggers(), trigger_fields, scenario);
     for (const auto& row : message.density_scale()) {
         simulation::DensityScale scale;
@@ -330,8 +379,7 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.gyration, gyration_fields, *message.mutable_gyration());
     write(scenario.stations, station_fields, *message.mutable_stations());
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
-    write(scenario.radio, radio_fields, *message.mutable_radio());
-    message.mutable_radio()->set_tones_from_samples(scenario.radio.tones_from_samples);
+    write_links(scenario.radio, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
     for (const auto& scale : scenario.density_scale)
         write(scale, density_fields, *message.add_density_scale());

@@ -1,21 +1,64 @@
 #include "server/station/ground_station.hpp"
 
+#include "common/space_packet.hpp"
+
+#include <algorithm>
+
 namespace aeolis::server {
 
-const simulation::CycleReport& GroundStation::receive(const simulation::CycleReport& landed) {
+const simulation::CycleReport& GroundStation::receive(const simulation::CycleReport& landed, Ert now) {
     report_ = landed;
+    for (const simulation::LinkState& state : landed.links)
+        note(state);
     for (const simulation::ReceivedOctets& piece : landed.octets)
         receive(piece);
+    recording_.pass(now, relay_up_);
     return report_;
 }
 
+GroundStation::LinkReceiver& GroundStation::receiver_of(const simulation::Link& link) {
+    const auto known = std::ranges::find(links_, link, &LinkReceiver::link);
+    return known != links_.end() ? *known : links_.emplace_back(LinkReceiver{link});
+}
+
 void GroundStation::receive(const simulation::ReceivedOctets& piece) {
-    pltus_.receive(piece.octets);
-    while (const auto frame = pltus_.next()) {
-        packets_.add(*frame);
-        while (const auto packet = packets_.next())
-            report_.packets.push_back({piece.link, piece.ert, {packet->begin(), packet->end()}});
+    LinkReceiver& from = receiver_of(piece.link);
+    from.rate.add(piece.ert, piece.octets.size());
+    from.pltus.receive(piece.octets);
+    receive_frames(from, piece.ert);
+}
+
+void GroundStation::receive_frames(LinkReceiver& from, Ert ert) {
+    while (const auto frame = from.pltus.next()) {
+        from.packets.add(*frame);
+        while (const auto packet = from.packets.next()) {
+            const auto header = read_primary_header(*packet);
+            if (!header || header->apid != file_delivery_apid)
+                report_.packets.push_back({.link = from.link, .ert = ert, .octets = {packet->begin(), packet->end()}});
+            else
+                recording_.receive(packet->subspan(primary_header_octets), ert,
+                                   [&](std::span<const std::uint8_t> file) { take_file(file, ert); });
+        }
     }
+}
+
+/// A link that went down brings nothing that could complete a frame: what waits for octets is searched as it is.
+void GroundStation::note(const simulation::LinkState& state) {
+    if (state.link == simulation::relay_link) relay_up_ = state.up;
+    const auto known = std::ranges::find(links_, state.link, &LinkReceiver::link);
+    if (known == links_.end() || state.up) return;
+    known->pltus.end();
+    receive_frames(*known, state.ert);
+}
+
+void GroundStation::take_file(std::span<const std::uint8_t> octets, Ert ert) {
+    while (const auto size = space_packet_octets(octets)) {
+        if (*size > octets.size()) break;
+        const auto packet = octets.first(*size);
+        report_.packets.push_back({.link = simulation::relay_link, .ert = ert, .octets = {packet.begin(), packet.end()}});
+        octets = octets.subspan(*size);
+    }
+    unreadable_file_octets_ += octets.size();
 }
 
 } // namespace aeolis::server

@@ -59,7 +59,7 @@ void ToneStation::sample(const simulation::XBandField& field) {
     stretch.residual_from_hz = last_doppler_hz_ - predict_hz_.at(field.e_s);
     stretch.residual_to_hz = field.doppler_hz - predict_hz_.at(field.e_s + seconds_per_tick);
     stretch.doppler_hz = 0.5 * (last_doppler_hz_ + field.doppler_hz);
-    if (field.up) stretch.total_c_n0_dbhz = total_c_n0_dbhz_;
+    if (field.up) stretch.total_c_n0_dbhz = total_c_n0_dbhz_ + field.gain_db;
     sampler_.begin(stretch);
     const std::size_t before = samples_.size();
     samples_.resize(before + cycle_samples);
@@ -76,11 +76,11 @@ simulation::ReceivedTone ToneStation::told(const telemetry::ToneReception& recep
     tone.end = {tone.start.microseconds + microseconds(waveform_.symbol_s)};
     if (reception.tone) tone.tone = ToneId{*reception.tone};
     tone.likelihood = reception.evidence.best[0].likelihood;
-    tone.runner_up = ToneId{reception.evidence.best[1].tone};
-    tone.runner_up_likelihood = reception.evidence.best[1].likelihood;
+    tone.best = reception.evidence.best;
+    tone.spectrum = reception.evidence.spectrum;
     tone.c_n0_dbhz = reception.total_c_n0_dbhz;
     tone.doppler_hz = reception.doppler_hz;
-    tone.locked = reception.lock == telemetry::CarrierLock::locked;
+    tone.lock = reception.lock;
     return tone;
 }
 

@@ -12,6 +12,7 @@
 namespace aeolis::server {
 namespace {
 
+constexpr double written_row_s = 0.25; // ours: between them a cubic holds the entry's Doppler to some hertz
 constexpr std::size_t rows_max = 10'000'000; // ours: days at 64 a second
 
 std::vector<std::string> cells_of(std::string line) {
@@ -74,6 +75,20 @@ Result<TimeTable> read_doppler(const std::filesystem::path& file) {
     auto table = TimeTable::make(std::move(columns->first), std::move(columns->second));
     if (!table) return Error{fmt::format("{}: {}", file.string(), table.error().message)};
     return table;
+}
+
+Result<TimeTable> write_doppler(const std::filesystem::path& file, const TimeTable& doppler_hz, double from_s, double to_s) {
+    std::ofstream stream{file};
+    stream << "time_s,doppler_hz\n";
+    const auto rows = static_cast<std::size_t>(std::ceil(std::max(0.0, to_s - from_s) / written_row_s)) + 1;
+    if (rows > rows_max) return Error{fmt::format("{}: {} rows are too many", file.string(), rows)};
+    for (std::size_t row = 0; row < rows; ++row) {
+        const double time_s = from_s + static_cast<double>(row) * written_row_s;
+        stream << fmt::format("{:.4f},{:.4f}\n", time_s, doppler_hz.at(time_s));
+    }
+    stream.close();
+    if (!stream) return Error{fmt::format("{} cannot be written", file.string())};
+    return read_doppler(file);
 }
 
 Result<std::vector<simulation::SentTone>> read_tones_to_send(const std::filesystem::path& file, double symbol_s) {

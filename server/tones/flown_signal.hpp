@@ -6,6 +6,7 @@
 #include "simulation/scenario.hpp"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace aeolis::server {
@@ -14,8 +15,14 @@ namespace aeolis::server {
 struct FlownSignal {
     std::vector<simulation::SentTone> tones;
     TimeTable doppler_hz;         ///< one way at the carrier, 16 rows a second
+    TimeTable gain_db;            ///< of the antenna towards Earth, with the attitude; likewise
     double earth_set_s = 0.0;     ///< nothing is heard after that
-    double parachute_s = 0.0;     ///< line stretch; 0: none
+    /// The scenario's, of events that came: tones that are sent then may be lost.
+    struct Outage {
+        std::string name;
+        double from_s = 0.0, to_s = 0.0;
+    };
+    std::vector<Outage> outages;
 };
 
 /// Flies the scenario's case by the whole flight software, to its end. Doppler is kept from `from_before_entry_s` on.

@@ -34,9 +34,7 @@ Result<SampleReader> SampleReader::open(const std::filesystem::path& file, Sampl
     reader.stream_.open(file, std::ios::binary);
     if (!reader.stream_) return Error{fmt::format("{} cannot be read", file.string())};
     if (octets == 0) return Error{fmt::format("{} is empty", file.string())};
-    if (octets % octets_a_sample(format) != 0)
-        return Error{fmt::format("{}: {} octets are no whole number of samples of {}: truncated, or another format",
-                                 file.string(), octets, octets_a_sample(format))};
+    reader.left_over_octets_ = octets % octets_a_sample(format);
     reader.samples_ = octets / octets_a_sample(format);
     return reader;
 }

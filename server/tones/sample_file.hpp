@@ -29,11 +29,14 @@ class SampleReader {
     /// The next samples, at most as many as `room`; none at the end.
     Result<std::span<const std::complex<float>>> next(std::span<std::complex<float>> room);
     std::uint64_t samples() const { return samples_; }
+    /// Behind the last whole sample: the file is truncated, or of another format.
+    std::uint64_t left_over_octets() const { return left_over_octets_; }
 
   private:
     SampleReader(std::filesystem::path file, SampleFormat format) : file_(std::move(file)), format_(format) {}
     std::filesystem::path file_;
     SampleFormat format_;
+    std::uint64_t left_over_octets_ = 0;
     std::uint64_t samples_ = 0, read_ = 0;
     std::ifstream stream_;
     std::vector<char> octets_;

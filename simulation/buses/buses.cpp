@@ -159,6 +159,12 @@ bool Buses::uhf_radiates() const {
            !faults_.has(Kind::dropout, Device::uhf, uhf);
 }
 
+std::optional<XBandAntenna> Buses::x_band_antenna() const {
+    if (devices_.on(flight::SwitchId::parachute_antenna)) return XBandAntenna::parachute;
+    if (devices_.on(flight::SwitchId::entry_antenna)) return XBandAntenna::entry;
+    return {};
+}
+
 bool Buses::imu_sample_arrives() {
     const flight::Unit imu = addressed_[Device::imu];
     if (!devices_.on(flight::SwitchId::descent_imu, imu) || !faults_.answers(Device::imu, imu)) return false;

@@ -3,6 +3,7 @@
 #include "simulation/buses/bus.hpp"
 #include "simulation/buses/device_faults.hpp"
 #include "simulation/devices/avionics.hpp"
+#include "simulation/links/x_band_antenna.hpp"
 
 namespace aeolis::simulation {
 
@@ -45,6 +46,8 @@ class Buses {
     bool radar_was_read() const { return radar_was_read_; }
     bool engines_were_read() const { return engines_were_read_; }
     bool uhf_radiates() const;
+    bool parachute_antenna_on() const { return devices_.on(flight::SwitchId::parachute_antenna); }
+    std::optional<XBandAntenna> x_band_antenna() const; ///< the one selected
     /// Whether the sample that the IMU's link carries now arrives.
     bool imu_sample_arrives();
     flight::Unit unit(flight::Device device) const { return addressed_[device]; }

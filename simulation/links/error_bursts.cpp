@@ -5,9 +5,18 @@
 namespace aeolis::simulation {
 
 ErrorBursts::ErrorBursts(double fraction, double mean_octets, Random random)
-    : bad_octets_(mean_octets), good_octets_(fraction > 0.0 ? mean_octets * (1.0 - fraction) / fraction : 0.0),
-      random_(random) {
+    : bad_octets_(mean_octets), good_octets_(good_octets(fraction, mean_octets)), random_(random) {
     if (good_octets_ > 0.0) left_octets_ = drawn(good_octets_);
+}
+
+double ErrorBursts::good_octets(double fraction, double bad_octets) {
+    return fraction > 0.0 ? bad_octets * (1.0 - fraction) / fraction : 0.0;
+}
+
+void ErrorBursts::set_fraction(double fraction) {
+    const bool none_before = good_octets_ <= 0.0;
+    good_octets_ = good_octets(fraction, bad_octets_);
+    if (none_before && good_octets_ > 0.0) left_octets_ = drawn(good_octets_);
 }
 
 double ErrorBursts::drawn(double mean_octets) {

@@ -14,10 +14,14 @@ class ErrorBursts {
     /// `fraction` of all octets are in bursts, 0 … below 1, of `mean_octets` on average, above 0.
     ErrorBursts(double fraction, double mean_octets, Random random);
 
+    /// From here on another part of all octets; a burst, or a good stretch, that has begun ends as it was drawn.
+    void set_fraction(double fraction);
+
     void spoil(std::span<std::uint8_t> octets);
 
   private:
     double drawn(double mean_octets);
+    static double good_octets(double fraction, double bad_octets);
 
     double bad_octets_, good_octets_; ///< means; no good_octets_: no bursts at all
     Random random_;

@@ -1,16 +1,13 @@
 #pragma once
 
+#include "common/tone_evidence.hpp"
 #include "simulation/random.hpp"
-
-#include <cstdint>
 
 namespace aeolis::simulation {
 
 /// What an ideal non-coherent receiver makes of one 10 s symbol of 256 orthogonal tones.
 struct ToneDecision {
-    std::uint8_t best = 0, second = 0;
-    double best_likelihood = 0.0; ///< posterior probability, all tones being equally likely beforehand
-    double second_likelihood = 0.0;
+    BestTones best{};
     double tone_c_n0_dbhz = 0.0; ///< estimate from the winner's energy
 };
 

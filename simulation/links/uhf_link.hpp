@@ -1,21 +1,19 @@
 #pragma once
 
-#include "simulation/links/error_bursts.hpp"
 #include "simulation/scenario.hpp"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 namespace aeolis::simulation {
 
-/// The real-time UHF link: octets leave the transmitter at the link's rate, and arrive as they are or as errors make them.
-/// What is on the air while the link is down does not arrive. It knows nothing of frames.
+/// The vehicle's UHF transmitter while it lands: octets leave it at the link's rate. What leaves it in plasma, or while its
+/// antenna is changed, nobody hears. It knows nothing of frames, and nothing of who hears it (orbiter_pass.hpp).
 ///
-/// Memory   ours: the transmitter holds 64 KiB that wait; what finds no room is lost, and counted
-/// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end
-/// speed Left out: antenna patterns, orbiter geometry, hand-overs between orbiters, Doppler. (Issue D)
+/// Memory   ours: it holds 64 KiB that wait; what finds no room is lost, and counted
+/// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end speed
+/// Left out: antenna patterns
 class UhfLink {
   public:
     /// What the link sees of the vehicle in a cycle.
@@ -24,14 +22,15 @@ class UhfLink {
         double altitude_m = 0.0;
         double speed_mps = 0.0;
         bool transmitter_on = false; ///< and an antenna selected
+        bool parachute_antenna = false; ///< else that of entry
     };
 
-    UhfLink(const Radio& radio, Random random);
+    explicit UhfLink(const Radio& radio) : radio_(radio) {}
 
     /// Octets given to the transmitter at the start of a cycle.
     void offer(std::span<const std::uint8_t> octets);
 
-    /// One cycle of 1/64 s: what arrives of it. Good until the next.
+    /// One cycle of 1/64 s: what can be heard of it. Good until the next.
     std::span<const std::uint8_t> cycle(const Surroundings& at);
 
     bool up() const { return up_; }
@@ -42,8 +41,9 @@ class UhfLink {
     const char* why_down(const Surroundings& at);
 
     Radio radio_;
-    ErrorBursts errors_;
     std::vector<std::uint8_t> waiting_, arrived_;
+    double hand_over_left_s_ = 0.0;
+    bool parachute_antenna_ = false;
     double credit_octets_ = 0.0;
     bool blackout_over_ = false;
     bool up_ = false;

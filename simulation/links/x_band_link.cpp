@@ -23,21 +23,27 @@ double XBandLink::tone_power_db() {
     return 10.0 * std::log10(first_sidebands) + 20.0 * std::log10(std::sin(modulation_index_rad));
 }
 
+bool XBandLink::strong(double gain) const {
+    return radio_.x_band_c_n0_dbhz + carrier_power_db() + 10.0 * std::log10(gain) >= carrier_lock_dbhz;
+}
+
 std::optional<ReceivedTone> XBandLink::cycle(std::optional<ToneId> tone, const Surroundings& at) {
-    const bool earth_up = at.e_s < radio_.earth_set_after_entry_s;
-    const bool strong = radio_.x_band_c_n0_dbhz + carrier_power_db() >= carrier_lock_dbhz;
-    up_ = earth_up && strong;
-    reason_ = earth_up ? "carrier too weak" : "Earth set";
+    earth_up_ = at.gain && (radio_.earth_set_after_entry_s ? at.e_s < *radio_.earth_set_after_entry_s : at.earth_up);
+    up_ = earth_up_ && strong(*at.gain);
+    reason_ = !at.gain ? "not switched on" : earth_up_ ? "carrier too weak" : "Earth set";
 
     std::optional<ReceivedTone> ended;
     if (symbol_ && symbol_->ticks == symbol_ticks) {
         ended = decide(false, at);
-    } else if (symbol_ && (!earth_up || !tone || *tone != symbol_->tone)) {
+    } else if (symbol_ && (!earth_up_ || !tone || *tone != symbol_->tone)) {
         ended = decide(true, at);
     }
     if (ended) symbol_.reset();
-    if (tone && earth_up && !symbol_) symbol_ = Symbol{*tone, at.now, 0};
-    if (symbol_) ++symbol_->ticks;
+    if (tone && earth_up_ && !symbol_) symbol_ = Symbol{*tone, at.now, 0, 0.0};
+    if (symbol_) {
+        ++symbol_->ticks;
+        symbol_->gain_sum += *at.gain;
+    }
     return ended;
 }
 
@@ -46,15 +52,14 @@ ReceivedTone XBandLink::decide(bool broken, const Surroundings& at) {
     received.sent = symbol_->tone;
     received.sent_at = symbol_->started;
     received.doppler_hz = at.doppler_hz;
-    received.locked = up_;
-    if (broken || !up_ || radio_.tones_from_samples) return received;
-    const ToneDecision decision =
-        detect_tone(symbol_->tone.value, radio_.x_band_c_n0_dbhz + tone_power_db(), symbol_s, random_);
-    received.likelihood = decision.best_likelihood;
-    received.runner_up = ToneId{decision.second};
-    received.runner_up_likelihood = decision.second_likelihood;
+    received.lock = up_ ? CarrierLock::locked : CarrierLock::searching;
+    if (broken || !up_ || radio_.tones_from_samples.value_or(false)) return received;
+    const double c_n0_dbhz = radio_.x_band_c_n0_dbhz + 10.0 * std::log10(symbol_->gain_sum / symbol_->ticks);
+    const ToneDecision decision = detect_tone(symbol_->tone.value, c_n0_dbhz + tone_power_db(), symbol_s, random_);
+    received.best = decision.best;
+    received.likelihood = decision.best[0].likelihood;
     received.c_n0_dbhz = decision.tone_c_n0_dbhz - tone_power_db();
-    if (decision.best_likelihood >= least_likelihood) received.tone = ToneId{decision.best};
+    if (received.likelihood >= least_likelihood) received.tone = ToneId{decision.best[0].tone};
     return received;
 }
 

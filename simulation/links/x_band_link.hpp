@@ -12,8 +12,9 @@ namespace aeolis::simulation {
 ///
 /// The receiver is taken to know when symbols begin; a tone that ends before its 10 s is an erasure. Power is split as the
 /// waveform's modulation index says (mfsk.csv, docs/tones.md): at 32° the carrier has −1.4 dB of the total, the tone, both
-/// first sidebands together, −6.4 dB. The carrier is locked while Earth is up and the carrier reaches 15.8 dB-Hz, which a
-/// search over 4 s needs (CarrierSearch).
+/// first sidebands together, −6.4 dB; the scenario's C/N0 is that at an antenna's best direction, and a symbol has the mean
+/// of its gain. The carrier is locked while Earth is up and the carrier reaches 15.8 dB-Hz, which a search over 4 s needs
+/// (CarrierSearch). Earth sets behind the terrain, or when the scenario says so.
 /// Erased: a decision of less than nine tenths likelihood (ours), no lock, a broken symbol, Earth setting meanwhile.
 /// Tones sent after Earth set are not heard of at all.
 /// Where tones come from samples, symbols are only told of, not decided.
@@ -25,6 +26,8 @@ class XBandLink {
         Sclk now;
         double e_s = 0.0;
         double doppler_hz = 0.0; ///< one way, at 8.4 GHz
+        bool earth_up = true;    ///< above the terrain
+        std::optional<double> gain = 1.0; ///< of the antenna towards Earth, a power ratio; none: none is selected
     };
     /// One cycle; a symbol that ended with it. Its `start` and `end` are still to be filled in.
     std::optional<ReceivedTone> cycle(std::optional<ToneId> tone, const Surroundings& at);
@@ -33,11 +36,13 @@ class XBandLink {
         ToneId tone;
         Sclk started;
         int ticks = 0;
+        double gain_sum = 0.0; ///< over them
     };
     /// What it sends in the cycle that was last.
     const std::optional<Symbol>& sending() const { return symbol_; }
 
-    bool up() const { return up_; }
+    bool earth_up() const { return earth_up_; } ///< what an antenna on Earth can hear at all
+    bool up() const { return up_; }             ///< and the carrier strong enough
     const char* reason() const { return up_ ? "nominal" : reason_; } ///< static text
 
     static double tone_power_db(); ///< of the tone, relative to the total
@@ -45,11 +50,12 @@ class XBandLink {
 
   private:
     ReceivedTone decide(bool broken, const Surroundings& at);
+    bool strong(double gain) const;
 
     Radio radio_;
     Random random_;
     std::optional<Symbol> symbol_;
-    bool up_ = false;
+    bool earth_up_ = false, up_ = false;
     const char* reason_ = "not acquired";
 };
 

@@ -7,6 +7,7 @@ namespace {
 constexpr double earth_latitude_rad = 23.450 * degree_rad;
 constexpr double earth_longitude_rad = 48.378 * degree_rad;
 constexpr double mars_recedes_mps = 10450.0;
+constexpr double highlands_m = 6130.0; // (R + 8200 m) cos 2.0° − R, of the published set
 
 } // namespace
 
@@ -16,6 +17,13 @@ Vector3 earth_direction_M(double e_s) {
 
 double earth_elevation_rad(const Vector3& p, double e_s) {
     return std::asin(earth_direction_M(e_s).dot(p.normalized()));
+}
+
+bool earth_is_up(const Vector3& p, double e_s, double landing_radius_m) {
+    const double radius_m = p.norm(), limb_m = landing_radius_m + highlands_m;
+    const double sine = earth_direction_M(e_s).dot(p) / radius_m;
+    if (sine >= 0.0 || radius_m <= limb_m) return sine >= 0.0;
+    return sine * sine < 1.0 - limb_m * limb_m / (radius_m * radius_m); // the limb's dip is acos(limb / radius)
 }
 
 double earth_range_rate_mps(const Vector3& p, const Vector3& v, double e_s) {

@@ -23,16 +23,6 @@ constexpr double noise_gain = 0.08;              // of each hop in the running m
 
 } // namespace
 
-const char* to_text(CarrierLock lock) {
-    switch (lock) {
-    case CarrierLock::searching: return "searching";
-    case CarrierLock::locked: return "locked";
-    case CarrierLock::fluctuating: return "fluctuating";
-    case CarrierLock::coasting: return "coasting";
-    }
-    return "searching";
-}
-
 HopLayout::HopLayout(double rate)
     : rate_hz(rate), thinning(std::max(1, static_cast<int>(rate / thinned_rate_least_hz))),
       part_samples(std::max(1, static_cast<int>(std::lround(rate / thinning / parts_hz)))) {}

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "common/tone_evidence.hpp"
 #include "telemetry/mfsk/carrier_fit.hpp"
 
 #include <array>
@@ -10,15 +11,6 @@
 #include <vector>
 
 namespace aeolis::telemetry {
-
-/// The worse, the greater.
-enum class CarrierLock {
-    locked,      ///< found where it was predicted
-    fluctuating, ///< found, but only by a wider or longer look
-    coasting,    ///< not found: frequency goes on as it last did
-    searching,   ///< no carrier: the whole band is searched
-};
-const char* to_text(CarrierLock lock);
 
 /// An eighth of a second of signal with its carrier removed.
 struct CarrierHop {

@@ -10,12 +10,11 @@ namespace aeolis::telemetry {
 ToneEvidence weigh(const ToneSums& sums, double energy) {
     std::array<double, MfskWaveform::tones> log_ratio{};
     ToneEvidence evidence;
-    evidence.spectrum_db.fill(-30.0F);
     for (std::size_t tone = 0; tone < sums.size(); ++tone) {
         const double magnitude = std::abs(sums[tone]);
         log_ratio[tone] = log_bessel_i0(2.0 * magnitude) - energy;
-        float& level = evidence.spectrum_db[tone / 4];
-        level = std::max(level, static_cast<float>(10.0 * std::log10(magnitude * magnitude / std::max(energy, 1e-9) + 1e-3)));
+        std::uint8_t& level = evidence.spectrum[tone / 2];
+        level = std::max(level, spectrum_octet(10.0 * std::log10(magnitude * magnitude / std::max(energy, 1e-9) + 1e-3)));
     }
     std::array<std::uint8_t, MfskWaveform::tones> order{};
     for (std::size_t i = 0; i < order.size(); ++i)

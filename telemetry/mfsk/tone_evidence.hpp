@@ -1,21 +1,14 @@
 #pragma once
 
+#include "common/tone_evidence.hpp"
 #include "telemetry/mfsk/tone_correlator.hpp"
-
-#include <array>
-#include <cstdint>
 
 namespace aeolis::telemetry {
 
-struct ToneLikelihood {
-    std::uint8_t tone = 0;
-    double likelihood = 0.0; ///< posterior probability, all tones being equally likely before
-};
-
 /// What a symbol's worth of signal says about which tone was sent.
 struct ToneEvidence {
-    std::array<ToneLikelihood, 5> best{};                ///< the likeliest first
-    std::array<float, MfskWaveform::tones / 4> spectrum_db{}; ///< energy over noise, the greatest of each four tones
+    BestTones best{};
+    ToneSpectrum spectrum{};
     /// Natural logarithm of how much likelier the signal is with some tone than without one.
     double log_likelihood_ratio = 0.0;
 };

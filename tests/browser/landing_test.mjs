@@ -138,6 +138,61 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     }
 });
 
+/** Does what the guide says, key by key, and nothing else. */
+async function obey(page) {
+    const presses = await page.getByTestId('guide').locator('li').evaluateAll((items) =>
+        items.map((item) => ({ type: item.textContent.startsWith('type'), key: item.querySelector('kbd')?.textContent })));
+    for (const { type, key } of presses) {
+        if (type) await page.keyboard.type(key);
+        else if (key) await page.keyboard.press(key === '−' ? '-' : key === 'Esc' ? 'Escape' : key);
+        if (key === 'Enter') break; // what follows is another way
+    }
+}
+
+test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 120_000 }, async () => {
+    const server = await serve({ archive: path.join(folder.folder, 'guide.db'), more: ['--scenario', 'nominal'] });
+    try {
+        const { page, problems, text, shows } = await open(chrome, server.address);
+        await shows('guide', /Tell the vehicle where it is/);
+        for (const title of [/Tell the vehicle where it is/, /read it/]) {
+            await shows('guide', title);
+            await obey(page);
+        }
+        await shows('guide', /Let it begin/);
+        // Who types faster than the vehicle's status comes, once a second, is told what is missing; people do not.
+        await waitFor(async () => {
+            const state = await (await fetch(`${server.address}/api/v1/runs/latest/state`)).json();
+            return (state.channels ?? []).find((channel) => channel.name === 'parameters_received')?.value?.[0];
+        }, (value) => value === 1);
+        for (const title of [/Let it begin/, /read it/, /EDL_DO_EDL/]) {
+            await shows('guide', title);
+            await obey(page);
+        }
+        await shows('guide', /Nothing to do until entry/);
+        await page.keyboard.press('Escape'); // leaves the command line
+        await waitFor(async () => {
+            await obey(page);
+            await new Promise((resolve) => setTimeout(resolve, 300));
+            return page.getByTestId('pace').inputValue();
+        }, (value) => Number(value) >= 20);
+        await pace(page, 100);
+        await shows('guide', /Entry[^]*see it happen/, 60_000);
+        await obey(page);
+        await shows('guide', /You have landed it/, 90_000);
+        assert.match(await text('badge'), /touchdown/);
+
+        await page.keyboard.press('g');
+        await waitFor(() => page.getByTestId('guide').count(), (count) => count === 0);
+        await page.reload();
+        await shows('waiting', /Landed/);
+        assert.equal(await page.getByTestId('guide').count(), 0);
+        assert.deepEqual(problems, []);
+        await page.close();
+    } finally {
+        await server.stop();
+    }
+});
+
 test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown', { timeout: 40_000 }, async () => {
     const archive = path.join(folder.folder, 'killed.db');
     const first = await serve({ archive, more: ['--scenario', 'nominal_auto', '--pace', '100'] });

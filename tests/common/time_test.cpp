@@ -44,3 +44,18 @@ TEST_CASE("SCET follows SCLK through the correlated instant", "[common]") {
     const ClockCorrelation clocks{Sclk{100.0}, Scet{5'000'000}};
     CHECK(clocks.scet_of(Sclk{101.5}).microseconds == 6'500'000);
 }
+
+TEST_CASE("a time in day-of-year form is read back to the microsecond, and nothing else is taken for one", "[common]") {
+    for (const std::int64_t microseconds : {std::int64_t{0}, std::int64_t{397'501'847'400'000}, std::int64_t{-1'000'000'000'000}})
+        CHECK(ert_from_day_of_year(day_of_year_text(Ert{microseconds})) == Ert{microseconds});
+    CHECK(ert_from_day_of_year("2012-219T05:10:47") == Ert{397'501'847'000'000});
+    CHECK(ert_from_day_of_year("2012-219T05:10:47.4") == Ert{397'501'847'400'000});
+    CHECK(ert_from_day_of_year("2012-219T05:10:47.400001") == Ert{397'501'847'400'001});
+    CHECK(ert_from_day_of_year("2012-366T00:00:00").has_value());
+    for (const char* text : {"", "tomorrow", "2013-366T00:00:00", "2012-000T00:00:00", "2012-219T24:00:00", "2012-219T05:60:00",
+                             "2012-219T05:10:60", "2012-219T05:10:47.", "2012-219T05:10:47.1234567", "2012-219 05:10:47",
+                             "2012-08-06T05:10:47", "2012-219T05:10:4x", "-012-219T05:10:47"}) {
+        INFO(text);
+        CHECK_FALSE(ert_from_day_of_year(text).has_value());
+    }
+}

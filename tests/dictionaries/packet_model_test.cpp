@@ -82,6 +82,28 @@ TEST_CASE("each thing that is not supported is named with its line", "[dictionar
     found("<StringParameterType name='t'><StringDataEncoding/></StringParameterType>", "how long its text is");
 }
 
+TEST_CASE("a condition of a kind that is not supported is named with its line, wherever it stands", "[dictionary]") {
+    const auto found = [](const std::string& inside_parameter, const std::string& inside_base, const std::string& words) {
+        INFO(inside_parameter << inside_base);
+        const Read read{"<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='t'>"
+                        "<IntegerDataEncoding/></IntegerParameterType></ParameterTypeSet><ParameterSet>"
+                        "<Parameter name='p' parameterTypeRef='t'><ParameterProperties><ValidityCondition>\n" + inside_parameter +
+                        "</ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>"
+                        "<SequenceContainer name='A'><EntryList/></SequenceContainer><SequenceContainer name='B'><EntryList/>"
+                        "<BaseContainer containerRef='A'><RestrictionCriteria>" + inside_base + "</RestrictionCriteria>"
+                        "</BaseContainer></SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>"};
+        REQUIRE(read.findings.size() == 1);
+        CHECK(read.has(2, words));
+    };
+    found("<CustomAlgorithm/>", "", "CustomAlgorithm is not supported as a condition: it is taken as false");
+    found("", "<CustomAlgorithm/>", "CustomAlgorithm is not supported as a condition: it is taken as false");
+    found("", "<NextContainer containerRef='A'/>", "NextContainer is not supported as a condition");
+    found("", "<Comparison parameterRef='p' value='1'/><NextContainer containerRef='A'/>",
+          "NextContainer beside another condition is not supported: it is left out");
+    found("<Comparison parameterRef='gone' value='1'/>", "", "there is no parameter 'gone'");
+    found("<Comparison parameterRef='p' value='1' comparisonOperator='~'/>", "", "operator '~' is unknown");
+}
+
 TEST_CASE("types of types without end are refused, not followed", "[dictionary]") {
     const Read base{mission("<IntegerParameterType name='t' baseType='t'/>")};
     REQUIRE(base.model);

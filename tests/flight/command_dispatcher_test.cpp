@@ -3,6 +3,7 @@
 #include "common/space_packet.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
+#include "tests/support/telecommands.hpp"
 
 #include <algorithm>
 #include <random>
@@ -13,10 +14,20 @@ using namespace aeolis::flight;
 
 namespace {
 
-std::vector<std::uint8_t> telecommand(Opcode opcode, std::size_t argument_octets, std::uint16_t count = 3) {
+std::vector<std::uint8_t> packet_of(Opcode opcode, std::size_t argument_octets, std::uint16_t count = 3) {
     std::vector<std::uint8_t> packet(tc_overhead_octets + argument_octets);
     seal_tc_packet(packet, Apid{1}, count, opcode);
     return packet;
+}
+std::vector<std::uint8_t> telecommand(Opcode opcode, std::size_t argument_octets, std::uint16_t count = 3) {
+    return test::cltu_of(packet_of(opcode, argument_octets, count));
+}
+std::vector<std::uint8_t> unlock() {
+    return test::cltu_of(std::vector<std::uint8_t>{0x00}, {true, true, spacecraft_id, telecommand_channel, 0});
+}
+/// In sequence.
+std::vector<std::uint8_t> no_op_in_frame(std::uint8_t sequence) {
+    return test::cltu_of(packet_of(command::NO_OP::opcode, 0), {false, false, spacecraft_id, telecommand_channel, sequence});
 }
 
 UplinkReceived received(const std::vector<std::uint8_t>& octets) {
@@ -49,8 +60,9 @@ TEST_CASE("NO_OP is accepted and executed", "[commands][R44]") {
 TEST_CASE("do edl goes to its one owner, and nothing is claimed before the owner has answered", "[commands][R5][R23]") {
     Fixture f;
     f.handle(received(telecommand(command::EDL_DO_EDL::opcode, 0, 9)));
-    REQUIRE(f.recorder.out.sent().size() == 1);
+    REQUIRE(f.recorder.out.sent().size() == 2);
     CHECK(f.recorder.out.sent()[0].to == ModuleId::edl);
+    CHECK(f.recorder.out.sent()[1].to == ModuleId::edl_comm);
     REQUIRE(f.recorder.sent<DoEdlCommand>().size() == 1);
     CHECK(f.recorder.sent<DoEdlCommand>()[0].tag.count == 9);
     f.handle(CommandOutcome{{command::EDL_DO_EDL::opcode, 9}, CommandRefusal::no_parameters});
@@ -65,7 +77,7 @@ TEST_CASE("an unknown opcode, a wrong length and a bad CRC are refused with thei
     f.handle(received(telecommand(command::EDL_DO_EDL::opcode, 4)));
     CHECK(f.recorder.events<evr::COMMAND_REFUSED>() == 1);
     auto damaged = telecommand(command::NO_OP::opcode, 0);
-    damaged.back() ^= 1;
+    damaged[5] ^= 1;
     f.handle(received(damaged));
     CHECK(f.recorder.events<evr::UPLINK_UNREADABLE>() == 1);
 }
@@ -88,11 +100,43 @@ TEST_CASE("any octets as uplink end in exactly one answer", "[commands][R4]") {
     for (int round = 0; round < 5000; ++round) {
         std::vector<std::uint8_t> octets(random() % 300);
         for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
-        if (round % 2 && octets.size() >= tc_overhead_octets)
+        if (round % 2 && octets.size() >= tc_overhead_octets && octets.size() < 200) {
             seal_tc_packet(octets, Apid{1}, 0, Opcode{static_cast<std::uint16_t>(0x0100 + random() % 8)});
+            octets = test::cltu_of(octets, {random() % 2 == 0, random() % 4 == 0, spacecraft_id, telecommand_channel, static_cast<std::uint8_t>(random())});
+        }
         Fixture f;
         f.handle(received(octets));
         REQUIRE(f.recorder.out.sent().size() >= 1);
         REQUIRE(f.recorder.out.dropped() == 0);
     }
+}
+
+TEST_CASE("frames in sequence are taken once each, and the report says which comes next", "[commands][R44]") {
+    Fixture f;
+    f.handle(received(no_op_in_frame(0)));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0); // not before ground has unlocked the channel
+    CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
+    f.handle(received(unlock()));
+    f.handle(received(no_op_in_frame(0)));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 1);
+    REQUIRE(f.recorder.sent<UplinkStatus>().size() == 1);
+    CHECK(f.recorder.sent<UplinkStatus>()[0].clcw == word_of({.farm_b = 1, .expected = 1}));
+    f.handle(received(no_op_in_frame(0)));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);
+    CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
+    f.handle(received(no_op_in_frame(2)));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);
+    CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
+    REQUIRE(f.recorder.sent<UplinkStatus>().size() == 1);
+    CHECK(f.recorder.sent<UplinkStatus>()[0].clcw == word_of({.retransmit = true, .farm_b = 1, .expected = 1}));
+    f.handle(received(no_op_in_frame(1)));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 1);
+    CHECK(f.recorder.sent<UplinkStatus>()[0].clcw == word_of({.farm_b = 1, .expected = 2}));
+}
+
+TEST_CASE("a frame for another spacecraft is not acted on", "[commands][R23]") {
+    Fixture f;
+    f.handle(received(test::cltu_of(packet_of(command::NO_OP::opcode, 0), {true, false, spacecraft_id + 1, telecommand_channel, 0})));
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);
+    CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
 }

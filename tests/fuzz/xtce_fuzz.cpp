@@ -2,7 +2,7 @@
 // said with a line of the text; what is left decodes any octets. The first octet says where in the text a packet begins.
 #include "dictionaries/xtce/packet_model.hpp"
 #include "dictionaries/xtce/space_system.hpp"
-#include "telemetry/container_decoder.hpp"
+#include "telemetry/other_mission.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -25,5 +25,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t start = std::min<std::size_t>(data[0] * 16U, text.size());
     const auto contents = decoder.decode(std::span{data + 1 + start, text.size() - start});
     for (const auto& value : contents.values) (void)telemetry::datum_text(value.calibrated);
+    const telemetry::OtherMission mission{*model, 1};
+    telemetry::Decoded decoded;
+    if (!mission.decode(std::span{data + 1 + start, text.size() - start}, decoded) &&
+        decoded.value.size() != mission.dictionary().packets[decoded.packet].fields.size())
+        std::abort();
     return 0;
 }

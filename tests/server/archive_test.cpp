@@ -21,7 +21,7 @@ Batch units(Sequence first, std::size_t count) {
         unit.seq = first + i;
         unit.apid = test::status_apid;
         unit.packet = std::uint16_t{1};
-        unit.link = Link::uhf_live;
+        unit.link = "uhf_live";
         unit.source = Source::realtime;
         unit.sclk = Sclk{static_cast<double>(unit.seq)};
         const auto octets = test::status_packet(static_cast<std::uint16_t>(unit.seq), unit.sclk.seconds, 1);
@@ -83,6 +83,14 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         const auto opened = Archive::open(file);
         REQUIRE_FALSE(opened.ok());
         CHECK(opened.error().message.find("newer Aeolis") != std::string::npos);
+    }
+    SECTION("a mark without tables") {
+        const auto file = folder / "marked.db";
+        {
+            auto marked = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(marked->execute("PRAGMA application_id = 1095061324").ok());
+        }
+        CHECK_FALSE(Archive::open(file).ok());
     }
     SECTION("a folder, and a folder that is not there") {
         CHECK_FALSE(Archive::open(folder / "").ok());

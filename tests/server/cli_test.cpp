@@ -3,6 +3,7 @@
 #include "flight/load.hpp"
 #include "server/api/json.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/kernels.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
@@ -193,7 +194,7 @@ TEST_CASE("decode prints a row a packet of our own, whatever carried it, and say
     const dictionary::Packet* kind = ours.packet("EdlStatus");
     REQUIRE(kind != nullptr);
     std::vector<std::uint8_t> packet(kind->octets), pltu(pltu_octets_max);
-    seal_tm_packet(packet, kind->apid, 7, Sclk{5.0}, ours.id);
+    seal_tm_packet(packet, kind->apid, 7, Sclk{397501174.5}, ours.id);
     pltu.resize(write_pltu({.spacecraft = 76}, packet, pltu));
     const auto write = [&](const char* name, const std::vector<std::uint8_t>& octets) {
         std::ofstream{directory / name, std::ios::binary}.write(reinterpret_cast<const char*>(octets.data()),
@@ -206,12 +207,56 @@ TEST_CASE("decode prints a row a packet of our own, whatever carried it, and say
         const auto ended = run(program(), arguments);
         INFO(ended.text);
         CHECK(ended.code == 0);
-        CHECK_THAT(ended.text, Catch::Contains("index,apid,count,time,values\n0,16,7,,packet_version=0|0,"));
-        CHECK_THAT(ended.text, Catch::Contains(",sclk_coarse=5|5,"));
+        CHECK_THAT(ended.text, Catch::Contains("index,apid,count,time,values\n0,16,7,397501174.5,packet_version=0|0,"));
+        CHECK_THAT(ended.text, Catch::Contains(",sclk_coarse=397501174|397501174,"));
+    }
+    const auto write_text = [&](const char* name, const std::string& text) { return write(name, {text.begin(), text.end()}); };
+    const std::string leaps = write_text("leaps.tls", tests::leap_second_kernel);
+    const std::string clock = write_text("clock.tsc", "\\begindata\n" + tests::landing_clock);
+    const auto timed = run(program(), xtce + bare + " --lsk " + leaps + " --sclk " + clock);
+    INFO(timed.text);
+    CHECK(timed.code == 0);
+    CHECK_THAT(timed.text, Catch::Contains("0,16,7,2012-219T05:10:47.900,packet_version"));
+    for (const auto& [arguments, says] : {std::pair{" --sclk " + clock, std::string{"--sclk requires --lsk"}},
+                                          {" --lsk " + clock, "clock.tsc: it says no DELTET/DELTA_T_A"},
+                                          {" --lsk " + leaps + " --sclk " + leaps, "leaps.tls: it says no SCLK_DATA_TYPE_"},
+                                          {" --lsk " + bare, "bare:1: it has no line \\begindata"},
+                                          {" --lsk " + leaps + " --sclk " + clock + " --partition 2", "--partition 2: "}}) {
+        const auto ended = run(program(), xtce + bare + arguments);
+        INFO(arguments << ": " << ended.text);
+        CHECK(ended.code == 2);
+        CHECK_THAT(ended.text, Catch::Contains(says));
     }
     pltu[20] ^= 1;
     const auto damaged = run(program(), xtce + write("damaged", pltu) + " --format pltu");
     CHECK(damaged.code == 1);
     CHECK_THAT(damaged.text, Catch::Contains("1 with a wrong CRC"));
+    std::filesystem::remove_all(directory);
+}
+
+TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them", "[cli][tones][R31]") {
+    if (program() == nullptr) return;
+    const auto directory = std::filesystem::temp_directory_path() / ("aeolis_tones_cli_" + std::to_string(getpid()));
+    std::filesystem::create_directories(directory);
+    const std::string samples = " '" + (directory / "s.cf32").string() + "' ", predict = " '" + (directory / "p.csv").string() + "' ";
+    const std::string simulate = "tones simulate --scenario nominal_auto --case 3 --from 60 --length 70 --out" + samples;
+    const auto made = run(program(), simulate + "--predict-out" + predict);
+    INFO(made.text);
+    REQUIRE(made.code == 0);
+    const auto decoded = run(program(), "tones decode --rate 16384 --format cf32 --start 60 --json --samples" + samples + "--predict" + predict);
+    INFO(decoded.text);
+    CHECK(decoded.code == 0);
+    int symbols = 0;
+    std::istringstream lines{decoded.text};
+    for (std::string line; std::getline(lines, line); ++symbols) {
+        google::protobuf::Struct symbol;
+        REQUIRE(aeolis::server::from_json(line, symbol));
+        CHECK(symbol.fields().at("tone").has_number_value());
+        CHECK(std::abs(symbol.fields().at("doppler_hz").number_value()) > 100e3); // the predict is put back
+        CHECK(symbol.fields().at("spectrum_db").list_value().values_size() == 128);
+    }
+    CHECK(symbols >= 3);
+    CHECK(run(program(), simulate + "--predict-out" + predict + "--predict" + predict).code == 2);
+    CHECK(run(program(), simulate).code == 2); // some hundreds of kilohertz are outside of the samples
     std::filesystem::remove_all(directory);
 }

@@ -1,4 +1,6 @@
 #include "common/bytes.hpp"
+#include "common/cltu.hpp"
+#include "common/tc_frame.hpp"
 #include "server/gateway/command_gateway.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
@@ -30,15 +32,26 @@ struct Station {
     CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution())};
     std::vector<archive::StageRecord> stages;
 
-    CommandGateway::Submitted send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
+    v1::CommandReply send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
+    /// The packet in the one unit that the station is to radiate.
+    std::vector<std::uint8_t> radiated() {
+        const auto units = gateway.take_uplinks();
+        REQUIRE(units.size() == 1);
+        std::vector<std::uint8_t> information(cltu_information_octets_max);
+        const auto octets = read_cltu(units[0], information);
+        REQUIRE(octets);
+        const auto frame = read_tc_frame(std::span{information}.first(*octets));
+        REQUIRE(frame);
+        return {frame->data.begin(), frame->data.end()};
+    }
     std::string refusal(const v1::CommandRequest& asked) {
         const auto submitted = send(asked);
-        CHECK_FALSE(submitted.reply.accepted());
-        CHECK(submitted.reply.command() == 0);
-        CHECK(submitted.reply.request() == 7);
-        CHECK(submitted.packet.empty());
+        CHECK_FALSE(submitted.accepted());
+        CHECK(submitted.command() == 0);
+        CHECK(submitted.request() == 7);
+        CHECK(gateway.take_uplinks().empty());
         CHECK(stages.empty());
-        return submitted.reply.reason();
+        return submitted.reason();
     }
     const archive::StageRecord* latest(const std::string& stage) const {
         const archive::StageRecord* found = nullptr;
@@ -101,13 +114,14 @@ TEST_CASE("parameters come from ground's solution and leave the station as one p
     auto asked = request("EDL_SET_PARAMETERS");
     asked.set_from_solution(true);
     const auto submitted = station.send(asked);
-    REQUIRE(submitted.reply.accepted());
-    CHECK(submitted.reply.command() == 1);
-    CHECK(submitted.reply.octets().size() == submitted.packet.size() * 2);
-    const auto telecommand = read_tc_packet(submitted.packet);
+    REQUIRE(submitted.accepted());
+    CHECK(submitted.command() == 1);
+    const auto packet = station.radiated();
+    CHECK(submitted.octets().size() == packet.size() * 2);
+    const auto telecommand = read_tc_packet(packet);
     REQUIRE(telecommand);
     CHECK(telecommand->primary.count == 0);
-    const auto held = commands::decode(*tests::shipped_dictionary().command("EDL_SET_PARAMETERS"), submitted.packet);
+    const auto held = commands::decode(*tests::shipped_dictionary().command("EDL_SET_PARAMETERS"), packet);
     REQUIRE(held);
     CHECK(std::ranges::find((*held), commands::NamedValue{"entry_sclk", 397501715.0}) != held->end());
     for (const char* stage : {"queued", "authorised", "released", "radiated"}) {
@@ -115,7 +129,7 @@ TEST_CASE("parameters come from ground's solution and leave the station as one p
         REQUIRE(station.latest(stage) != nullptr);
         CHECK(station.latest(stage)->status == "ok");
     }
-    CHECK(station.stages.front().octets == submitted.packet);
+    CHECK(station.stages.front().octets == packet);
     CHECK_THAT(station.stages.front().arguments, Catch::Contains("entry_sclk=397501715"));
     for (const char* stage : {"received", "accepted", "executed", "verified"}) {
         INFO(stage);
@@ -126,8 +140,8 @@ TEST_CASE("parameters come from ground's solution and leave the station as one p
 
 TEST_CASE("a stage is reached by the event that shows it, for that command only", "[gateway][R44]") {
     Station station;
-    REQUIRE(station.send(request("NO_OP")).reply.accepted());
-    REQUIRE(station.send(request("NO_OP")).reply.accepted());
+    REQUIRE(station.send(request("NO_OP")).accepted());
+    REQUIRE(station.send(request("NO_OP")).accepted());
     const auto opcode = tests::shipped_dictionary().command("NO_OP")->opcode.value;
     station.stages.clear();
     station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", opcode}, {"count", 1}}), true, now,
@@ -146,7 +160,7 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     go.set_confirmation("EDL_DO_EDL");
     SECTION("not known") {
         Station station;
-        CHECK(station.send(go).reply.accepted());
+        CHECK(station.send(go).accepted());
         CHECK_THAT(station.latest("authorised")->evidence, Catch::Contains("left to flight"));
     }
     SECTION("known") {
@@ -157,14 +171,115 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     SECTION("known from the recording only: that is the past") {
         Station station;
         station.gateway.receive(packet_of("EdlStatus", {}), false, now, station.stages);
-        CHECK(station.send(go).reply.accepted());
+        CHECK(station.send(go).accepted());
     }
 }
 
 TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {
     Station station;
-    REQUIRE(station.send(request("NO_OP")).reply.accepted());
+    REQUIRE(station.send(request("NO_OP")).accepted());
     station.gateway.pass(Ert{now.microseconds + 3600LL * 1'000'000}, station.stages);
     CHECK(station.latest("accepted")->status == "unknown");
     CHECK(station.latest("executed")->status == "unknown");
+}
+
+TEST_CASE("a frame that the vehicle misses is radiated again, and the history says so", "[gateway][R44]") {
+    Station station;
+    const auto report = [&](bool retransmit, std::uint8_t expected, Ert at) {
+        std::array<std::uint8_t, clcw_octets> clcw{};
+        write_clcw({.retransmit = retransmit, .expected = expected}, clcw);
+        station.gateway.receive(packet_of("CommStatus", {{"clcw", read_bits(clcw, 0, 32)}}), true, at, station.stages);
+    };
+    report(false, 0, now);
+    REQUIRE(station.send(request("NO_OP")).accepted());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("sequence-controlled"));
+    REQUIRE(station.send(request("NO_OP")).accepted());
+    CHECK(station.gateway.take_uplinks().size() == 2);
+    report(true, 0, Ert{now.microseconds + 5'000'000});
+    CHECK(station.gateway.take_uplinks().size() == 2);
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::StartsWith("transmission 2"));
+    CHECK(station.latest("received")->status == "pending");
+    report(false, 2, Ert{now.microseconds + 15'000'000});
+    CHECK(station.latest("received")->status == "ok");
+    CHECK_THAT(station.latest("received")->evidence, Catch::Contains("CLCW"));
+    CHECK(station.latest("accepted")->status == "pending"); // a frame taken is no command accepted
+}
+
+TEST_CASE("a vehicle that is not heard gets the expedited service, unless the controller asks otherwise", "[gateway][R44]") {
+    Station station;
+    REQUIRE(station.send(request("NO_OP")).accepted());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("expedited (BD)"));
+    auto asked = request("NO_OP");
+    asked.set_service("AD");
+    REQUIRE(station.send(asked).accepted());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("sequence-controlled (AD)"));
+    asked.set_service("XY");
+    CHECK_THAT(station.send(asked).reason(), Catch::Contains("unknown service 'XY'"));
+}
+
+TEST_CASE("a dry run says what would happen, with every check and its values, and leaves all as it is", "[gateway][R44]") {
+    Station station;
+    auto asked = request("EDL_SET_PARAMETERS");
+    asked.set_from_solution(true);
+    asked.set_dry_run(true);
+    const auto preview = station.send(asked);
+    INFO(preview.DebugString());
+    CHECK(preview.dry_run());
+    CHECK(preview.command() == 0);
+    CHECK(station.stages.empty());
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(preview.arguments(), Catch::Contains("parachute_speed_mps"));
+    CHECK(preview.service() == "BD");
+    CHECK_FALSE(preview.octets().empty());
+    CHECK(preview.arrives() == day_of_year_text(Scet{now.microseconds}));
+    asked.set_dry_run(false);
+    const auto sent = station.send(asked);
+    CHECK(sent.octets() == preview.octets());
+    CHECK(sent.accepted() == preview.accepted());
+    CHECK(sent.command() == 1);
+
+    auto hazardous = request("EDL_DO_EDL");
+    hazardous.set_dry_run(true);
+    const auto refused = station.send(hazardous);
+    CHECK_FALSE(refused.accepted());
+    CHECK_THAT(refused.reason(), Catch::Contains("armed"));
+    CHECK(refused.preconditions_size() == static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()));
+}
+
+TEST_CASE("a command with a time leaves then, a held one when it is released, a cancelled one never", "[gateway][R44]") {
+    Station station;
+    const auto later = [](double seconds) { return Ert{now.microseconds + static_cast<std::int64_t>(seconds * 1.0e6)}; };
+    const auto act = [&](std::uint64_t number, const std::string& action) {
+        v1::CommandRequest asked;
+        asked.set_action(action);
+        asked.set_number(number);
+        return station.send(asked);
+    };
+    auto timed = request("NO_OP");
+    timed.set_release_at(day_of_year_text(later(60.0)));
+    REQUIRE(station.send(timed).command() == 1);
+    auto held = request("NO_OP");
+    held.set_hold(true);
+    REQUIRE(station.send(held).command() == 2);
+    REQUIRE(station.send(held).command() == 3);
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("held until a controller releases it"));
+
+    station.gateway.pass(later(59.0), station.stages);
+    CHECK(station.gateway.take_uplinks().empty());
+    station.gateway.pass(later(60.5), station.stages);
+    CHECK(station.gateway.take_uplinks().size() == 1);
+
+    CHECK(act(2, "release").accepted());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    CHECK(act(3, "cancel").accepted());
+    CHECK(station.latest("released")->status == "failed");
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("never left Earth"));
+    CHECK_THAT(act(3, "release").reason(), Catch::Contains("does not wait"));
+    CHECK_THAT(act(2, "launch").reason(), Catch::Contains("unknown action 'launch'"));
+
+    timed.set_release_at(day_of_year_text(Ert{now.microseconds - 1'000'000}));
+    CHECK_THAT(station.send(timed).reason(), Catch::Contains("is past"));
+    timed.set_release_at("tomorrow");
+    CHECK_THAT(station.send(timed).reason(), Catch::Contains("'tomorrow' is no time as"));
 }

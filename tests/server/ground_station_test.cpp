@@ -33,17 +33,17 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
         const auto pltu = pltu_of(i, packet_of(i));
         air.insert(air.end(), pltu.begin(), pltu.end());
     }
-    GroundStation station;
+    GroundStation station{0.0};
     std::vector<std::vector<std::uint8_t>> found;
     Ert last;
     for (std::size_t at = 0; at < air.size(); at += 16) {
         const auto end = std::min(at + 16, air.size());
         simulation::CycleReport landed;
-        landed.octets.push_back({simulation::LinkId::uhf_live,
+        landed.octets.push_back({simulation::uhf_live_link,
                                  Ert{static_cast<std::int64_t>(at)},
                                  {air.begin() + static_cast<std::ptrdiff_t>(at), air.begin() + static_cast<std::ptrdiff_t>(end)}});
-        for (const auto& packet : station.receive(landed).packets) {
-            CHECK(packet.link == simulation::LinkId::uhf_live);
+        for (const auto& packet : station.receive(landed, Ert{1000}).packets) {
+            CHECK(packet.link == simulation::uhf_live_link);
             CHECK(packet.ert.microseconds == static_cast<std::int64_t>(at));
             found.push_back(packet.octets);
         }
@@ -51,30 +51,57 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
     REQUIRE(found.size() == 20);
     for (std::uint16_t i = 0; i < 20; ++i)
         CHECK(found[i] == packet_of(i));
-    CHECK(station.uhf().frames == 20);
-    CHECK(station.uhf().missing_frames == 0);
+    CHECK(station.links().at(0).pltus.counters().frames == 20);
+    CHECK(station.links().at(0).pltus.counters().missing_frames == 0);
 }
 
 TEST_CASE("a spoilt frame costs its packets and no others, and the gap is counted", "[station]") {
-    GroundStation station;
+    GroundStation station{0.0};
     simulation::CycleReport landed;
     for (std::uint8_t i = 0; i < 5; ++i) {
         auto pltu = pltu_of(i, packet_of(i));
         if (i == 2) pltu[30] ^= 0x40;
-        landed.octets.push_back({simulation::LinkId::uhf_live, Ert{i}, pltu});
+        landed.octets.push_back({simulation::uhf_live_link, Ert{i}, pltu});
     }
-    CHECK(station.receive(landed).packets.size() == 4);
-    CHECK(station.uhf().bad_crc == 1);
-    CHECK(station.uhf().missing_frames == 1);
+    CHECK(station.receive(landed, Ert{1000}).packets.size() == 4);
+    CHECK(station.links().at(0).pltus.counters().bad_crc == 1);
+    CHECK(station.links().at(0).pltus.counters().missing_frames == 1);
 }
 
 TEST_CASE("what comes by other ways passes through the station as it is", "[station]") {
-    GroundStation station;
+    GroundStation station{0.0};
     simulation::CycleReport landed;
-    landed.packets.push_back({simulation::LinkId::relay, Ert{7}, packet_of(1)});
+    landed.packets.push_back({simulation::relay_link, Ert{7}, packet_of(1)});
     landed.tones.emplace_back();
-    const auto& report = station.receive(landed);
+    const auto& report = station.receive(landed, Ert{1000});
     REQUIRE(report.packets.size() == 1);
-    CHECK(report.packets[0].link == simulation::LinkId::relay);
+    CHECK(report.packets[0].link == simulation::relay_link);
     CHECK(report.tones.size() == 1);
+}
+
+TEST_CASE("each link is received and counted by itself", "[station]") {
+    GroundStation station{0.0};
+    simulation::CycleReport landed;
+    landed.octets.push_back({simulation::uhf_live_link, Ert{1}, pltu_of(0, packet_of(0))});
+    landed.octets.push_back({{"uhf_mro", false}, Ert{1}, pltu_of(0, packet_of(0))});
+    landed.octets.push_back({{"uhf_mro", false}, Ert{1}, pltu_of(2, packet_of(2))});
+    CHECK(station.receive(landed, Ert{1}).packets.size() == 3);
+    REQUIRE(station.links().size() == 2);
+    CHECK(station.links()[1].link.name == "uhf_mro");
+    CHECK(station.links()[0].pltus.counters().missing_frames == 0);
+    CHECK(station.links()[1].pltus.counters().missing_frames == 1);
+}
+
+TEST_CASE("a damaged length holds the next frame back no longer than the link is up", "[station]") {
+    GroundStation station{0.0};
+    simulation::CycleReport landed;
+    auto damaged = pltu_of(0, packet_of(0));
+    damaged[5] |= 0x07; // the frame seems to go on for 2 kB
+    const auto next = pltu_of(1, packet_of(1));
+    damaged.insert(damaged.end(), next.begin(), next.end());
+    landed.octets.push_back({simulation::uhf_live_link, Ert{1}, damaged});
+    CHECK(station.receive(landed, Ert{1}).packets.empty());
+    simulation::CycleReport down;
+    down.links.push_back({simulation::uhf_live_link, Ert{2}, false, "plasma blackout"});
+    CHECK(station.receive(down, Ert{2}).packets.size() == 1);
 }

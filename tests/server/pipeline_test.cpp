@@ -1,4 +1,5 @@
 #include "server/archive/reader.hpp"
+#include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
@@ -46,7 +47,7 @@ struct Ground {
     }
     /// A bit of everything.
     void feed() {
-        REQUIRE(pipeline.accept({simulation::LinkId::uhf_live, false, Ert{5}, true, "nominal"}).ok());
+        REQUIRE(pipeline.accept({simulation::uhf_live_link, Ert{5}, true, "nominal"}).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(0, 1000.0, 9000.0F, 5900.0F))).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(1, 1001.0, {}, 6100.0F))).ok()); // in alarm
         REQUIRE(pipeline.accept(live(status_packet(0, 1001.0, 2))).ok());
@@ -58,6 +59,10 @@ struct Ground {
         tone.end = Ert{30'000'000};
         tone.tone = ToneId{9};
         tone.likelihood = 0.999;
+        tone.lock = CarrierLock::fluctuating;
+        tone.best = BestTones{{{9, 0.999}, {8, 0.0004}, {200, 0.0003}, {0, 0.0002}, {255, 0.0001}}};
+        tone.spectrum.emplace().fill(60);
+        (*tone.spectrum)[4] = 111;
         REQUIRE(pipeline.accept(tone).ok());
         archive::StageRecord stage;
         stage.command = 1;
@@ -220,6 +225,64 @@ TEST_CASE("the tone's vehicle time is its start less the light time", "[pipeline
     REQUIRE(tones->tones_size() == 1);
     CHECK(tones->tones(0).tone().sclk() == Approx(110.0)); // 20 s after the correlation at SCLK 100, less 10 s
     CHECK(tones->tones(0).tone().meaning() == "parachute deployed");
+}
+
+TEST_CASE("a tone's evidence is kept and read back: lock, the best five, the spectrum", "[pipeline][archive][R31]") {
+    Ground ground;
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const auto list = ground.reader().tones(ground.run(), {});
+    REQUIRE(list.ok());
+    const v1::Tone& tone = list->tones(0).tone();
+    CHECK(tone.lock() == "fluctuating");
+    CHECK_FALSE(tone.locked());
+    REQUIRE(tone.best_size() == 5);
+    CHECK(tone.best(0).tone() == 9);
+    CHECK(tone.best(4).tone() == 255);
+    CHECK(tone.best(2).likelihood() == 0.0003);
+    CHECK(tone.runner_up() == 8);
+    REQUIRE(tone.spectrum().size() == 128);
+    CHECK(tone.spectrum()[4] == 111);
+    CHECK(tone.spectrum()[5] == 60);
+}
+
+TEST_CASE("a tone that was drawn has no spectrum", "[pipeline][archive][R31]") {
+    Ground ground;
+    simulation::ReceivedTone tone;
+    tone.best = BestTones{};
+    REQUIRE(ground.pipeline.accept(tone).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    CHECK_FALSE(ground.items().front().tone().has_spectrum());
+    CHECK_FALSE(ground.reader().tones(ground.run(), {})->tones(0).tone().has_spectrum());
+}
+
+TEST_CASE("an archive of the first schema is read as it is, and is brought up to date when it is opened for writing",
+          "[pipeline][archive]") {
+    Ground ground;
+    ground.feed();
+    REQUIRE(ground.pipeline.commit().ok());
+    const archive::RunId run = ground.run();
+    ground.pipeline.abandon();
+    { const auto closed = std::move(ground.archive); }
+    const auto database = [&](archive::sqlite::Mode mode) {
+        return std::move(archive::sqlite::Database::open(ground.file.string(), mode)).value();
+    };
+    REQUIRE(database(archive::sqlite::Mode::read_write_create)
+                .execute("DROP VIEW tone_evidence_log; DROP TABLE tone_evidence; DROP TABLE tone_likelihoods; DROP TABLE link_totals;"
+                         "PRAGMA user_version = 1")
+                .ok());
+
+    const auto old = ground.reader().tones(run, {});
+    REQUIRE(old.ok());
+    CHECK(old->tones(0).tone().tone() == 9);
+    CHECK(old->tones(0).tone().lock().empty());
+    CHECK(old->tones(0).tone().best_size() == 0);
+    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("PRAGMA user_version") == 1);
+
+    REQUIRE(Archive::open(ground.file).ok());
+    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("PRAGMA user_version") == archive::schema_version);
+    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("SELECT count(*) FROM tone_evidence_log") == 0);
+    CHECK(ground.reader().tones(run, {})->tones(0).tone().tone() == 9);
 }
 
 TEST_CASE("commits come by time or by number, never empty", "[pipeline]") {

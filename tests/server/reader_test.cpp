@@ -236,3 +236,71 @@ TEST_CASE("an archive that no program has open can be read", "[reader]") {
     REQUIRE(reader.ok());
     CHECK(reader->runs()->runs_size() == 1);
 }
+
+TEST_CASE("one bit that differs between live and recorded is found, with the octets of both", "[reader][R41]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    auto archive = std::move(Archive::open(folder / "a.db")).value();
+    pipeline::Pipeline pipeline(archive, dictionary);
+    REQUIRE(pipeline.begin(archive::RunStart{}).ok());
+    constexpr std::uint16_t packets = 20;
+    const auto packet = [](std::uint16_t i) { return navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F); };
+    for (std::uint16_t i = 0; i < 12; ++i) REQUIRE(pipeline.accept(live(packet(i))).ok()); // of 20 that were recorded
+    REQUIRE(pipeline.accept(simulation::ReceivedPacket{{"uhf_mro", false}, Ert{1}, packet(3)}).ok());              // the same over another orbiter
+    REQUIRE(pipeline.commit().ok());
+    auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
+    auto early = reader.proof(RunId{1});
+    REQUIRE(early.ok());
+    CHECK_FALSE(early->recording_complete());
+    REQUIRE(early->streams_size() == 1);
+    CHECK(early->streams(0).pending() == 12);
+    CHECK(early->streams(0).missing_in_recording() == 0);
+    archive::PacketQuery pending;
+    pending.verdict = "pending";
+    CHECK(reader.packets(RunId{1}, pending)->packets_size() == 13);
+
+    for (std::uint16_t i = 0; i < packets; ++i) {
+        if (i == 5) continue; // lost on board
+        auto octets = packet(i);
+        if (i == 7) {
+            octets = navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F);
+            octets[tm_data_offset_octets + 1] ^= 0x10;
+            const auto sealed = octets;
+            seal_tm_packet(octets, read_primary_header(sealed)->apid, i, Sclk{1000.0 + i}, dictionary.id);
+        }
+        REQUIRE(pipeline.accept(recorded(octets)).ok());
+    }
+    pipeline.relay_progress(1.0);
+    pipeline.link_totals({{"uhf_live", {.octets = 100, .frames = 3, .bad_crc = 1, .bad_header = 0, .skipped_octets = 4, .gaps = 1, .missing_frames = 2, .repeated_frames = 0}, 12.5}});
+    REQUIRE(pipeline.commit().ok());
+
+    const auto report = reader.proof(RunId{1});
+    REQUIRE(report.ok());
+    CHECK(report->recording_complete());
+    REQUIRE(report->streams_size() == 1);
+    const auto& stream = report->streams(0);
+    CHECK(stream.realtime() == 12);
+    CHECK(stream.identical() == 10);
+    CHECK(stream.differs() == 1);
+    CHECK(stream.missing_in_recording() == 1);
+    CHECK(stream.recorded() == 19);
+    CHECK(stream.never_seen_live() == 8);
+    REQUIRE(report->links_size() == 3);
+    CHECK(report->links(2).name() == "uhf_mro");
+    CHECK(report->links(2).identical() == 1);
+    REQUIRE(report->counters_size() == 1);
+    CHECK(report->counters(0).missing_frames() == 2);
+
+    archive::PacketQuery differing;
+    differing.verdict = "differs";
+    const auto found = reader.packets(RunId{1}, differing);
+    REQUIRE(found->packets_size() == 2); // the live one and the recorded one
+    const auto& one = found->packets(0);
+    CHECK(one.unit().source() == v1::SOURCE_REALTIME);
+    CHECK(one.hex() != one.other_hex());
+    CHECK(one.other_hex() == found->packets(1).hex());
+    archive::PacketQuery missing;
+    missing.verdict = "missing_in_recording";
+    REQUIRE(reader.packets(RunId{1}, missing)->packets_size() == 1);
+    CHECK(reader.packets(RunId{1}, missing)->packets(0).unit().sclk() == 1005.0);
+}

@@ -1,9 +1,11 @@
 #include "server/api/json.hpp"
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/landing_report.hpp"
+#include "telemetry/packet_stream.hpp"
 #include "tests/server/running_server.hpp"
 
 #include <google/protobuf/struct.pb.h>
+#include <map>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -63,4 +65,71 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
         CHECK(rehearsal.proof().holds());
         CHECK(rehearsal.landing().counters().resets == 1);
     }
+}
+
+TEST_CASE("over three orbiters a unit keeps one identity, and the recording comes down in passes", "[rehearsal][relay][R29][R41]") {
+    auto scenario = test::shipped_scenario("relay_passes");
+    scenario.radio.delivery_restarts_after_touchdown_s = {200.0};
+    Rehearsal rehearsal{scenario, 2, 0, tests::shipped_dictionary()};
+    telemetry::UnitRegister units;
+    std::map<std::string, std::uint64_t> seen;
+    std::uint64_t again = 0;
+    while (!rehearsal.finished())
+        for (const auto& packet : rehearsal.step().packets) {
+            ++seen[packet.link.name];
+            if (packet.link.recorded) continue;
+            again += units.add(packet.octets, telemetry::Path::realtime) == telemetry::Standing::again;
+        }
+    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(seen["uhf_live"] > 5000);
+    CHECK(seen["uhf_mro"] > 1000);
+    CHECK(seen["uhf_mex"] > 1000);
+    CHECK(again > 0);
+    CHECK(units.counts().realtime > seen["uhf_live"]); // what the bent pipe lost another orbiter had
+    CHECK(units.counts().realtime + again == seen["uhf_live"] + seen["uhf_mro"] + seen["uhf_mex"]);
+    CHECK(rehearsal.recording_progress() == 1.0);
+    CHECK(rehearsal.station().recording().asked() > 0);
+    const auto proof = rehearsal.proof();
+    CHECK(proof.holds());
+    CHECK(proof.realtime == units.counts().realtime);
+    std::uint64_t recorded = 0;
+    for (telemetry::PacketStream recording{rehearsal.landing().recording()}; recording.next();) ++recorded;
+    CHECK(seen["relay"] == recorded);
+}
+
+TEST_CASE("when no pass is left to bring the recording down, nothing is said to be proven", "[rehearsal][relay][R41]") {
+    auto scenario = test::shipped_scenario("relay_passes");
+    scenario.radio.relay_passes.resize(1); // the bent pipe of the landing alone
+    scenario.radio.relay_passes[0].set_after_entry_s = 300.0;
+    Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
+    while (!rehearsal.finished())
+        rehearsal.step();
+    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(rehearsal.recording_progress() == 0.0);
+    const auto proof = rehearsal.proof();
+    CHECK_FALSE(proof.holds());
+    CHECK(proof.recorded == 0);
+    CHECK(proof.realtime_not_recorded == proof.realtime);
+}
+
+TEST_CASE("commands over an uplink that loses frames are sent again, and the landing is commanded", "[rehearsal][gateway][R44]") {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.radio.uplink_loss_fraction = 0.05;
+    unsigned again = 0, commanded = 0;
+    for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U}) {
+        Rehearsal rehearsal{scenario, seed, 0, tests::shipped_dictionary()};
+        bool executed = false, reported = false;
+        for (int i = 0; i < 64 * 180; ++i) {
+            rehearsal.step();
+            for (const auto& stage : rehearsal.take_stages()) {
+                again += stage.stage == "radiated" && stage.evidence.starts_with("transmission");
+                executed |= stage.name == "EDL_DO_EDL" && stage.stage == "executed" && stage.status == "ok";
+                reported |= stage.name == "EDL_DO_EDL" && stage.stage == "received" && stage.status == "unknown";
+            }
+        }
+        CHECK((executed || reported || !rehearsal.script_refusals().empty())); // never silence
+        commanded += executed;
+    }
+    CHECK(again > 0);
+    CHECK(commanded >= 4);
 }

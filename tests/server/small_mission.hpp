@@ -135,10 +135,10 @@ inline Octets mortar_packet(std::uint16_t count, double sclk_s, float speed_mps)
 }
 
 inline simulation::ReceivedPacket live(Octets octets, std::int64_t ert_us = 1'000'000) {
-    return {simulation::LinkId::uhf_live, Ert{ert_us}, std::move(octets)};
+    return {simulation::uhf_live_link, Ert{ert_us}, std::move(octets)};
 }
 inline simulation::ReceivedPacket recorded(Octets octets, std::int64_t ert_us = 900'000'000) {
-    return {simulation::LinkId::relay, Ert{ert_us}, std::move(octets)};
+    return {simulation::relay_link, Ert{ert_us}, std::move(octets)};
 }
 
 /// A new folder, removed with all that is in it.

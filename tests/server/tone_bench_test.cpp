@@ -23,7 +23,7 @@ TEST_CASE("the statistical model's curve is that of the real receiver's correlat
         const double tone_dbhz = 10.0 * std::log10(telemetry::energy_for_symbol_error(theory, 256) / mfsk.symbol_s);
         ErrorCount statistical;
         for (; statistical.trials < 2000; ++statistical.trials)
-            if (simulation::detect_tone(77, tone_dbhz, mfsk.symbol_s, random).best != 77) ++statistical.errors;
+            if (simulation::detect_tone(77, tone_dbhz, mfsk.symbol_s, random).best[0].tone != 77) ++statistical.errors;
         const ErrorCount real = baseband_errors(mfsk, {tone_dbhz}, 1000, 9);
         const auto deviation = [&](const ErrorCount& count) {
             return std::sqrt(theory * (1.0 - theory) / static_cast<double>(count.trials));
@@ -31,6 +31,31 @@ TEST_CASE("the statistical model's curve is that of the real receiver's correlat
         CHECK(real.rate() == Approx(theory).margin(3.5 * deviation(real)));
         CHECK(statistical.rate() == Approx(theory).margin(3.5 * deviation(statistical)));
     }
+}
+
+TEST_CASE("where the statistical model hears tones the whole receiver hears them as well, and below that it is the model "
+          "that is deaf",
+          "[tones][R31]") {
+    const MfskWaveform& mfsk = tests::shipped_dictionary().mfsk;
+    constexpr std::uint64_t symbols = 60;
+    const auto drawn_errors = [&](double total_c_n0_dbhz) {
+        simulation::Radio radio;
+        radio.x_band_c_n0_dbhz = total_c_n0_dbhz;
+        simulation::XBandLink link{radio, simulation::Random{5, 0, simulation::Stream::x_band}};
+        ErrorCount count;
+        for (std::int64_t tick = 0; count.trials < symbols; ++tick) {
+            const auto heard = link.cycle(ToneId{42}, {Sclk::from_ticks(tick), 0.0, 0.0, true, 1.0});
+            if (!heard) continue;
+            ++count.trials;
+            if (heard->tone != heard->sent) ++count.errors;
+        }
+        return count.errors;
+    };
+    const double least_heard_dbhz = 15.8 - simulation::XBandLink::carrier_power_db(); // its lock
+    CHECK(drawn_errors(least_heard_dbhz + 0.05) == 0);
+    CHECK(receiver_errors(mfsk, least_heard_dbhz + 0.05, symbols, 11).errors == 0);
+    CHECK(drawn_errors(least_heard_dbhz - 0.05) == symbols);
+    CHECK(receiver_errors(mfsk, least_heard_dbhz - 2.0, symbols, 12).errors < symbols / 20); // once it has the carrier
 }
 
 TEST_CASE("a counted rate's interval holds the rate, and an error rate tells its loss", "[tones]") {

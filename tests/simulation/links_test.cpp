@@ -1,6 +1,6 @@
 #include "common/space_packet.hpp"
 #include "simulation/devices/recorder.hpp"
-#include "simulation/links/relay_link.hpp"
+#include "simulation/links/error_bursts.hpp"
 #include "simulation/links/tone_detection.hpp"
 #include "simulation/links/uhf_link.hpp"
 #include "simulation/links/x_band_link.hpp"
@@ -27,7 +27,7 @@ UhfLink::Surroundings coasting() {
 TEST_CASE("UHF carries its rate and no more, octet for octet", "[simulation][uhf]") {
     Radio radio;
     radio.uhf_rate_bps = 8000.0;
-    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    UhfLink link{radio};
     std::vector<std::uint8_t> offered, arrived;
     for (int i = 0; i < 100; ++i) {
         const auto packet = packet_of(100, static_cast<std::uint16_t>(i));
@@ -45,7 +45,7 @@ TEST_CASE("UHF carries its rate and no more, octet for octet", "[simulation][uhf
 TEST_CASE("an idle UHF link saves nothing up, and what finds no room is counted", "[simulation][uhf]") {
     Radio radio;
     radio.uhf_rate_bps = 8000.0;
-    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    UhfLink link{radio};
     for (int cycle = 0; cycle < 640; ++cycle)
         CHECK(link.cycle(coasting()).empty());
     link.offer(std::vector<std::uint8_t>(70000));
@@ -56,7 +56,7 @@ TEST_CASE("an idle UHF link saves nothing up, and what finds no room is counted"
 TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then is lost", "[simulation][uhf]") {
     Radio radio;
     radio.uhf_rate_bps = 16 * 8 * 64; // one packet a cycle
-    UhfLink link{radio, Random{1, 0, Stream::uhf}};
+    UhfLink link{radio};
     const auto cycle = [&](UhfLink::Surroundings at) {
         link.offer(packet_of(16));
         const std::size_t arrived = link.cycle(at).size();
@@ -96,24 +96,6 @@ TEST_CASE("UHF spoils the scenario's part of the octets, in bursts of the scenar
     CHECK(std::ranges::count(clean, 7) == 1000);
 }
 
-TEST_CASE("the relay brings the recording down whole, in order, at its rate", "[simulation][relay]") {
-    Recorder recorder;
-    for (std::uint16_t i = 0; i < 1000; ++i)
-        REQUIRE(recorder.append(packet_of(250, i)));
-    RelayLink relay{64.0e3};
-    std::vector<std::uint8_t> down;
-    int cycles = 0;
-    while (relay.sent_octets() < recorder.octets().size()) {
-        relay.cycle(recorder.octets(), [&](std::int64_t left_us, std::span<const std::uint8_t> packet) {
-            CHECK((left_us >= 0 && left_us <= 15625));
-            down.insert(down.end(), packet.begin(), packet.end());
-        });
-        ++cycles;
-    }
-    CHECK(std::equal(down.begin(), down.end(), recorder.octets().begin(), recorder.octets().end()));
-    CHECK(cycles == Approx(250000.0 * 8.0 / 64.0e3 * 64.0).margin(2.0));
-}
-
 TEST_CASE("a full recorder refuses whole packets and counts them", "[simulation][recorder]") {
     Recorder recorder;
     const std::vector<std::uint8_t> much(Recorder::capacity_octets - 10);
@@ -129,7 +111,7 @@ TEST_CASE("tone decisions err as theory says for 256 non-coherent tones", "[simu
     const auto errors = [&](double c_n0_dbhz, int symbols) {
         int wrong = 0;
         for (int i = 0; i < symbols; ++i)
-            wrong += detect_tone(i % 256, c_n0_dbhz, 10.0, random).best != i % 256;
+            wrong += detect_tone(i % 256, c_n0_dbhz, 10.0, random).best[0].tone != i % 256;
         return wrong;
     };
     CHECK(errors(2.36, 20000) == Approx(200.0).margin(45.0));
@@ -143,8 +125,8 @@ TEST_CASE("the likelihood of a tone is the share of decisions that are right", "
     int right = 0;
     for (int i = 0; i < 8000; ++i) {
         const ToneDecision decision = detect_tone(17, 0.5, 10.0, random);
-        promised += decision.best_likelihood;
-        right += decision.best == 17;
+        promised += decision.best[0].likelihood;
+        right += decision.best[0].tone == 17;
     }
     CHECK(promised == Approx(right).epsilon(0.03));
 }
@@ -157,7 +139,8 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
     std::int64_t tick = 0;
     const auto send = [&](std::optional<ToneId> tone, int ticks) {
         for (int i = 0; i < ticks; ++i, ++tick) {
-            const XBandLink::Surroundings at{Sclk::from_ticks(tick), static_cast<double>(tick) / 64.0 + 200.0, 0.0};
+            const double e_s = static_cast<double>(tick) / 64.0 + 200.0;
+            const XBandLink::Surroundings at{Sclk::from_ticks(tick), e_s, 0.0, e_s < 299.0, 1.0};
             if (auto received = link.cycle(tone, at)) heard.push_back(*received);
         }
     };
@@ -168,6 +151,10 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
     REQUIRE(heard.size() == 3);
     CHECK(heard[0].tone == ToneId{42});
     CHECK(heard[0].likelihood > 0.999);
+    REQUIRE(heard[0].best);
+    CHECK((*heard[0].best)[0].tone == 42);
+    CHECK((*heard[0].best)[1].likelihood >= (*heard[0].best)[4].likelihood);
+    CHECK_FALSE(heard[0].spectrum); // nothing was sampled
     CHECK(heard[0].c_n0_dbhz == Approx(22.0).margin(1.0));
     CHECK(heard[1].sent_at - heard[0].sent_at == 10.0);
     CHECK_FALSE(heard[2].tone.has_value());
@@ -178,8 +165,60 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
     send(ToneId{45}, 640);
     REQUIRE(heard.size() == 1);
     CHECK_FALSE(heard[0].tone.has_value());
-    CHECK_FALSE(heard[0].locked);
+    CHECK(heard[0].lock == CarrierLock::searching);
+    CHECK_FALSE(heard[0].best);
     CHECK(std::string{link.reason()} == "Earth set");
+}
+
+TEST_CASE("a symbol has the mean of its antenna's gain, and without an antenna there is none", "[simulation][tones][R31]") {
+    XBandLink link{Radio{}, Random{1, 0, Stream::x_band}};
+    std::optional<ReceivedTone> heard;
+    const auto send = [&](std::optional<double> gain, std::int64_t from_tick, int ticks) {
+        for (std::int64_t tick = from_tick; tick < from_tick + ticks; ++tick)
+            heard = link.cycle(ToneId{42}, {Sclk::from_ticks(tick), 0.0, 0.0, true, gain});
+    };
+    send(0.4, 0, 320);
+    send(0.6, 320, 321);
+    REQUIRE(heard);
+    CHECK(heard->tone == ToneId{42});
+    CHECK(heard->c_n0_dbhz == Approx(22.0 - 3.0).margin(1.0));
+    send({}, 641, 1);
+    CHECK_FALSE(link.up());
+    CHECK(std::string{link.reason()} == "not switched on");
+    send(0.1, 642, 1); // 22 dB-Hz less 10 are too little for the carrier's lock
+    CHECK_FALSE(link.up());
+    CHECK(link.earth_up());
+    CHECK(std::string{link.reason()} == "carrier too weak");
+}
+
+TEST_CASE("a scenario may set Earth earlier or later than the terrain does", "[simulation][tones]") {
+    Radio radio;
+    radio.earth_set_after_entry_s = 100.0;
+    XBandLink link{radio, Random{1, 0, Stream::x_band}};
+    (void)link.cycle({}, {Sclk{0.0}, 99.0, 0.0, false, 1.0});
+    CHECK(link.up());
+    (void)link.cycle({}, {Sclk{1.0}, 100.0, 0.0, true, 1.0});
+    CHECK_FALSE(link.up());
+    CHECK(std::string{link.reason()} == "Earth set");
+}
+
+TEST_CASE("Earth sets behind highlands: at -2.0 degrees from 8.2 km, lower from higher, at the horizontal from below them",
+          "[simulation][earth][R31]") {
+    constexpr double radius_m = 3391148.0;
+    // A vehicle somewhere on the meridian of Earth's place, so far away that Earth stands at `elevation`.
+    const auto up = [&](double altitude_m, double elevation_deg) {
+        const Vector3 earth = earth_direction_M(0.0);
+        const Vector3 across = earth.cross(Vector3::UnitZ()).normalized();
+        const double angle = elevation_deg * degree_rad;
+        const Vector3 position = (radius_m + altitude_m) * (std::sin(angle) * earth + std::cos(angle) * across);
+        return earth_is_up(position, 0.0, radius_m);
+    };
+    CHECK(up(8200.0, -1.99));
+    CHECK_FALSE(up(8200.0, -2.01));
+    CHECK(up(11900.0, -3.2));
+    CHECK_FALSE(up(11900.0, -3.5));
+    CHECK(up(5000.0, 0.01));
+    CHECK_FALSE(up(5000.0, -0.01));
 }
 
 TEST_CASE("Earth stands where the published geometry has it", "[simulation][earth]") {

@@ -1,15 +1,30 @@
 #pragma once
 
 #include "common/bytes.hpp"
+#include "common/cltu.hpp"
+#include "common/ids.hpp"
 #include "common/space_packet.hpp"
+#include "common/tc_frame.hpp"
 #include "generated/dictionary_flight.hpp"
 #include "simulation/landing.hpp"
 
 #include <span>
 #include <vector>
 
-// The commands of a landing, packed field by field here and not by the encoder of commands/.
+// The commands of a landing, packed field by field here and not by the encoder of commands/, as the CLTUs that reach the
+// vehicle: each packet in a frame of the expedited service.
 namespace aeolis::test {
+
+inline std::vector<std::uint8_t> cltu_of(std::span<const std::uint8_t> packet, const TcFrameHeader& header) {
+    std::vector<std::uint8_t> frame(packet.size() + tc_frame_overhead_octets);
+    write_tc_frame(header, packet, frame);
+    std::vector<std::uint8_t> cltu(cltu_octets(frame.size()));
+    write_cltu(frame, cltu);
+    return cltu;
+}
+inline std::vector<std::uint8_t> cltu_of(std::span<const std::uint8_t> packet) {
+    return cltu_of(packet, {true, false, spacecraft_id, telecommand_channel, 0});
+}
 
 inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolution& solution) {
     std::vector<std::uint8_t> packet(tc_overhead_octets + flight::command::EDL_SET_PARAMETERS::argument_octets);
@@ -24,13 +39,13 @@ inline std::vector<std::uint8_t> set_parameters(const simulation::NavigationSolu
     arguments.put_double(solution.target.radius_m);
     for (const float value : {405.0F, 6000.0F, 142.0F, 1660.0F, 79.1F}) arguments.put_float(value);
     seal_tc_packet(packet, Apid{1}, 0, flight::command::EDL_SET_PARAMETERS::opcode);
-    return packet;
+    return cltu_of(packet);
 }
 
 inline std::vector<std::uint8_t> do_edl() {
     std::vector<std::uint8_t> packet(tc_overhead_octets);
     seal_tc_packet(packet, Apid{1}, 1, flight::command::EDL_DO_EDL::opcode);
-    return packet;
+    return cltu_of(packet);
 }
 
 inline std::vector<std::uint8_t> set_timepoint_offset(TimepointId timepoint, double desired_s, double minimum_s) {
@@ -41,14 +56,14 @@ inline std::vector<std::uint8_t> set_timepoint_offset(TimepointId timepoint, dou
     arguments.put_double(desired_s);
     arguments.put_double(minimum_s);
     seal_tc_packet(packet, Apid{1}, 2, Command::opcode);
-    return packet;
+    return cltu_of(packet);
 }
 
 inline std::vector<std::uint8_t> with_one_octet(Opcode opcode, std::uint8_t argument) {
     std::vector<std::uint8_t> packet(tc_overhead_octets + 1);
     packet[tc_arguments_offset_octets] = argument;
     seal_tc_packet(packet, Apid{1}, 2, opcode);
-    return packet;
+    return cltu_of(packet);
 }
 inline std::vector<std::uint8_t> enable_second_chance() {
     return with_one_octet(flight::command::SECOND_CHANCE_ENABLE::opcode, 1);
@@ -62,7 +77,7 @@ inline std::vector<std::uint8_t> select_units(std::span<const std::uint8_t> unit
     BitWriter arguments{std::span{packet}.subspan(tc_arguments_offset_octets)};
     for (const std::uint8_t unit : units) arguments.put(unit, 8);
     seal_tc_packet(packet, Apid{1}, 2, flight::command::EDL_SELECT_UNITS::opcode);
-    return packet;
+    return cltu_of(packet);
 }
 
 }  // namespace aeolis::test

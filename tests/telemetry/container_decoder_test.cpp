@@ -90,15 +90,20 @@ TEST_CASE("every packet of ours reads the same by its XTCE file as by the decomm
             const auto contents = decoder.decode(octets);
             INFO(packet.name << ": " << contents.problem);
             REQUIRE(contents.container == packet.name);
+            REQUIRE(contents.time);
+            REQUIRE(contents.time->seconds == 5.0);
             std::map<std::string, DecodedValue> by_name;
             for (const auto& value : contents.values) by_name.emplace(value.name, value);
             for (std::size_t i = 0; i < packet.fields.size(); ++i) {
                 const auto& field = packet.fields[i];
                 INFO(field.name);
                 REQUIRE(by_name.contains(field.name));
-                if (!decoded.value[i]) continue;
                 const Datum& raw = by_name.at(field.name).raw;
                 const Datum& calibrated = by_name.at(field.name).calibrated;
+                REQUIRE(std::holds_alternative<std::monostate>(calibrated) == !decoded.value[i]);
+                REQUIRE(by_name.at(field.name).position_bits == field.position_bits);
+                REQUIRE(by_name.at(field.name).bits == field.type.bits);
+                if (!decoded.value[i]) continue;
                 const bool label = std::holds_alternative<std::string>(calibrated);
                 const double value = std::visit(
                     [](const auto& datum) {
@@ -231,7 +236,7 @@ TEST_CASE("time is seconds from the epoch, by offset and scale", "[telemetry]") 
     const Mission mission{"<AbsoluteTimeParameterType name='when'><Encoding offset='1000' scale='0.5'><IntegerDataEncoding "
                           "sizeInBits='32'/></Encoding></AbsoluteTimeParameterType>",
                           {{"t", "when"}}, container("P", entry("t"))};
-    CHECK(mission.decode("00000009").time_s == 1004.5);
+    CHECK(mission.decode("00000009").time->seconds == 1004.5);
 }
 
 TEST_CASE("what is not supported is named with its line, and the packet is read up to it", "[telemetry]") {
@@ -269,4 +274,55 @@ TEST_CASE("a datum is written in the fewest digits that read back the same", "[t
     CHECK(datum_text(std::uint64_t{18446744073709551615U}) == "18446744073709551615");
     CHECK(datum_text(std::int64_t{-5}) == "-5");
     CHECK(datum_text(std::vector<std::uint8_t>{0x0A, 0xFF}) == "0aff");
+}
+
+TEST_CASE("a fine time that counts from the coarse one makes the packet's time finer; a duration is no time of a packet", "[telemetry]") {
+    const std::string types =
+        "<AbsoluteTimeParameterType name='coarse_t'><Encoding><IntegerDataEncoding sizeInBits='16'/></Encoding><ReferenceTime>"
+        "<Epoch>Gps</Epoch></ReferenceTime></AbsoluteTimeParameterType><AbsoluteTimeParameterType name='fine_t'><Encoding "
+        "scale='0.25'><IntegerDataEncoding sizeInBits='8'/></Encoding><ReferenceTime><OffsetFrom parameterRef='c'/>"
+        "</ReferenceTime></AbsoluteTimeParameterType><RelativeTimeParameterType name='span'><Encoding><IntegerDataEncoding "
+        "sizeInBits='8'/></Encoding></RelativeTimeParameterType>";
+    const Mission mission{types, {{"c", "coarse_t"}, {"f", "fine_t"}, {"d", "span"}},
+                          container("P", entry("d") + entry("c") + entry("f"))};
+    CHECK(mission.findings.empty());
+    const auto contents = mission.decode("09 0064 03");
+    CHECK(text(contents) == "d=9|9 c=100|100 f=3|100.75");
+    CHECK(contents.time->seconds == 100.75);
+    CHECK(contents.time->epoch == "GPS");
+}
+
+TEST_CASE("two numbers right behind the primary header are the clock when their names say so, and nowhere else", "[telemetry]") {
+    const std::string types = "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+                              "<IntegerParameterType name='u32'><IntegerDataEncoding sizeInBits='32'/></IntegerParameterType>";
+    const auto time_of = [&](const std::string& first, const std::string& second, const std::string& type = "u32") {
+        const Mission mission{types, {{"header", "u48"}, {first, type}, {second, "u16"}},
+                              container("P", entry("header") + entry(first) + entry(second))};
+        return mission.decode("000000000000 00000007 8000 0000").time;
+    };
+    CHECK(time_of("SHCOARSE", "SHFINE")->seconds == 7.5);
+    CHECK(time_of("SHCOARSE", "SHFINE")->epoch.empty());
+    CHECK(time_of("sclk_coarse", "sclk_fine")->seconds == 7.5);
+    CHECK_FALSE(time_of("SHCOARSE", "COUNT"));
+    CHECK_FALSE(time_of("COUNT", "SHFINE"));
+    CHECK_FALSE(time_of("SHCOARSE", "SHFINE", "u48"));
+    const Mission elsewhere{types, {{"SHCOARSE", "u32"}, {"SHFINE", "u16"}}, container("P", entry("SHCOARSE") + entry("SHFINE"))};
+    CHECK_FALSE(elsewhere.decode("000000000000 00000007 8000").time);
+}
+
+TEST_CASE("a value is undefined where the condition of its validity does not hold", "[telemetry]") {
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"t.xml", findings};
+    const auto model = xtce::read_packet_model(
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='u8'><IntegerDataEncoding/>"
+        "</IntegerParameterType></ParameterTypeSet><ParameterSet><Parameter name='flag' parameterTypeRef='u8'/>"
+        "<Parameter name='x' parameterTypeRef='u8'><ParameterProperties><ValidityCondition><Comparison parameterRef='flag' "
+        "value='1'/></ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>" +
+            container("P", entry("flag") + entry("x")) + "</ContainerSet></TelemetryMetaData></SpaceSystem>",
+        into);
+    REQUIRE(model);
+    CHECK(findings.empty());
+    const ContainerDecoder decoder{*model};
+    CHECK(text(decoder.decode(test::hex("0109"))) == "flag=1|1 x=9|9");
+    CHECK(text(decoder.decode(test::hex("0009"))) == "flag=0|0 x=9|undefined");
 }

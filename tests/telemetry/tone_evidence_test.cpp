@@ -56,6 +56,7 @@ TEST_CASE("a symbol is likelier than none when it is there, and less likely when
         CHECK(weigh(drawn(-1, 60.0, random), 60.0).log_likelihood_ratio < 0.0);
     }
     const ToneEvidence strong = weigh(drawn(200, 300.0, random), 300.0);
-    CHECK(std::ranges::max_element(strong.spectrum_db) - strong.spectrum_db.begin() == 50);
+    CHECK(std::ranges::max_element(strong.spectrum) - strong.spectrum.begin() == 100);
+    CHECK(spectrum_db(strong.spectrum[100]) == Approx(10.0 * std::log10(300.0)).margin(1.5)); // energy over noise
     CHECK(weigh(ToneSums{}, 0.0).log_likelihood_ratio == Approx(0.0).margin(1e-9));
 }

@@ -56,7 +56,7 @@ TEST_CASE("tones at 22 dB-Hz come out with beginning, level, Doppler, lock and t
         CHECK(each.seen_fraction > 0.95);
         CHECK(each.evidence.best[0].likelihood > 0.999);
         CHECK(each.evidence.best[0].tone == *each.tone);
-        CHECK(std::ranges::max_element(each.evidence.spectrum_db) - each.evidence.spectrum_db.begin() == *each.tone / 4);
+        CHECK(std::ranges::max_element(each.evidence.spectrum) - each.evidence.spectrum.begin() == *each.tone / 2);
     }
     CHECK(ear.status().acquisitions == 1);
 }

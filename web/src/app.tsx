@@ -4,21 +4,26 @@ import { Header } from './clocks/view';
 import { Commands } from './commands/view';
 import { Descent } from './descent/view';
 import { Events } from './events/view';
+import { guideNow } from './guide/model';
+import { Guide } from './guide/view';
+import { Links } from './links/view';
+import { PastBar, Tape } from './mode/view';
 import { Packets } from './packets/view';
-import { Panel } from './panel';
+import { Panel } from './design/panel';
 import { Phases } from './phases/view';
 import { Plots } from './plots/view';
-import { Recorded, backToLive } from './recorded/view';
+import { Recorded } from './recorded/view';
 import { PaceBar, Rehearsal } from './rehearsal/view';
-import { dismissNotice, modeNow, notices, pastRange, store, stream } from './run/session';
-import { fromEntry } from './run/time';
+import { ReplayBar } from './replay/view';
+import { dismissNotice, modeNow, notices, stream } from './run/session';
 import { TABS, helpShown, tab } from './shortcuts/model';
 import { Help } from './shortcuts/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
+import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
-const DATA = { channels: Channels, packets: Packets, recorded: Recorded, rehearsal: Rehearsal };
+const DATA = { channels: Channels, packets: Packets, verdicts: Verdicts, links: Links, recorded: Recorded, rehearsal: Rehearsal };
 
 function Data() {
   const Shown = DATA[tab.value];
@@ -36,17 +41,6 @@ function Data() {
   );
 }
 
-function PastBar() {
-  const past = pastRange.value;
-  if (!past) return null;
-  return (
-    <div class="past-bar" role="alert" data-testid="past-bar">
-      THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live{store.value?.going ? '; the run goes on' : ''}.
-      <button type="button" onClick={backToLive}>leave <kbd>Esc</kbd></button>
-    </div>
-  );
-}
-
 function Notices() {
   if (notices.value.length === 0) return null;
   return (
@@ -58,18 +52,27 @@ function Notices() {
   );
 }
 
+const inPanel = (name: keyof typeof DATA, title: string) => {
+  const Shown = DATA[name];
+  return () => <Panel name={name} title={title}><Shown /></Panel>;
+};
+
 const ALONE = {
   timeline: Timeline, tones: Tones, plots: Plots, descent: Descent, events: Events, commands: Commands, data: Data, waiting: WaitingFor,
+  phases: () => null, // the strip stands above every panel that is alone
+  ...Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])),
 };
 
 export function App({ panel }: { panel?: string | undefined }) {
   const mode = modeNow();
   const Alone = panel === undefined ? undefined : ALONE[panel as keyof typeof ALONE];
   return (
-    <div class={`console mode-${mode} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''}`} data-testid="console" data-mode={mode}>
+    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''}`} data-testid="console" data-mode={mode}>
+      <Tape />
       <Header />
-      <div class="strip"><Phases /><PaceBar /></div>
+      <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>
       <PastBar />
+      <ReplayBar />
       <Notices />
       {Alone ? <main class="one"><Alone /></main> : (
         <main class="grid">
@@ -78,7 +81,7 @@ export function App({ panel }: { panel?: string | undefined }) {
             <div class="middle"><Descent /><Plots /></div>
             <div class="bottom"><Tones /><Data /></div>
           </div>
-          <div class="right"><WaitingFor /><Events /><Commands /></div>
+          <div class="right"><WaitingFor /><Guide /><Events /><Commands /></div>
         </main>
       )}
       <Help />

@@ -17,18 +17,35 @@ export const LAYOUT = {
     { title: 'Bank', channel: ['bank_deg'], unit: 'deg', per: 1, digits: 1 },
   ],
 
-  /** The strip of phases, and which values of the phase channel belong to each. */
+  /**
+   * The strip of phases, which values of the phase channel belong to each, and when it is predicted to begin: entry by
+   * definition, the others published [od137]. `untilEntry`: belongs to it only before entry, then to the next.
+   */
   phases: [
-    { title: 'Approach', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'] },
     {
-      title: 'Entry',
-      of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
+      title: 'Cruise', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'], untilEntry: 'wait_for_guidance', predicted_e_s: undefined,
+      plain: 'The vehicle coasts towards Mars. It drops its cruise stage and turns the heat shield forward. From “do edl” on it follows its own timeline.',
     },
-    { title: 'Parachute', of: ['parachute_descent'] },
-    { title: 'Powered descent', of: ['powered_descent'] },
-    { title: 'Sky crane', of: ['sky_crane'] },
-    { title: 'Landed', of: ['landed', 'flyaway'] },
+    {
+      title: 'Entry', of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
+      untilEntry: undefined, predicted_e_s: 0,
+      plain: 'It brakes in the thin air, from 5.8 km/s, and steers by rolling left and right. Around the hottest minute the radio is silent: that is expected, and the timeline names it.',
+    },
+    {
+      title: 'Parachute', of: ['parachute_descent'], untilEntry: undefined, predicted_e_s: 255.9,
+      plain: 'The parachute is open. The heat shield drops away, and the radar looks for the ground.',
+    },
+    {
+      title: 'Powered descent', of: ['powered_descent', 'sky_crane'], untilEntry: undefined, predicted_e_s: 378.2,
+      plain: 'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
+    },
+    {
+      title: 'Landed', of: ['landed', 'flyaway'], untilEntry: undefined, predicted_e_s: 431.5,
+      plain: 'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
+    },
   ],
+  /** The mission whose landing the predicted corridor and times are of. */
+  predictedFor: 'MSL',
 
   /** Shown first in the table of channels. */
   channels: [

@@ -19,7 +19,7 @@ export function Channels() {
       </div>
       <div class="table-scroll" tabIndex={0} aria-label="channels">
         <table class="channels" data-testid="channel-table">
-          <thead><tr><th /><th>channel</th><th class="number">value</th><th>unit</th><th class="number">age</th><th>limits</th></tr></thead>
+          <thead><tr><th>state</th><th>channel</th><th class="number">value</th><th>unit</th><th class="number">age</th><th>limits</th></tr></thead>
           <tbody>
             {rows.map((row) => (
               <tr key={row.id} class={`look-${row.look}`} title={row.text} data-testid={`channel-${row.name}`}>

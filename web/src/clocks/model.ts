@@ -1,4 +1,6 @@
-import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';
+import { dayOfYear, duration, fromEntry } from '../run/time';
+import { linkTitle } from '../links/model';
+import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { StreamState } from '../stream/messages';
@@ -15,15 +17,14 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   const e_s = past ?? store.seenE;
   const sclk = store.entrySclk + e_s;
   const lightTime = clocks?.lightTimeS ?? store.run.lightTimeS;
-  const back = store.seenSclk - sclk;
-  const ert = clocks ? secondsOfDayOfYear(clocks.ert) - back : NaN;
+  const ert = store.ertOf(sclk);
   const others: Clock[] = [
     { id: 'scet', label: 'at Mars (SCET)', value: dayOfYear(ert - lightTime) },
     { id: 'ert', label: 'on Earth (ERT)', value: dayOfYear(ert) },
     { id: 'sclk', label: 'SCLK', value: Number.isFinite(sclk) ? sclk.toFixed(3) : '—' },
     { id: 'light-time', label: 'light time', value: duration(lightTime) },
   ];
-  if (lightTime > 0 && past === undefined && clocks) {
+  if (lightTime > 0 && past === undefined && clocks?.ert) {
     others.push({ id: 'mars-now', label: 'the vehicle is at', value: fromEntry(clocks.eS) });
   }
   return { entry: fromEntry(e_s, { hours: true }), others };
@@ -51,18 +52,32 @@ export interface LinkLine {
   detail: string;
 }
 
-const LINK_TITLES: Record<string, string> = { uhf_live: 'UHF live', x_band: 'X-band', relay: 'Relay' };
-
 export function linksOf(store: RunStore, cutoff: number): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
     const until = changes.filter((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff));
     const last = until[until.length - 1]?.fact;
     return {
-      name: LINK_TITLES[link] ?? link,
+      name: linkTitle(link),
       look: last === undefined ? 'unknown' : last.up ? 'up' : 'down',
       detail: last?.reason || (last === undefined ? 'not yet' : last.up ? 'receiving' : 'silent'),
     };
   });
+}
+
+const FEW = 3;
+
+/** For the header, where there is room for few: beyond that, the orbiters' links are one entry that says how many are up. */
+export function headerLinks(store: RunStore, cutoff: number): LinkLine[] {
+  const all = linksOf(store, cutoff);
+  if (all.length <= FEW) return all;
+  const names = [...store.links.keys()];
+  const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
+  all.forEach((line, i) => (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line));
+  const up = others.filter((line) => line.look === 'up');
+  return [...own, {
+    name: `${others.length} relay links`, look: up.length > 0 ? 'up' : others.some((line) => line.look === 'down') ? 'down' : 'unknown',
+    detail: up.length > 0 ? `up: ${up.map((line) => line.name).join(', ')}` : others.findLast((line) => line.look === 'down')?.detail ?? 'not yet',
+  }];
 }
 
 const STREAM_WORDS: Record<StreamState, string> = {
@@ -82,15 +97,17 @@ export interface Badge {
   detail: string;
 }
 
-/** What cannot be mistaken: which run this is and whether it is happening. */
-export function badgeOf(store: RunStore | undefined, past: { from: number; to: number } | undefined): Badge {
-  if (!store) return { title: 'NO RUN', detail: 'start a rehearsal' };
+/** What cannot be mistaken: which run this is, where it happens, and whether it is happening. */
+export function badgeOf(store: RunStore | undefined, past: { from: number; to: number } | undefined, replayed = false): Badge {
+  if (!store) return { title: MODES.none.badge, detail: 'start a rehearsal' };
   const run = store.run;
+  const mode = modeOf(store, past !== undefined, replayed);
   const name = `${run.scenario} · run ${store.id}`;
-  if (past) return { title: 'PAST, NOT LIVE', detail: `${name} · ${fromEntry(past.from)} … ${fromEntry(past.to)}` };
-  if (!store.going) return { title: run.state === 'interrupted' ? 'INTERRUPTED RUN' : 'ENDED RUN', detail: `${name} · ${outcomeWords(run.outcome, run.state)}` };
+  const where = isReal(run) ? 'real venue' : 'rehearsal';
+  if (past) return { title: MODES[mode].badge, detail: `${where}, ${name}${replayed ? '' : ` · ${fromEntry(past.from)} … ${fromEntry(past.to)}`}` };
+  if (!store.going) return { title: run.state === 'interrupted' ? 'INTERRUPTED RUN' : MODES.ended.badge, detail: `${where}, ${name} · ${outcomeWords(run.outcome, run.state)}` };
   const pace = run.pace === 0 ? 'as fast as it goes' : `${run.pace}×`;
-  return { title: run.venue === '' || run.venue === 'rehearsal' ? 'REHEARSAL' : run.venue.toUpperCase(), detail: `${name} · ${run.state === 'paused' ? 'paused' : pace}` };
+  return { title: MODES[mode].badge, detail: `${name} · ${run.state === 'paused' ? 'paused' : mode === 'live' ? 'now' : pace}` };
 }
 
 export function outcomeWords(outcome: string, state: string): string {

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
-import { aPlan, aRun, aStore, link } from '../testing/fixtures';
-import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
+import { aPlan, aRun, aStore, event, link, tone } from '../testing/fixtures';
+import { badgeOf, clocksOf, headerLinks, latestSend, linksOf, streamLine } from './model';
 
 describe('the header', () => {
   it('shows one instant on every clock, a light time apart', () => {
@@ -27,5 +27,25 @@ describe('the header', () => {
     const store = aStore([link({ link: 'uhf_live', up: false, reason: 'plasma outage', ert: '2012-219T04:59:00.0' })]);
     expect(linksOf(store, Infinity)).toEqual([{ name: 'UHF live', look: 'down', detail: 'plasma outage' }]);
     expect(streamLine('lost', 3, 0)).toMatchObject({ look: 'lost', detail: 'what is shown is old; attempt 3' });
+  });
+  it('has room for the links of a pass: those of orbiters are one entry that names what is up', () => {
+    const ert = '2012-219T04:59:00.0';
+    const store = aStore(['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) => link({ link: name, up: name !== 'relay' && name !== 'uhf_mex', reason: name === 'relay' ? 'below the horizon' : '', ert })));
+    expect(headerLinks(store, Infinity).map((line) => [line.name, line.look, line.detail])).toEqual([
+      ['UHF live', 'up', 'receiving'], ['X-band', 'up', 'receiving'], ['3 relay links', 'up', 'up: UHF MRO'],
+    ]);
+  });
+  it('of a run of the day before, which has no clocks any more, go by what it holds', () => {
+    const run = aRun({ state: 'finished', lightTimeS: 100 });
+    delete (run as { clocks?: unknown }).clocks;
+    const store = aStore([
+      tone({ sclk: 900, tone: 7, ertStart: '2012-219T05:00:00.0' }), event({ id: 1, name: 'TOUCHDOWN', sclk: 1431, ert: '2012-219T05:08:52.0' }),
+      link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T05:02:30.0' }),
+    ], run);
+    const { entry, others } = clocksOf(store, undefined);
+    expect([entry, others.find((clock) => clock.id === 'ert')?.value, others.find((clock) => clock.id === 'scet')?.value])
+      .toEqual(['E+00:07:11', '2012-219T05:08:51.0', '2012-219T05:07:11.0']);
+    expect(linksOf(store, 1000)[0]?.look).toBe('unknown');
+    expect(linksOf(store, 1050)[0]?.look).toBe('down');
   });
 });

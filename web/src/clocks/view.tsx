@@ -1,7 +1,7 @@
 // The header: which run, what time it is, what is connected.
 import { fromEntry, duration } from '../run/time';
-import { cutoff, modeNow, pastRange, runNow, stream, timepoints } from '../run/session';
-import { badgeOf, clocksOf, latestSend, linksOf, streamLine } from './model';
+import { cutoff, modeNow, pastRange, replay, runNow, stream, timepoints } from '../run/session';
+import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
 import './style.css';
 
@@ -19,13 +19,13 @@ function Link({ line, testId }: { line: LinkLine; testId: string }) {
 export function Header() {
   const run = runNow();
   const past = pastRange.value;
-  const badge = badgeOf(run, past);
+  const badge = badgeOf(run, past, replay.value !== undefined);
   const clocks = run && clocksOf(run, past?.to);
   const send = run?.going && !past ? latestSend(run, timepoints.value) : undefined;
   const severities = run && !past ? [...run.alarms.values()] : [];
   return (
     <header class="header" data-testid="header">
-      <div class="brand">AEOLIS</div>
+      <h1 class="brand">AEOLIS</h1>
       <div class={`badge badge-${modeNow()}`} data-testid="badge" role="status">
         <b>{badge.title}</b> <span>{badge.detail}</span>
       </div>
@@ -56,7 +56,7 @@ export function Header() {
             <small>{[...new Set(severities.map((alarm) => alarm.severity))].join(', ')}</small>
           </div>
         )}
-        {run && linksOf(run, cutoff.value).map((line) => (
+        {run && headerLinks(run, cutoff.value).map((line) => (
           <Link key={line.name} line={line} testId={`link-${line.name}`} />
         ))}
         <Link line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} testId="stream-state" />

@@ -1,7 +1,7 @@
 // The state of the command line, and its three keys: Enter goes one step on, Esc one step back, arrows choose.
 import { computed, signal } from '@preact/signals';
 import { dictionary, sendCommand, store, tick } from '../run/session';
-import { candidates, fieldsOf, isHazardous, readLine, unknownNames } from './model';
+import { argumentOffers, candidates, fieldsOf, isHazardous, readLine, unknownNames } from './model';
 import type { Step } from './model';
 
 export const step = signal<Step>('type');
@@ -14,7 +14,12 @@ const chosenName = signal<string | undefined>(undefined);
 export const formText = signal<ReadonlyMap<string, string>>(new Map());
 
 export const typed = computed(() => readLine(line.value));
-export const offered = computed(() => (dictionary.value ? candidates(dictionary.value, typed.value.words) : []));
+/** Set once the line names a command and goes on with its arguments. */
+export const inArguments = computed(() => (dictionary.value ? argumentOffers(dictionary.value, line.value) : undefined));
+export const offered = computed(() => {
+  if (inArguments.value) return [inArguments.value.command];
+  return dictionary.value ? candidates(dictionary.value, typed.value.words) : [];
+});
 export const chosen = computed(() =>
   chosenName.value === undefined ? undefined : dictionary.value?.command(chosenName.value));
 export const fields = computed(() => {
@@ -53,15 +58,22 @@ export function choose(name: string): void {
 }
 
 export function complete(): void {
+  const within = inArguments.value;
+  if (within) {
+    const offer = within.offers[choiceIndex.value] ?? within.offers[0];
+    if (offer !== undefined) line.value = line.value.replace(/\S*$/, within.stem + offer);
+    choiceIndex.value = 0;
+    return;
+  }
   const command = offered.value[choiceIndex.value];
-  if (command) line.value = [command.name.toLowerCase(), ...[...typed.value.given].map(([name, value]) => `${name}=${value}`)].join(' ');
+  if (command) line.value = [command.name.toLowerCase(), ...[...typed.value.given].map(([name, value]) => `${name}=${value}`)].join(' ') + (command.arguments.length > 0 ? ' ' : '');
 }
 
 /** One step on. Returns nothing; what happened stands in `step` and `message`. */
 export async function forward(): Promise<void> {
   const command = chosen.value;
   if (step.value === 'type') {
-    const offer = offered.value[choiceIndex.value];
+    const offer = inArguments.value?.command ?? offered.value[choiceIndex.value];
     if (line.value.trim() === '') message.value = { good: undefined, text: 'type a command, for example its words' };
     else if (!offer) message.value = { good: false, text: 'no command of the dictionary has these words' };
     else choose(offer.name);
@@ -108,6 +120,8 @@ export async function forward(): Promise<void> {
 function problemNow(): string | undefined {
   const command = chosen.value;
   if (!command) return undefined;
+  const stray = inArguments.value?.strays[0];
+  if (stray !== undefined) return `${stray} is no argument with a value: write name=value`;
   const unknown = unknownNames(command, typed.value.given)[0];
   if (unknown !== undefined) return `${command.name} has no argument ${unknown}`;
   const bad = fields.value.find((field) => field.problem !== undefined);

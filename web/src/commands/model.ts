@@ -43,6 +43,30 @@ export function candidates(dictionary: Dictionary, words: readonly string[]): Di
   return scored.sort((a, b) => b[0] - a[0]).map(([, command]) => command);
 }
 
+/**
+ * What Tab can complete once the line begins with a whole command: names of arguments that are not given yet, or the values of
+ * the one that is being given. `stem` is the part of the last token that stays.
+ */
+export function argumentOffers(
+  dictionary: Dictionary, text: string,
+): { command: DictionaryCommand; stem: string; offers: string[]; strays: string[] } | undefined {
+  const tokens = text.trimStart().split(/\s+/);
+  const command = dictionary.command((tokens[0] ?? '').toUpperCase());
+  if (!command || tokens.length < 2) return undefined;
+  const last = tokens[tokens.length - 1] ?? '';
+  const given = new Set(tokens.slice(1).map((token) => token.split('=')[0]));
+  const strays = tokens.slice(1).filter((token) => token !== '' && !token.includes('='));
+  const at = last.indexOf('=');
+  if (at > 0) {
+    const argument = command.arguments.find((each) => each.name === last.slice(0, at));
+    const labels = argument?.labels.map((each) => each.label) ?? [];
+    const begun = last.slice(at + 1).toLowerCase();
+    return { command, stem: last.slice(0, at + 1), offers: labels.filter((label) => label.toLowerCase().startsWith(begun)), strays };
+  }
+  const free = command.arguments.map((each) => each.name).filter((name) => name.startsWith(last.toLowerCase()) && (name === last || !given.has(name)));
+  return { command, stem: '', offers: free.map((name) => `${name}=`), strays };
+}
+
 export function isHazardous(command: DictionaryCommand): boolean {
   return command.significance === 'critical' || command.significance === 'severe';
 }

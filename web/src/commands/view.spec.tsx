@@ -4,8 +4,8 @@ import { act } from 'preact/test-utils';
 import { afterEach, beforeEach, describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
 import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
-import { back, chosen, forward, line, message, step, type } from './line';
-import { candidates, fieldsOf, isHazardous, preconditionsOf, readLine, stageCells } from './model';
+import { back, chosen, complete, forward, line, message, step, type } from './line';
+import { argumentOffers, candidates, fieldsOf, isHazardous, preconditionsOf, readLine, stageCells } from './model';
 import { Commands } from './view';
 
 const set = aDictionary.command('EDL_SET_PARAMETERS');
@@ -22,6 +22,12 @@ describe('what is typed', () => {
   it('reads arguments beside the words', () => {
     const { words, given } = readLine(' edl_set_timepoint_offset  timepoint=3 ');
     expect([words, [...given]]).toEqual([['edl_set_timepoint_offset'], [['timepoint', '3']]]);
+  });
+  it('once it is a whole command offers its arguments, and what is no argument is called by its name', () => {
+    expect(argumentOffers(aDictionary, 'edl_set_par')).toBeUndefined();
+    expect(argumentOffers(aDictionary, 'edl_set_parameters ')?.offers).toEqual(['solution_id=', 'parachute_speed_mps=']);
+    expect(argumentOffers(aDictionary, 'edl_set_parameters solution_id=3 para')).toMatchObject({ offers: ['parachute_speed_mps='], strays: ['para'] });
+    expect(argumentOffers(aDictionary, 'edl_set_parameters solution_id=3 ')?.offers).toEqual(['parachute_speed_mps=']);
   });
   it('refuses what is out of range, no number, or missing', () => {
     const problems = (text: string) => fieldsOf(set, readLine(text).given, []).map((field) => field.problem);
@@ -50,6 +56,24 @@ describe('stages', () => {
   });
 });
 
+describe('Tab', () => {
+  it('completes command, then argument, and refuses a word that is neither', async () => {
+    useForTest(aStore(), aDictionary);
+    type('set edl par');
+    complete();
+    expect(line.value).toBe('edl_set_parameters ');
+    type('edl_set_parameters sol');
+    complete();
+    expect(line.value).toBe('edl_set_parameters solution_id=');
+    type('edl_set_parameters nonsense solution_id=3');
+    await forward();
+    await forward();
+    expect(message.value).toMatchObject({ good: false, text: expect.stringContaining('nonsense') });
+    back(true);
+    type('');
+  });
+});
+
 describe('the command line', () => {
   let root: HTMLElement;
   beforeEach(() => {
@@ -66,6 +90,17 @@ describe('the command line', () => {
       render(null, root);
     });
     root.remove();
+  });
+  it('takes the key that opens it for no text when it is open already', () => {
+    const input = root.querySelector('[data-testid="command-line"]');
+    const pressed = (key: string) => {
+      const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });
+      act(() => void input?.dispatchEvent(event));
+      return event.defaultPrevented;
+    };
+    expect([pressed('/'), pressed('d')]).toEqual([true, false]);
+    act(() => type('x'));
+    expect(pressed('/')).toBe(false);
   });
   it('goes on by Enter: review, armed, and sends nothing without the typed name', async () => {
     act(() => type('do edl'));

@@ -2,13 +2,13 @@
 // history with what is known of each stage.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import type { DictionaryCommand } from '../gen/aeolis/v1/run_pb';
-import { Panel } from '../panel';
+import { Panel } from '../design/panel';
 import { latestSend } from '../clocks/model';
 import { inWords } from '../run/dictionary';
-import { cutoff, dictionary, modeNow, runNow, timepoints } from '../run/session';
+import { cutoff, dictionary, pastRange, runNow, takesCommands, timepoints } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import {
-  back, choiceIndex, choose, chosen, complete, confirmation, fields, formText, forward, line, message, offered,
+  back, choiceIndex, choose, chosen, complete, confirmation, fields, formText, forward, inArguments, line, message, offered,
   openCommandLine, step, type, typed,
 } from './line';
 import { isHazardous, newestEvidence, preconditionsOf, rangeText, stageCells } from './model';
@@ -19,19 +19,41 @@ const HISTORY_SHOWN = 12;
 function onKey(event: KeyboardEvent): void {
   if (event.key === 'Enter') void forward();
   else if (event.key === 'Escape') back();
-  else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey && offered.value.length > 0) complete();
-  else if (event.key === 'ArrowDown' && step.value === 'type') choiceIndex.value = Math.min(offered.value.length - 1, choiceIndex.value + 1);
+  else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey && (inArguments.value?.offers ?? offered.value).length > 0) complete();
+  else if (event.key === 'ArrowDown' && step.value === 'type') choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
   else if (event.key === 'ArrowUp' && step.value === 'type') choiceIndex.value = Math.max(0, choiceIndex.value - 1);
-  else return;
+  else if (event.key !== '/' || line.value !== '') return; // the key that opens the line, pressed in it, is no text
   event.preventDefault();
   event.stopPropagation();
 }
 
+const SHOWN = 8;
+
 function Offers() {
+  const within = inArguments.value;
+  if (within) {
+    return (
+      <ul class="offers" role="listbox" id="offers" aria-label={`arguments of ${within.command.name}`} data-testid="argument-offers">
+        {within.offers.slice(0, SHOWN).map((offer, index) => {
+          const argument = within.command.arguments.find((each) => `${each.name}=` === offer);
+          return (
+            <li key={offer} id={`offer-${index}`} role="option" aria-selected={index === choiceIndex.value} onClick={() => {
+              choiceIndex.value = index;
+              complete();
+              openCommandLine();
+            }}>
+              <b>{within.stem}{offer}</b> <span>{argument && `${argument.unit} ${rangeText(argument)} ${argument.text}`}</span>
+            </li>
+          );
+        })}
+        {within.offers.length === 0 && <li class="none">Enter goes on</li>}
+      </ul>
+    );
+  }
   return (
     <ul class="offers" role="listbox" id="offers" aria-label="commands of the dictionary">
-      {offered.value.slice(0, 8).map((command, index) => (
-        <li key={command.name} role="option" aria-selected={index === choiceIndex.value} onClick={() => {
+      {offered.value.slice(0, SHOWN).map((command, index) => (
+        <li key={command.name} id={`offer-${index}`} role="option" aria-selected={index === choiceIndex.value} onClick={() => {
           choose(command.name);
           openCommandLine();
         }}>
@@ -101,7 +123,10 @@ function Review({ command }: { command: DictionaryCommand }) {
 
 function Armed({ command }: { command: DictionaryCommand }) {
   const input = useRef<HTMLInputElement>(null);
-  useLayoutEffect(() => input.current?.focus(), []); // before the next key can be typed
+  useLayoutEffect(() => {
+    input.current?.focus(); // before the next key can be typed
+    input.current?.scrollIntoView?.({ block: 'nearest' });
+  }, []);
   return (
     <div class="armed" data-testid="command-armed">
       <b>▲ ARMED: {command.name}</b>
@@ -151,12 +176,13 @@ function History() {
 
 export function Commands() {
   const command = chosen.value;
-  const canSend = modeNow() === 'rehearsal';
+  const canSend = takesCommands();
   return (
     <Panel name="commands" title="Command" extra={<span><kbd>/</kbd> to type</span>}>
       <div class="command-line">
         <input data-testid="command-line" role="combobox" aria-expanded={step.value === 'type' && line.value !== ''} aria-controls="offers"
-          aria-label="command line" autocomplete="off" spellcheck={false} placeholder={canSend ? 'set edl parameters' : 'this run takes no commands'}
+          aria-activedescendant={step.value === 'type' && line.value !== '' ? `offer-${choiceIndex.value}` : undefined}
+          aria-label="command line" autocomplete="off" spellcheck={false} placeholder={canSend ? 'type a command in words' : pastRange.value ? 'nothing can be sent from the past' : 'this run takes no commands'}
           disabled={!canSend} value={line.value} onInput={(event) => type(event.currentTarget.value)} onKeyDown={onKey} />
       </div>
       {canSend && step.value === 'type' && line.value.trim() !== '' && <Offers />}

@@ -1,5 +1,6 @@
-// Altitude against speed, by pairs that came in one packet.
+// Altitude against speed, by pairs that came in one packet, and where they lie to the predicted corridor.
 import type { Series } from '../run/series';
+import type { CorridorPoint } from './corridor';
 
 export interface Point {
   sclk: number;
@@ -27,10 +28,40 @@ export function pairs(altitude: Series | undefined, speed: Series | undefined, c
   return points;
 }
 
-const LEAST_M = 1;
+export const LEAST_M = 5; // the descent stage stands 8 m high on its bridle at touchdown
+export const LEAST_MPS = 0.5;
 
-/** 0 at the bottom, 1 at the top, logarithmic: the last ten metres get the room of a hundred kilometres. */
-export function heightFraction(altitude_m: number, top_m: number): number {
-  const clamped = Math.max(LEAST_M, altitude_m);
-  return Math.log10(clamped / LEAST_M) / Math.log10(top_m / LEAST_M);
+/** 0 at the bottom or left, 1 at the top or right, logarithmic: the last metres get as much room as the first kilometres. */
+export function fraction(value: number, least: number, largest: number): number {
+  return Math.log10(Math.max(least, value) / least) / Math.log10(largest / least);
+}
+
+const MARGIN = 1.2; // ours: twelve landings do not reach as far as all would
+const NARROWEST_DECADES = 0.03; // ours: thinner could not be seen
+
+export function halfWidth(point: CorridorPoint): number {
+  return Math.max(NARROWEST_DECADES, point.half_decades * MARGIN);
+}
+
+export type Place = 'inside' | 'above' | 'below';
+
+/**
+ * Where a point is to the corridor, by the nearest place of its middle; undefined: outside what was predicted.
+ * "above" is to the side of more height or less speed.
+ */
+export function placeIn(corridor: readonly CorridorPoint[], altitude_m: number, speed_mps: number): Place | undefined {
+  const [first, last] = [corridor[0], corridor[corridor.length - 1]];
+  if (!first || !last || altitude_m > first.altitude_m || altitude_m < last.altitude_m * 0.8) return undefined;
+  const [x, y] = [Math.log10(Math.max(LEAST_MPS, speed_mps)), Math.log10(Math.max(LEAST_M, altitude_m))];
+  let best = { off: Infinity, half: 0, side: 0 };
+  for (let i = 1; i < corridor.length; ++i) {
+    const [a, b] = [corridor[i - 1] as CorridorPoint, corridor[i] as CorridorPoint];
+    const [ax, ay] = [Math.log10(a.speed_mps), Math.log10(a.altitude_m)];
+    const [dx, dy] = [Math.log10(b.speed_mps) - ax, Math.log10(b.altitude_m) - ay];
+    const part = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)));
+    const [ox, oy] = [x - ax - part * dx, y - ay - part * dy];
+    const off = Math.hypot(ox, oy);
+    if (off < best.off) best = { off, half: halfWidth(a) * (1 - part) + halfWidth(b) * part, side: oy - ox };
+  }
+  return best.off <= best.half ? 'inside' : best.side > 0 ? 'above' : 'below';
 }

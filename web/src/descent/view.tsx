@@ -1,18 +1,23 @@
 // The descent in one picture that anyone understands: how high, how fast.
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
-import { ticks, valueStep } from '../draw/axis';
 import { LAYOUT } from '../layout';
-import { Panel } from '../panel';
+import { Panel } from '../design/panel';
+import { STATUS } from '../design/status';
 import { cutoff, dictionary, runNow, store, tick, timepoints } from '../run/session';
 import type { RunStore } from '../run/store';
 import { inWords } from '../run/dictionary';
 import { isImportant, outages } from '../timeline/model';
-import { heightFraction, pairs } from './model';
+import { phaseSteps } from '../phases/model';
+import { CORRIDOR } from './corridor';
+import { LEAST_M, LEAST_MPS, fraction, halfWidth, pairs, placeIn } from './model';
 import './style.css';
 
-const LEFT = 62;
+const LEFT = 66;
+const RIGHT = 22;
+const BOTTOM = 40;
 const TOP_M = 200000;
+const FASTEST_MPS = 8000;
 const GAP_S = 6; // ours: longer without a sample is a gap
 
 /** The picture ends at touchdown: what the descent stage does after it is not the landing. */
@@ -24,84 +29,190 @@ function lastInstant(run: RunStore | undefined, end: number): number {
   return end;
 }
 
-function draw({ context: c, width, height, colours }: Surface): void {
+const corridorNow = () => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? CORRIDOR : []);
+
+interface Scales {
+  x: (mps: number) => number;
+  y: (m: number) => number;
+  decade_px: [number, number]; // of speed, of altitude
+}
+
+function scalesOf(width: number, height: number): Scales {
+  const [wide, high] = [width - LEFT - RIGHT, height - BOTTOM - 12];
+  return {
+    x: (mps) => LEFT + fraction(mps, LEAST_MPS, FASTEST_MPS) * wide,
+    y: (m) => height - BOTTOM - fraction(m, LEAST_M, TOP_M) * high,
+    decade_px: [wide / Math.log10(FASTEST_MPS / LEAST_MPS), high / Math.log10(TOP_M / LEAST_M)],
+  };
+}
+
+function drawAxes({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
+  const bottom = height - BOTTOM;
+  c.font = `13px ${colours.mono}`;
+  c.textBaseline = 'middle';
+  c.lineWidth = 1;
+  c.strokeStyle = colours.line;
+  c.fillStyle = colours.dim;
+  c.textAlign = 'right';
+  for (const m of [10, 100, 1000, 10000, 100000]) {
+    line(c, LEFT, Math.round(y(m)) + 0.5, width - RIGHT, Math.round(y(m)) + 0.5);
+    c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
+  }
+  c.textAlign = 'center';
+  for (const mps of [1, 10, 100, 1000]) {
+    line(c, Math.round(x(mps)) + 0.5, 12, Math.round(x(mps)) + 0.5, bottom);
+    c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps} m/s`, x(mps), bottom + 13);
+  }
+  c.font = `12px ${colours.sans}`;
+  c.textAlign = 'right';
+  c.fillText('faster →', width - RIGHT, bottom + 31);
+  c.textAlign = 'left';
+  c.fillText('← slower', LEFT, bottom + 31);
+}
+
+/** The corridor is the first thing drawn and the widest: whoever sees it knows where the dot should go. */
+function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, decade_px }: Scales): void {
+  const corridor = corridorNow();
+  const middle = corridor.map((point) => [x(point.speed_mps), y(point.altitude_m)] as const);
+  const last = middle[middle.length - 1];
+  if (!last) return;
+  const sides: [number, number][][] = [[], []];
+  middle.forEach(([px, py], i) => {
+    const [ax, ay] = middle[Math.max(0, i - 1)] ?? [px, py];
+    const [bx, by] = middle[Math.min(middle.length - 1, i + 1)] ?? [px, py];
+    // Across the way, in decades: what is as wide in both is not as wide in pixels.
+    const [dx, dy] = [(bx - ax) / decade_px[0], (by - ay) / decade_px[1]];
+    const half = halfWidth(corridor[i] as (typeof corridor)[number]) / (Math.hypot(dx, dy) || 1);
+    sides[0]?.push([px - dy * half * decade_px[0], py + dx * half * decade_px[1]]);
+    sides[1]?.unshift([px + dy * half * decade_px[0], py - dx * half * decade_px[1]]);
+  });
+  c.beginPath();
+  sides.flat().forEach(([px, py], i) => (i === 0 ? c.moveTo(px, py) : c.lineTo(px, py)));
+  c.closePath();
+  c.fillStyle = colours.ghost;
+  c.strokeStyle = colours.ghost;
+  c.lineJoin = 'round';
+  c.lineWidth = 6;
+  c.save();
+  const around = new Path2D();
+  around.rect(LEFT, 0, width - LEFT - RIGHT, height - BOTTOM);
+  c.clip(around);
+  c.fill();
+  c.stroke();
+  c.restore();
+  // Where it should end.
+  c.lineWidth = 2;
+  c.strokeStyle = colours.dim;
+  for (const radius of [9, 16]) {
+    c.beginPath();
+    c.arc(last[0], last[1], radius, 0, 7);
+    c.stroke();
+  }
+  c.lineWidth = 1;
+}
+
+/** Each phase by its name beside the corridor, where there is room: below it. */
+function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
+  const words = dictionary.value;
+  const corridor = corridorNow();
+  if (!words || corridor.length === 0) return;
+  const steps = phaseSteps(store.value, words, cutoff.value);
+  c.textBaseline = 'middle';
+  steps.forEach((step, index) => {
+    const from = step.predicted_e_s;
+    const to = steps[index + 1]?.predicted_e_s;
+    if (from === undefined || to === undefined) return;
+    const at = corridor.reduce((best, point) => (Math.abs(point.e_s - (from + to) / 2) < Math.abs(best.e_s - (from + to) / 2) ? point : best));
+    c.font = `${step.state === 'now' ? 800 : 600} ${Math.round(Math.min(26, width / 26, height / 13))}px ${colours.sans}`;
+    c.fillStyle = step.state === 'now' ? colours.text : colours.dim;
+    c.globalAlpha = step.state === 'now' ? 1 : 0.75;
+    c.textAlign = index === 1 ? 'right' : 'left';
+    const wide = c.measureText(step.title).width;
+    c.fillText(step.title, index === 1 ? width - RIGHT - 6 : Math.min(width - wide - RIGHT, x(at.speed_mps) + 34), y(at.altitude_m) + (index === 1 ? 46 : 24));
+    c.globalAlpha = 1;
+  });
+}
+
+function draw(surface: Surface): void {
+  const { context: c, width, height, colours } = surface;
   const run = store.value;
   const altitude = dictionary.value?.pick(LAYOUT.altitude);
   const speed = dictionary.value?.pick(LAYOUT.speed);
   if (!altitude || !speed) return;
-  const bottom = height - 26;
-  const until = lastInstant(run, cutoff.value);
-  const recorded = pairs(run?.recorded.get(altitude.id), run?.recorded.get(speed.id), until, 3000);
-  const live = pairs(run?.live.get(altitude.id), run?.live.get(speed.id), until, 3000);
-  const fastest = Math.max(6200, ...[...recorded, ...live].map((point) => point.speed));
-  const x = (mps: number) => LEFT + Math.sqrt(mps / fastest) * (width - LEFT - 24);
-  const y = (m: number) => bottom - heightFraction(m, TOP_M) * (bottom - 12);
-
-  c.font = `12px ${colours.mono}`;
-  c.textBaseline = 'middle';
-  c.lineWidth = 1;
-  for (const m of [1, 10, 100, 1000, 10000, 100000]) {
-    c.strokeStyle = colours.line;
-    c.beginPath();
-    c.moveTo(LEFT, Math.round(y(m)) + 0.5);
-    c.lineTo(width - 10, Math.round(y(m)) + 0.5);
-    c.stroke();
-    c.fillStyle = colours.dim;
-    c.textAlign = 'right';
-    c.fillText(m >= 1000 ? `${m / 1000} km` : `${m} m`, LEFT - 8, y(m));
-  }
-  c.textAlign = 'center';
-  for (const mps of [1, 10, 50, 100, 400, 1000, 2000, 4000, ...ticks(6000, fastest, valueStep(fastest, 3))]) {
-    if (mps > fastest) continue;
-    c.strokeStyle = colours.line;
-    c.beginPath();
-    c.moveTo(Math.round(x(mps)) + 0.5, 12);
-    c.lineTo(Math.round(x(mps)) + 0.5, bottom);
-    c.stroke();
-    if (mps === 50 || mps === 10) continue;
-    c.fillText(mps >= 1000 ? `${mps / 1000} km/s` : `${mps}`, x(mps), height - 11);
-  }
-  c.textAlign = 'left';
-  c.fillText('m/s', width - 36, height - 11 - 16);
+  const scales = scalesOf(width, height);
+  const { x, y } = scales;
+  drawCorridor(surface, scales);
+  drawAxes(surface, scales);
+  drawPhases(surface, scales);
   if (!run) return;
 
-  const points = [...recorded, ...live].sort((one, other) => one.sclk - other.sclk);
+  const until = lastInstant(run, cutoff.value);
+  const recorded = pairs(run.recorded.get(altitude.id), run.recorded.get(speed.id), until, 3000);
+  const live = pairs(run.live.get(altitude.id), run.live.get(speed.id), until, 3000);
+  const points = [...recorded, ...live].sort((one, other) => one.sclk - other.sclk).filter((point) => point.altitude <= TOP_M);
   const silences = outages(run, 'uhf_live', Infinity, cutoff.value);
   let before: (typeof points)[number] | undefined;
   let colour = '';
-  c.lineWidth = 1;
+  c.lineWidth = 2;
+  c.lineJoin = 'round';
   c.beginPath();
   for (const point of points) {
     const e_s = point.sclk - run.entrySclk;
-    const next = silences.some((silence) => e_s > silence.from && e_s < silence.to) ? colours.green : colours.trace;
+    const next = silences.some((silence) => e_s > silence.from && e_s < silence.to) ? colours.recording : colours.uhf;
     if (next !== colour) {
       c.stroke();
       c.strokeStyle = colour = next;
       c.beginPath();
       if (before) c.moveTo(x(before.speed), y(before.altitude));
     }
-    if (!before || point.sclk - before.sclk > GAP_S) c.moveTo(x(point.speed), y(point.altitude));
-    else c.lineTo(x(point.speed), y(point.altitude));
+    if (!before || point.sclk - before.sclk > GAP_S) {
+      if (before) gap(c, [x(before.speed), y(before.altitude)], [x(point.speed), y(point.altitude)], colours.caution, colour);
+      c.moveTo(x(point.speed), y(point.altitude));
+    } else c.lineTo(x(point.speed), y(point.altitude));
     before = point;
   }
   c.stroke();
-  moments(c, points, x, y, width, bottom, colours);
-  if (points.length === 0) {
-    c.fillStyle = colours.dim;
-    c.textAlign = 'center';
-    c.fillText(`no ${altitude.name} has come yet`, (LEFT + width) / 2, height / 2);
-  }
+  moments(c, points, x, y, width, height - BOTTOM, colours);
   const now = points[points.length - 1];
-  if (now) {
-    c.fillStyle = colours.text;
-    c.beginPath();
-    c.arc(x(now.speed), y(now.altitude), 6, 0, 7);
-    c.fill();
-    c.strokeStyle = colours.text;
-    c.beginPath();
-    c.arc(x(now.speed), y(now.altitude), 11, 0, 7);
-    c.stroke();
+  if (!now) {
+    c.fillStyle = colours.dim;
+    c.font = `14px ${colours.sans}`;
+    c.textAlign = 'left';
+    c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
+    return;
   }
+  c.fillStyle = colours.text;
+  c.strokeStyle = colours.page;
+  c.lineWidth = 3;
+  c.beginPath();
+  c.arc(x(now.speed), y(now.altitude), 9, 0, 7);
+  c.stroke();
+  c.fill();
+  c.strokeStyle = colours.text;
+  c.lineWidth = 2;
+  c.beginPath();
+  c.arc(x(now.speed), y(now.altitude), 16, 0, 7);
+  c.stroke();
+}
+
+/** Nothing was heard between the two: dashed, and not a trace. */
+function gap(c: CanvasRenderingContext2D, from: [number, number], to: [number, number], colour: string, back: string): void {
+  c.stroke();
+  c.save();
+  c.strokeStyle = colour;
+  c.lineWidth = 1;
+  c.setLineDash([3, 5]);
+  line(c, ...from, ...to);
+  c.restore();
+  c.strokeStyle = back;
+  c.beginPath();
+}
+
+function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  c.beginPath();
+  c.moveTo(x1, y1);
+  c.lineTo(x2, y2);
+  c.stroke();
 }
 
 function moments(
@@ -110,7 +221,7 @@ function moments(
 ): void {
   const run = store.value;
   if (!run || points.length === 0) return;
-  c.font = `13px ${colours.sans}`;
+  c.font = `14px ${colours.sans}`;
   const boxes: [number, number, number, number][] = [];
   const fired = [...run.firings.values()].map((pair) => pair.live ?? pair.recorded)
     .filter((firing) => firing !== undefined && isImportant(firing.name) && firing.firedSclk <= cutoff.value);
@@ -123,19 +234,19 @@ function moments(
     if (!nearest || Math.abs(nearest.sclk - firing.firedSclk) > 3) continue;
     const px = x(nearest.speed);
     const py = y(nearest.altitude);
-    c.fillStyle = colours.blue;
+    c.fillStyle = colours.uhf;
     c.beginPath();
     c.arc(px, py, 3.5, 0, 7);
     c.fill();
     const words = inWords(firing.name);
     const wide = c.measureText(words).width;
-    for (const [dx, dy, align] of [[10, 12, 'left'], [-10, -12, 'right'], [10, -12, 'left'], [-10, 12, 'right'], [14, -28, 'left'], [14, 30, 'left'], [14, -44, 'left']] as const) {
+    for (const [dx, dy, align] of [[-14, -14, 'right'], [-18, -30, 'right'], [-22, -46, 'right'], [-18, 4, 'right'], [-26, -62, 'right'], [16, 14, 'left'], [16, 34, 'left']] as const) {
       const left = align === 'left' ? px + dx : px + dx - wide;
       const box: [number, number, number, number] = [left, py + dy - 8, left + wide, py + dy + 8];
       if (box[0] < LEFT || box[2] > width - 8 || box[3] > bottom || box[1] < 4) continue;
       if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
       boxes.push(box);
-      if (Math.abs(dy) > 14) {
+      if (Math.abs(dy) > 15) {
         c.strokeStyle = colours.dim;
         c.lineWidth = 1;
         c.beginPath();
@@ -151,6 +262,12 @@ function moments(
   }
 }
 
+const PLACES = {
+  inside: { status: STATUS.holds, words: 'inside the predicted corridor' },
+  above: { status: STATUS.caution, words: 'above the predicted corridor: higher or slower' },
+  below: { status: STATUS.caution, words: 'below the predicted corridor: lower or faster' },
+} as const;
+
 export function Descent() {
   const run = runNow();
   const until = lastInstant(run, cutoff.value);
@@ -160,16 +277,22 @@ export function Descent() {
   const h = altitude && run?.latest(altitude.id, until)?.value;
   const v = speed && run?.latest(speed.id, until)?.value;
   const inKm = (h ?? 0) >= 10000;
+  const place = h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
   return (
     <Panel name="descent" title="Descent, how high and how fast" extra={
-      <span class="descent-now" title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
+      <>
         {until < cutoff.value && <span>at touchdown</span>}
-        <span class="nowrap"><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</span>
-        <span class="nowrap"><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</span>
-      </span>
+        {place && <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">{PLACES[place].status.shape} {PLACES[place].words}</span>}
+      </>
     }>
-      <Canvas label="Altitude against speed" draw={draw} testId="descent-canvas" keyOf={() =>
-        `${store.value?.id} ${tick.value} ${timepoints.value.length} ${cutoff.value}`} />
+      <div class="descent-box">
+        <Canvas label="Altitude against speed, with the predicted corridor" draw={draw} testId="descent-canvas" keyOf={() =>
+          `${store.value?.id} ${tick.value} ${timepoints.value.length} ${cutoff.value}`} />
+        {h !== undefined && <dl class="descent-now" title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
+          <div><dt>high</dt><dd><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</dd></div>
+          <div><dt>fast</dt><dd><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</dd></div>
+        </dl>}
+      </div>
     </Panel>
   );
 }

@@ -1,5 +1,6 @@
 // The one animation loop of the page: at most 20 draws a second, numbers at 5 a second, and nothing at all while
 // nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
+import { step } from '../replay/model';
 import { store, tick } from '../run/session';
 
 const DRAW_EVERY_MS = 50;
@@ -8,6 +9,7 @@ const NUMBERS_EVERY_MS = 200;
 const drawings = new Set<() => void>();
 let lastDraw = 0;
 let lastNumbers = 0;
+let lastStep = 0;
 let shownVersion = -1;
 let shownStore: unknown;
 
@@ -21,6 +23,11 @@ function frame(now: number): void {
   requestAnimationFrame(frame);
   if (now - lastDraw < DRAW_EVERY_MS - 4) return;
   lastDraw = now;
+  if (now - lastStep >= NUMBERS_EVERY_MS - 4) {
+    const since_s = Math.min(1, (now - lastStep) / 1000);
+    lastStep = now;
+    step(since_s);
+  }
   if (now - lastNumbers >= NUMBERS_EVERY_MS - 4) {
     const version = store.value?.version ?? 0;
     if (version !== shownVersion || store.value !== shownStore) {

@@ -1,9 +1,10 @@
 // The colours of the style sheet, for canvases. Read once a theme.
 
-const NAMES = [
-  'text', 'dim', 'faint', 'line', 'panel', 'raised', 'page', 'blue', 'violet', 'amber', 'green', 'red', 'trace', 'ghost',
-] as const;
-export type Palette = Record<(typeof NAMES)[number], string> & { name: string; sans: string; mono: string };
+const TOKENS = {
+  text: 'text', dim: 'dim', edge: 'edge', line: 'line', panel: 'panel', raised: 'raised', page: 'page', ghost: 'ghost', chosen: 'chosen',
+  accent: 'accent', good: 'good', caution: 'caution', alarm: 'alarm', uhf: 'by-uhf', tone: 'by-tone', recording: 'by-recording',
+} as const;
+export type Palette = Record<keyof typeof TOKENS, string> & { name: string; sans: string; mono: string };
 
 let read: Palette | undefined;
 
@@ -12,7 +13,7 @@ export function palette(): Palette {
   if (read?.name === name) return read;
   const style = getComputedStyle(document.documentElement);
   const colours = { name, sans: style.getPropertyValue('--sans'), mono: style.getPropertyValue('--mono') } as Palette;
-  for (const each of NAMES) colours[each] = style.getPropertyValue(`--${each}`).trim();
+  for (const [each, token] of Object.entries(TOKENS)) colours[each as keyof typeof TOKENS] = style.getPropertyValue(`--${token}`).trim();
   read = colours;
   return colours;
 }

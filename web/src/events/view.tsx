@@ -1,5 +1,5 @@
 import { signal } from '@preact/signals';
-import { Panel } from '../panel';
+import { Panel } from '../design/panel';
 import { pastRange, runNow } from '../run/session';
 import { fromEntry } from '../run/time';
 import { LEVELS, eventLines, levelShape, levelWords, sourceWords } from './model';

@@ -3,7 +3,8 @@ import { useEffect } from 'preact/hooks';
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
-import { ask, pastRange, notify, runNow, store } from '../run/session';
+import { ask, pastRange, notify, replay, runNow, store } from '../run/session';
+import { linkTitle } from '../links/model';
 import { fromEntry } from '../run/time';
 import { hexLines, linkRates, newestUnits } from './model';
 import './style.css';
@@ -44,20 +45,22 @@ function shownUnits(run: RunStore, past: boolean): { fact: Unit; show: () => voi
 }
 
 export function Packets() {
-  const past = pastRange.value;
+  const moving = replay.value?.playing === true;
+  const past = moving ? undefined : pastRange.value;
   useEffect(() => {
     pastRows.value = [];
-    if (past) void askPast(past);
+    if (past) void askPast(replay.value ? { from: past.to - 10, to: past.to } : past);
   }, [past]);
   const run = runNow();
   if (!run) return null;
   const packet = opened.value;
+  if (moving) return <p class="none" data-testid="packets-not-replayed">▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.</p>;
   return (
     <div class="table-box">
       <div class="table-tools" data-testid="link-rates">
         {linkRates(run).map((rate) => (
           <span key={rate.link}>
-            <b>{rate.link}</b>{past ? ', whole run:' : ''} {rate.units} units, {rate.octets} octets
+            <b>{linkTitle(rate.link)}</b>{past ? ', whole run:' : ''} {rate.units} units, {rate.octets} octets
             {rate.octets_per_s !== undefined && `, ${(rate.octets_per_s * 8 / 1000).toFixed(1)} kb/s`}
             {rate.duplicates > 0 && `, ${rate.duplicates} seen before`}
           </span>
@@ -76,7 +79,7 @@ export function Packets() {
                   <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
                   <td>{fact.name}</td>
                   <td class="number">{fact.octets}</td>
-                  <td>{fact.link}{fact.duplicate ? ' (again)' : ''}</td>
+                  <td>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
                 </tr>
               ))}
             </tbody>
@@ -84,7 +87,7 @@ export function Packets() {
         </div>
         {packet && (
           <div class="packet table-scroll" data-testid="packet">
-            <b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b>
+            <b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b> over {linkTitle(packet.unit?.link ?? '')}, {packet.verdict.replaceAll('_', ' ')}{packet.unit?.duplicate ? ', came before over another link' : ''}
             <button type="button" class="quiet" aria-label="close" onClick={() => (opened.value = undefined)}>×</button>
             <pre>{hexLines(packet.hex).map((line) => `${line.at}  ${line.octets.padEnd(47)}  ${line.text}`).join('\n')}</pre>
             <dl>{packet.fields.map((field) => (<><dt>{field.name}</dt><dd>{field.text}</dd></>))}</dl>

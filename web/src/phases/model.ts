@@ -8,6 +8,16 @@ export interface PhaseStep {
   state: 'done' | 'now' | 'ahead';
   detail: string; // the vehicle's own word for where it is in the phase
   since_e_s: number | undefined;
+  predicted_e_s: number | undefined;
+  /** Of the phase of now: how much of it has gone by, by the prediction of the next, 0 … 1. */
+  part: number | undefined;
+}
+
+interface Group {
+  title: string;
+  of: readonly string[];
+  untilEntry?: string | undefined;
+  predicted_e_s?: number | undefined;
 }
 
 /** The strip of phases. What the vehicle said last decides; before it said anything, all are ahead. */
@@ -15,30 +25,48 @@ export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, 
   const channel = dictionary.pick(LAYOUT.phase);
   const labels = new Map(channel?.labels.map((label) => [Number(label.value), label.label]));
   const known = new Set(labels.values());
-  const groups: readonly { title: string; of: readonly string[] }[] = LAYOUT.phases.some((phase) => phase.of.some((name) => known.has(name)))
+  const groups: readonly Group[] = LAYOUT.phases.some((phase) => phase.of.some((name) => known.has(name)))
     ? LAYOUT.phases
     : [...known].map((label) => ({ title: inWords(label), of: [label] }));
+  const groupOf = (label: string | undefined, e_s: number) => groups.findIndex((group) =>
+    label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)));
+  const predicted = dictionary.reply.mission === LAYOUT.predictedFor;
+  const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);
-  const at = label === undefined ? -1 : groups.findIndex((group) => group.of.includes(label));
+  const at = groupOf(label, seen_e_s);
   const since = new Map<number, number>();
   if (channel && store) {
     for (const series of [store.recorded.get(channel.id), store.live.get(channel.id)]) {
       for (let i = 0; series && i < series.length; ++i) {
         const sclk = series.sclk[i] as number;
         if (sclk > cutoff) break;
-        const group = groups.findIndex((candidate) => candidate.of.includes(labels.get(series.value[i] as number) ?? ''));
+        const group = groupOf(labels.get(series.value[i] as number), sclk - store.entrySclk);
         if (group >= 0 && !(sclk >= (since.get(group) ?? Infinity))) since.set(group, sclk);
       }
     }
   }
   return groups.map((group, index) => {
     const start = since.get(index);
+    const since_e_s = start === undefined || !store ? undefined : start - store.entrySclk;
+    const next_e_s = predicted ? groups[index + 1]?.predicted_e_s : undefined;
     return {
       title: group.title,
       state: at < 0 || index > at ? 'ahead' : index === at ? 'now' : 'done',
       detail: index === at && label !== undefined && inWords(label) !== group.title.toLowerCase() ? inWords(label) : '',
-      since_e_s: start === undefined || !store ? undefined : start - store.entrySclk,
+      since_e_s,
+      predicted_e_s: predicted ? group.predicted_e_s : undefined,
+      part: index !== at || since_e_s === undefined || next_e_s === undefined ? undefined
+        : Math.max(0, Math.min(1, (seen_e_s - since_e_s) / (next_e_s - since_e_s))),
     };
   });
+}
+
+/** "parachute in 1 m 20 s", as far as it is predicted; "due since 4.0 s" when it should have come. */
+export function nextWords(steps: readonly PhaseStep[], seen_e_s: number, duration: (seconds: number) => string): string {
+  const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
+  if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
+  const left = next.predicted_e_s - seen_e_s;
+  const title = next.title.toLowerCase();
+  return left >= 0 ? `${title} in ≈ ${duration(left)}` : `${title} ≈ ${duration(-left)} later than predicted`;
 }

@@ -1,21 +1,28 @@
-// The strip that says where in the landing we are.
-import { cutoff, dictionary, store, tick } from '../run/session';
-import { fromEntry } from '../run/time';
-import { phaseSteps } from './model';
+// The strip that says where in the landing we are, to be read across a room.
+import { cutoff, dictionary, runNow } from '../run/session';
+import { duration, fromEntry } from '../run/time';
+import { nextWords, phaseSteps } from './model';
 import './style.css';
 
 const SHAPES = { done: '✓', now: '▶', ahead: '○' } as const;
 
 export function Phases() {
-  void tick.value;
+  const run = runNow();
   if (!dictionary.value) return null;
+  const steps = phaseSteps(run, dictionary.value, cutoff.value);
+  const seen_e_s = run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">
-      {phaseSteps(store.value, dictionary.value, cutoff.value).map((step) => (
+      {steps.map((step) => (
         <li key={step.title} class={`phase phase-${step.state}`} aria-current={step.state === 'now' ? 'step' : undefined}
           data-testid={step.state === 'now' ? 'phase-now' : undefined}>
-          <span aria-hidden="true">{SHAPES[step.state]}</span> <b>{step.title}</b> <em>{step.detail}</em>
-          <small>{step.state === 'ahead' || step.since_e_s === undefined ? '' : `from ${fromEntry(step.since_e_s)}`}</small>
+          <b><span aria-hidden="true">{SHAPES[step.state]}</span> {step.title}</b>
+          <small>
+            {step.state === 'now' ? <>{step.detail || (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)} <i>{nextWords(steps, seen_e_s, duration)}</i></>
+              : step.state === 'done' ? step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`
+                : step.predicted_e_s !== undefined && `≈ ${fromEntry(step.predicted_e_s)}`}
+          </small>
+          {step.part !== undefined && <span class="phase-part" style={{ width: `${(step.part * 100).toFixed(1)}%` }} />}
         </li>
       ))}
     </ol>

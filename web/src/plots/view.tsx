@@ -7,7 +7,7 @@ import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
-import { Panel } from '../panel';
+import { Panel } from '../design/panel';
 import { cutoff, dictionary, store, tick } from '../run/session';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
@@ -50,8 +50,8 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
     ],
     series: [
       {},
-      { stroke: colours.green, width: 1, points: { show: false } },
-      { stroke: colours.trace, width: 1, points: { show: false } },
+      { stroke: colours.recording, width: 1, points: { show: false } },
+      { stroke: colours.uhf, width: 1, points: { show: false } },
     ],
     hooks: {
       drawClear: [(plot) => shadeSilence(plot)],
@@ -67,7 +67,7 @@ function shadeSilence(plot: uPlot): void {
   const { left, top, width, height } = plot.bbox;
   const now = Math.min(run.seenSclk, cutoff.value) - run.entrySclk;
   plot.ctx.save();
-  plot.ctx.fillStyle = palette().amber;
+  plot.ctx.fillStyle = palette().caution;
   for (const outage of outages(run, 'uhf_live', now, cutoff.value)) {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
     const to = Math.min(left + width, plot.valToPos(outage.to, 'x', true));
@@ -94,7 +94,7 @@ function limitLines(plot: uPlot, channel: DictionaryChannel, per: number): void 
       const y = Math.round(plot.valToPos(bound / per, 'y', true)) + 0.5;
       if (!(y > top && y < top + height)) continue;
       plot.ctx.save();
-      plot.ctx.strokeStyle = limit.severity === 'critical' || limit.severity === 'severe' ? colours.red : colours.amber;
+      plot.ctx.strokeStyle = limit.severity === 'critical' || limit.severity === 'severe' ? colours.alarm : colours.caution;
       plot.ctx.setLineDash([4, 4]);
       plot.ctx.beginPath();
       plot.ctx.moveTo(left, y);
@@ -157,7 +157,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       </span>
     }>
       {now === undefined && <span class="plot-empty">no {channel.name} has come yet</span>}
-      <div class="plot" ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`} />
+      <div class={`plot ${now === undefined ? 'is-empty' : ''}`} ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`} />
     </Panel>
   );
 }

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import type { ChannelSeriesList, RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
-import { ask, dictionary, pastRange, runNow, store } from '../run/session';
+import { ask, dictionary, pastRange, replay, runNow, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { rangeProblem, rangeRow, seriesPath } from './model';
 import type { RangeRow } from './model';
@@ -50,6 +50,7 @@ async function query(): Promise<void> {
     rows.value = list.channels.map(rangeRow);
     run.addRange(list.channels.flatMap(splitBySource), run.entrySclk + start, run.entrySclk + end);
     csvPath.value = `api/v1${seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points, true)}`;
+    replay.value = undefined;
     pastRange.value = { from: start, to: end };
     const samples = rows.value.reduce((sum, row) => sum + row.samples, 0);
     message.value = { good: true, text: `${samples} samples of ${rows.value.length} channels; every panel now shows this range` };
@@ -65,10 +66,6 @@ function verdict(recording: RecordingSummary): string {
   if (recording.progress < 1) return `… the recording is here to ${Math.floor(recording.progress * 100)} %.`;
   return recording.realtimeNotRecorded + recording.realtimeDiffers === 0n
     ? '✓ Every live packet is in the recording, bit for bit.' : '✖ Live and recording do not agree.';
-}
-
-export function backToLive(): void {
-  pastRange.value = undefined;
 }
 
 export function Recorded() {

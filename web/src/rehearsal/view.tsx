@@ -1,22 +1,25 @@
 // Rehearsals: pace and pause in one bar that is always there; which run is looked at, and new ones, in a panel.
 import { signal } from '@preact/signals';
 import { outcomeWords } from '../clocks/model';
-import { control, modeNow, runNow, runs, scenarios, store, watch } from '../run/session';
+import { changeReplayPace, playOrHold } from '../replay/model';
+import { control, modeNow, pastRange, replay, runNow, runs, scenarios, store, watch } from '../run/session';
 import { PACES, attainedText, nextPace, paceText } from './model';
 import './style.css';
 
 export function changePace(direction: 1 | -1): void {
+  if (replay.value) return changeReplayPace(direction);
   const run = store.value;
-  if (run?.going) control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
+  if (run?.going && !pastRange.value) control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
 }
 export function togglePause(): void {
+  if (replay.value) return playOrHold();
   const run = store.value;
-  if (run?.going) control({ action: 'pause', pause: run.run.state !== 'paused' });
+  if (run?.going && !pastRange.value) control({ action: 'pause', pause: run.run.state !== 'paused' });
 }
 
 export function PaceBar() {
   const run = runNow();
-  if (!run?.going || modeNow() === 'past') return null;
+  if (!run?.going || modeNow() !== 'rehearsal') return null;
   const paused = run.run.state === 'paused';
   return (
     <div class="pace-bar" role="group" aria-label="pace of the rehearsal" data-testid="pace-bar">
@@ -61,7 +64,7 @@ export function Rehearsal() {
       </form>
       <div class="table-scroll" tabIndex={0} aria-label="runs">
         <table data-testid="run-list">
-          <thead><tr><th>run</th><th>scenario</th><th class="number">seed</th><th>state</th><th>outcome</th><th>started</th><th class="number">items</th><th /></tr></thead>
+          <thead><tr><th>run</th><th>scenario</th><th class="number">seed</th><th>state</th><th>outcome</th><th>started</th><th class="number">items</th><th>show</th></tr></thead>
           <tbody>
             {runs.value.map((each) => {
               const shown = run?.id === Number(each.run);

@@ -3,6 +3,8 @@ import { computed, effect, signal } from '@preact/signals';
 import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
+import { modeOf } from '../mode/model';
+import type { Mode } from '../mode/model';
 import { Dictionary } from './dictionary';
 import { RunStore } from './store';
 
@@ -46,13 +48,23 @@ export function dismissNotice(id?: number): void {
 export const cutoff = computed(() =>
   pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity);
 
-export type Mode = 'none' | 'rehearsal' | 'finished' | 'past';
+/** A replay: the past view whose end moves on. `pastRange` is then what has been replayed so far. */
+export const replay = signal<{ pace: number; playing: boolean } | undefined>(undefined);
+
 /** Read with `tick`: a run's own state changes without a new store. */
 export function modeNow(): Mode {
   void tick.value;
-  if (!store.value) return 'none';
-  if (pastRange.value) return 'past';
-  return store.value.going ? 'rehearsal' : 'finished';
+  return modeOf(store.value, pastRange.value !== undefined, replay.value !== undefined);
+}
+
+/** Whether a command can be sent from what is shown. */
+export function takesCommands(): boolean {
+  return ['live', 'rehearsal'].includes(modeNow());
+}
+
+export function backToLive(): void {
+  replay.value = undefined;
+  pastRange.value = undefined;
 }
 
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
@@ -103,7 +115,7 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
 
 export function watch(run: number): void {
   watched.value = run;
-  pastRange.value = undefined;
+  backToLive();
   const url = new URL(location.href);
   if (run === 0) url.searchParams.delete('run');
   else url.searchParams.set('run', String(run));
@@ -175,7 +187,7 @@ function takeRun(run: RunState | undefined): void {
     known.update(run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
     store.value = new RunStore(run);
-    pastRange.value = undefined;
+    backToLive();
   } else {
     return;
   }

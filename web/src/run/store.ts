@@ -63,6 +63,8 @@ export class RunStore {
   clocks: Clocks | undefined;
   completeThrough = 0;
   thinnedSinceHistory = false;
+  /** Of all samples, events and tones. */
+  private newestSclk = -Infinity;
   /** Counts changes of anything. */
   version = 0;
 
@@ -81,15 +83,30 @@ export class RunStore {
   }
   /** Of what reaches Earth now. */
   get seenSclk(): number {
-    return this.clocks?.seenSclk || this.clocks?.sclk || this.run.startSclk;
+    return this.clocks?.seenSclk || this.clocks?.sclk || Math.max(this.run.startSclk, this.newestSclk);
   }
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
   }
   /** SCLK of what was received at `ert`. The two run side by side, a light time apart. */
   sclkSeenAt(ert: string): number {
-    if (!this.clocks) return NaN;
-    return this.seenSclk + secondsOfDayOfYear(ert) - secondsOfDayOfYear(this.clocks.ert);
+    const { sclk, ert: at } = this.instant;
+    return sclk + secondsOfDayOfYear(ert) - secondsOfDayOfYear(at);
+  }
+  /** When, on Earth, what left the vehicle at `sclk` could be received; in seconds since 1970, NaN while nothing tells. */
+  ertOf(sclk: number): number {
+    return secondsOfDayOfYear(this.instant.ert) + sclk - this.instant.sclk;
+  }
+  /**
+   * One instant on both clocks. A run of the day before has no clocks any more; then a tone tells it, whose SCLK is that of
+   * its beginning by light time, or else the first event that came live, which was on its way a little longer.
+   */
+  private get instant(): { sclk: number; ert: string } {
+    if (this.clocks?.ert) return { sclk: this.seenSclk, ert: this.clocks.ert };
+    const tone = this.tones[0]?.fact;
+    if (tone) return { sclk: tone.sclk, ert: tone.ertStart };
+    const event = this.events.find((row) => row.live)?.fact;
+    return { sclk: event?.sclk ?? NaN, ert: event?.ert ?? '' };
   }
 
   update(run: RunState): void {
@@ -111,20 +128,30 @@ export class RunStore {
     this.completeThrough = Math.max(this.completeThrough, batch.completeThrough);
     if (batch.clocks) this.clocks = batch.clocks;
     if (batch.thinned) this.thinnedSinceHistory = true;
-    for (const column of batch.columns) this.series(column).append(column.sclk, column.value);
+    for (const column of batch.columns) {
+      this.series(column).append(column.sclk, column.value);
+      this.sawSclk(column.sclk.at(-1));
+    }
     for (const fact of batch.facts) this.addFact(fact);
     if (this.events.length > EVENT_LIMIT) this.events.splice(0, this.events.length - EVENT_LIMIT);
   }
 
   addHistory(columns: Column[]): void {
     ++this.version;
-    for (const column of columns) this.series(column).replaceBefore(column.sclk, column.value);
+    for (const column of columns) {
+      this.series(column).replaceBefore(column.sclk, column.value);
+      this.sawSclk(column.sclk.at(-1));
+    }
   }
 
   /** A range that was asked for: exact where what we held was thinned. */
   addRange(columns: Column[], from_sclk: number, to_sclk: number): void {
     ++this.version;
     for (const column of columns) this.series(column).replace(from_sclk, to_sclk, column.sclk, column.value);
+  }
+
+  private sawSclk(sclk: number | undefined): void {
+    if (sclk !== undefined && sclk > this.newestSclk) this.newestSclk = sclk;
   }
 
   private series(column: Column): Series {
@@ -135,6 +162,7 @@ export class RunStore {
   }
 
   private addFact(item: Fact): void {
+    if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     switch (item.kind) {
       case 'event':
         this.addTwin(this.events, item, (a, b) => a.id === b.id && a.text === b.text);

@@ -1,7 +1,7 @@
 // The stretch of time that timeline, tones and plots show together, in seconds from entry.
 import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';
-import { pastRange } from './session';
+import { pastRange, replay } from './session';
 import type { RunStore } from './store';
 
 export type Choice = 'landing' | 'run' | 'minute' | { from: number; to: number };
@@ -13,10 +13,10 @@ export interface Span {
 }
 
 export function spanNow(store: RunStore | undefined): Span {
-  if (pastRange.value) return pastRange.value;
+  if (pastRange.value && !replay.value) return pastRange.value;
   const wanted = choice.value;
   if (typeof wanted === 'object') return wanted;
-  const seen = store?.seenE ?? 0;
+  const seen = pastRange.value?.to ?? store?.seenE ?? 0;
   const begin = store ? store.run.startSclk - store.entrySclk : LAYOUT.window.from;
   if (wanted === 'run') return { from: Math.min(begin, LAYOUT.window.from), to: Math.max(LAYOUT.window.to, seen + 5) };
   if (wanted === 'minute') return { from: seen - 60, to: seen + 15 };
@@ -28,13 +28,13 @@ export function spanNow(store: RunStore | undefined): Span {
 /** Plots end a little after the newest sample, so that no half of them is empty. */
 export function plotSpan(store: RunStore | undefined): Span {
   const span = spanNow(store);
-  if (pastRange.value || typeof choice.value === 'object' || !store) return span;
-  const to = Math.min(span.to, Math.max(store.seenE + 8, span.from + 60));
+  if ((pastRange.value && !replay.value) || typeof choice.value === 'object' || !store) return span;
+  const to = Math.min(span.to, Math.max((pastRange.value?.to ?? store.seenE) + 8, span.from + 60));
   return { from: span.from, to };
 }
 
 export function zoom(store: RunStore | undefined, factor: number, around?: number): void {
-  if (pastRange.value) return;
+  if (pastRange.value && !replay.value) return;
   const { from, to } = spanNow(store);
   const middle = around ?? Math.min(to, Math.max(from, store?.seenE ?? (from + to) / 2));
   const width = Math.min(86400 * 3, Math.max(0.5, (to - from) * factor));
@@ -43,7 +43,7 @@ export function zoom(store: RunStore | undefined, factor: number, around?: numbe
 }
 
 export function pan(store: RunStore | undefined, part: number): void {
-  if (pastRange.value) return;
+  if (pastRange.value && !replay.value) return;
   const { from, to } = spanNow(store);
   const by = (to - from) * part;
   choice.value = { from: from + by, to: to + by };

@@ -2,18 +2,22 @@
 import { signal } from '@preact/signals';
 import { openCommandLine } from '../commands/line';
 import { changePace, togglePause } from '../rehearsal/view';
-import { backToLive } from '../recorded/view';
-import { dismissNotice, pastRange, store } from '../run/session';
+import { toggleGuide } from '../guide/model';
+import { toggleReplay } from '../replay/model';
+import { backToLive, dismissNotice, pastRange, store } from '../run/session';
+import { closeTimepoint, stepTimepoint } from '../timeline/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
-export type Tab = 'channels' | 'packets' | 'recorded' | 'rehearsal';
+export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'recorded' | 'rehearsal';
 export const tab = signal<Tab>('channels');
-export const TABS: { id: Tab; title: string; key: string }[] = [
-  { id: 'channels', title: 'Channels', key: 'c' },
-  { id: 'packets', title: 'Packets', key: 'k' },
-  { id: 'recorded', title: 'Recorded range', key: 'r' },
-  { id: 'rehearsal', title: 'Rehearsals and runs', key: 's' },
+export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
+  { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
+  { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
+  { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
+  { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
+  { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
+  { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
 ];
 
 export function focusPanel(which: Tab): void {
@@ -41,6 +45,7 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['+', '='], shown: '+', words: 'faster', act: () => changePace(1) },
   { keys: ['-', '−'], shown: '−', words: 'slower', act: () => changePace(-1) },
   { keys: ['p'], shown: 'p', words: 'pause and go on', act: togglePause },
+  { keys: ['y'], shown: 'y', words: 'replay the landing; again: leave', act: toggleReplay },
   { keys: ['1'], shown: '1', words: 'show the landing', act: () => (choice.value = 'landing') },
   { keys: ['2'], shown: '2', words: 'show the last minute', act: () => (choice.value = 'minute') },
   { keys: ['3'], shown: '3', words: 'show the whole run', act: () => (choice.value = 'run') },
@@ -48,13 +53,18 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['['], shown: '[', words: 'zoom out', act: () => zoom(store.value, 2) },
   { keys: ['ArrowLeft'], shown: '←', words: 'earlier', act: () => pan(store.value, -0.25) },
   { keys: ['ArrowRight'], shown: '→', words: 'later', act: () => pan(store.value, 0.25) },
-  ...TABS.map(({ id, title, key }) => ({ keys: [key], shown: key, words: title.toLowerCase(), act: () => focusPanel(id) })),
+  { keys: ['.'], shown: '.', words: 'next timepoint: state, offsets, why it fired or has not', act: () => stepTimepoint(1) },
+  { keys: [','], shown: ',', words: 'timepoint before', act: () => stepTimepoint(-1) },
+  { keys: ['e'], shown: 'e', words: 'search the events', act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus() },
+  ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
+  { keys: ['g'], shown: 'g', words: 'the guide for a first landing', act: toggleGuide },
   { keys: ['t'], shown: 't', words: 'dark or light', act: toggleTheme },
   { keys: ['?'], shown: '?', words: 'these keys', act: () => (helpShown.value = !helpShown.value) },
   {
-    keys: ['Escape'], shown: 'Esc', words: 'close this, or leave a past view',
+    keys: ['Escape'], shown: 'Esc', words: 'close what is open, or leave a past view',
     act: () => {
       if (helpShown.value) helpShown.value = false;
+      else if (closeTimepoint()) return;
       else if (pastRange.value) backToLive();
       else dismissNotice();
     },

@@ -1,17 +1,20 @@
 import { SHORTCUTS, helpShown } from './model';
 import './style.css';
 
-/** In a corner and not over the display: the landing goes on. */
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'recorded', 'rehearsal'];
+
+/** In a corner and not over what matters: the landing goes on. */
 export function Help() {
   if (!helpShown.value) return null;
   return (
     <aside class="help" data-testid="help" aria-label="keys">
-      <h2>Keys</h2>
+      <h2>Keys <button type="button" class="quiet" onClick={() => (helpShown.value = false)}>close <kbd>Esc</kbd></button></h2>
       <dl>
         {SHORTCUTS.map((each) => (
           <div key={each.shown}><dt><kbd>{each.shown}</kbd></dt><dd>{each.words}</dd></div>
         ))}
       </dl>
+      <p>For further monitors, a panel alone: {PANELS.map((panel) => <><a key={panel} href={`?panel=${panel}`} target="_blank" rel="noopener">{panel}</a> </>)}</p>
     </aside>
   );
 }

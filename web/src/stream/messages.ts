@@ -52,7 +52,7 @@ export type ControlAction =
   | { action: 'pace'; pace: number }
   | { action: 'stop' };
 
-export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording';
+export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof';
 
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }

@@ -7,7 +7,7 @@
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage } from '@bufbuild/protobuf';
 import {
-  ChannelSeriesListSchema, DictionaryReplySchema, PacketListSchema, RecordingSummarySchema, RunListSchema,
+  ChannelSeriesListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
   ScenarioListSchema, TimepointListSchema,
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
@@ -208,7 +208,7 @@ async function fetchHistory(all = true): Promise<void> {
 
 const ANSWERS: Record<Question, DescMessage> = {
   runs: RunListSchema, dictionary: DictionaryReplySchema, timepoints: TimepointListSchema, scenarios: ScenarioListSchema,
-  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema,
+  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema,
 };
 
 async function askJson(path: string): Promise<unknown> {
@@ -256,7 +256,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
           $typeName: 'aeolis.v1.CommandRequest', run: BigInt(message.run), command: message.command,
           arguments: message.arguments.map((a) => ({ $typeName: 'aeolis.v1.CommandArgument', ...a })),
           armed: message.armed, confirmation: message.confirmation, request: BigInt(message.request),
-          fromSolution: message.fromSolution,
+          fromSolution: message.fromSolution, service: '', dryRun: false, releaseAt: '', hold: false, priority: 0, action: '', number: 0n,
         },
       });
       if (!sent) post({ type: 'refusal', reason: 'not connected: nothing was sent' });

@@ -3,12 +3,12 @@ import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
-import { Panel } from '../panel';
-import { cutoff, pastRange, runNow, store, tick, timepoints } from '../run/session';
+import { Panel } from '../design/panel';
+import { cutoff, pastRange, replay, runNow, store, tick, timepoints } from '../run/session';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { firedCount, lanesOf, pointDetail, shortReason, title } from './model';
+import { firedCount, lanesOf, nextTimepoint, pointDetail, shortReason, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
@@ -17,6 +17,21 @@ const TOP = 26;
 const LANE = 25;
 const LANES = ['plan', 'by tone', 'by UHF, live', 'by recording'] as const;
 const selected = signal<number | undefined>(undefined);
+
+/** By keyboard: the timepoint after or before the one that is shown; from nothing, the next that the vehicle waits for. */
+export function stepTimepoint(direction: 1 | -1): void {
+  const plan = timepoints.value;
+  const at = plan.findIndex((row) => row.id === selected.value);
+  const run = store.value;
+  const next = run && nextTimepoint(run, plan, cutoff.value);
+  const to = at >= 0 ? plan[at + direction] : next ?? plan[plan.length - 1];
+  if (to) selected.value = to.id;
+}
+export function closeTimepoint(): boolean {
+  const open = selected.value !== undefined;
+  selected.value = undefined;
+  return open;
+}
 
 let hits: { x: number; y: number; id: number }[] = [];
 
@@ -34,7 +49,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   c.textBaseline = 'middle';
   c.font = `11px ${colours.mono}`;
   for (const e_s of ticks(from, to, step)) {
-    c.strokeStyle = e_s === 0 ? colours.faint : colours.line;
+    c.strokeStyle = e_s === 0 ? colours.edge : colours.line;
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
     if (Math.abs(x(e_s) - cursor) > 58) c.fillText(axisTime(e_s, step), x(e_s), 11);
@@ -55,7 +70,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   c.rect(GUTTER - 6, 0, width - GUTTER, height);
   c.clip();
   drawOutages(c, lanes, x, y, width, colours);
-  if (lanes.recorded.length === 0) {
+  if (lanes.recorded.length === 0 && !pastRange.value) {
     c.fillStyle = colours.dim;
     c.textAlign = 'center';
     const words = lanes.relay > 0 ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
@@ -63,9 +78,11 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
     c.fillText(words, (GUTTER + width) / 2, y(3) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
-  marks(lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.violet), false);
-  marks(lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : diamond(c, px, py, 5, colours.blue)), true);
-  marks(lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.amber) : disc(c, px, py, 3.6, colours.green)), true);
+  marks(lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.tone), false);
+  marks(lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
+  marks(lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : disc(c, px, py, 3.6, colours.recording)), true);
+  const chosen = hits.filter((hit) => hit.id === selected.value);
+  for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
   cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8, run.going);
   c.restore();
@@ -84,10 +101,10 @@ function drawOutages(
       c.fillRect(left, y(lane) - 8, right - left, 16);
       c.save();
       c.globalAlpha = 0.2;
-      c.fillStyle = colours.amber;
+      c.fillStyle = colours.caution;
       c.fillRect(left, y(lane) - 8, right - left, 16);
       c.restore();
-      c.strokeStyle = colours.amber;
+      c.strokeStyle = colours.caution;
       c.setLineDash([3, 3]);
       c.strokeRect(left + 0.5, y(lane) - 7.5, right - left - 1, 15);
       c.setLineDash([]);
@@ -95,7 +112,7 @@ function drawOutages(
       c.beginPath();
       c.rect(left, y(lane) - 8, right - left, 16);
       c.clip();
-      c.fillStyle = colours.amber;
+      c.fillStyle = colours.caution;
       c.textAlign = 'left';
       c.font = `11px ${colours.sans}`;
       const words = c.measureText(outage.words).width + 12 < right - left ? outage.words : shortReason(outage.words);
@@ -153,7 +170,7 @@ function cursors(
 ): void {
   if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom, right);
   const past = pastRange.value;
-  flag(c, x(past ? past.to : seen), past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
+  flag(c, x(past ? past.to : seen), replay.value ? 'replayed to' : past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
 }
 
 function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number, right: number): void {
@@ -262,7 +279,7 @@ export function Timeline() {
         <span data-testid="timepoints-fired">{fired} of {timepoints.value.length} timepoints fired</span>
         <span class="choices" role="group" aria-label="Stretch of time">
           {CHOICES.map(([id, words, key]) => (
-            <button type="button" key={id} aria-pressed={choice.value === id} disabled={pastRange.value !== undefined}
+            <button type="button" key={id} aria-pressed={choice.value === id} disabled={pastRange.value !== undefined && !replay.value}
               onClick={() => (choice.value = id)} title={`key ${key}`}>{words}</button>
           ))}
           <button type="button" title="key ]" aria-label="zoom in" onClick={() => zoom(run, 0.5)}>+</button>
@@ -276,7 +293,7 @@ export function Timeline() {
         label="Timepoints by plan, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
         keyOf={() => {
           const span = spanNow(store.value);
-          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value}`;
+          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value}`;
         }}
         draw={drawTimeline}
         onPoint={select}

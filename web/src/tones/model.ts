@@ -35,12 +35,33 @@ export function toneTitle(tone: Tone | undefined): string {
   return `Tone ${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
 }
 
+function lockInWords(tone: Tone): string {
+  if (tone.locked) return `■ lock, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
+  if (tone.lock === 'fluctuating' || tone.lock === 'coasting') return `▨ ${tone.lock}, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
+  return '□ no lock';
+}
+
+/** The best tones with their likelihoods, all that came. */
+export function bestTones(tone: Tone | undefined): string {
+  return (tone?.best ?? []).map((each) => `${each.tone}: ${each.likelihood.toFixed(4)}`).join(' · ');
+}
+
+export interface SpectrumLine {
+  tone: number; // and the next one
+  level_db: number; // energy over noise
+}
+
+/** The receiver's spectrum of tones; none when the decision does not come from a signal. */
+export function toneSpectrum(tone: Tone | undefined): SpectrumLine[] {
+  return Array.from(tone?.spectrum ?? [], (octet, index) => ({ tone: 2 * index, level_db: octet / 2 - 30 }));
+}
+
 export function toneEvidence(tone: Tone | undefined): string {
   if (!tone) return 'one of 256, each for 10 s';
   const parts: string[] = [];
   if (tone.tone !== undefined) parts.push(`likelihood ${tone.likelihood.toFixed(3)}`);
   if (tone.runnerUp !== undefined) parts.push(`next ${tone.runnerUp} at ${tone.runnerUpLikelihood.toFixed(3)}`);
-  parts.push(tone.locked ? `■ lock, ${tone.cN0Dbhz.toFixed(1)} dB-Hz` : '□ no lock');
+  parts.push(lockInWords(tone));
   if (tone.dopplerHz !== 0) parts.push(`Doppler ${(tone.dopplerHz / 1000).toFixed(1)} kHz`);
   if (tone.model !== '') parts.push(tone.model);
   return parts.join(' · ');

@@ -2,17 +2,40 @@
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
-import { Panel } from '../panel';
+import { Panel } from '../design/panel';
 import { cutoff, store, tick } from '../run/session';
 import { plotSpan } from '../run/window';
-import { latestTone, toneBars, toneEvidence, toneTitle } from './model';
+import { bestTones, latestTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
 import './style.css';
 
 const LEFT = 42;
+const SPECTRUM = 76; // wide, at the right, where there is one
+const LOUDEST_DB = 30;
 const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came need
 
-function draw({ context: c, width, height, colours }: Surface): void {
+/** What the receiver saw of the last symbol: beside the strip, each tone at its height in it. */
+function drawSpectrum({ context: c, width, colours }: Surface, y: (tone: number) => number): void {
+  const tone = store.value && latestTone(store.value, cutoff.value);
+  const left = width - SPECTRUM;
+  const right = width - 12;
+  for (const { tone: low, level_db } of toneSpectrum(tone)) {
+    const decided = tone?.tone !== undefined && (tone.tone & ~1) === low;
+    const long = (Math.max(0, Math.min(LOUDEST_DB, level_db)) / LOUDEST_DB) * (right - left);
+    const thick = decided ? 2 : 1;
+    c.fillStyle = decided ? colours.tone : colours.dim;
+    c.fillRect(left, y(low + 0.5) - thick / 2, Math.max(1, long), thick);
+  }
+  c.fillStyle = colours.dim;
+  c.font = `10px ${colours.mono}`;
+  c.textAlign = 'right';
+  c.fillText(`${LOUDEST_DB} dB`, right, 10);
+}
+
+function draw(surface: Surface): void {
+  const { context: c, height, colours } = surface;
   const run = store.value;
+  const heard = toneSpectrum(run && latestTone(run, cutoff.value)).length > 0;
+  const width = surface.width - (heard ? SPECTRUM : 0);
   const { from, to } = plotSpan(run);
   const bottom = height - 20;
   const x = (e_s: number) => LEFT + ((e_s - from) / (to - from)) * (width - LEFT - 12);
@@ -55,7 +78,7 @@ function draw({ context: c, width, height, colours }: Surface): void {
     }
     const last = index === bars.length - 1;
     c.globalAlpha = last ? 1 : 0.35 + 0.4 * Math.min(1, Math.max(0, bar.likelihood));
-    c.fillStyle = colours.violet;
+    c.fillStyle = colours.tone;
     c.fillRect(left, y(bar.tone) - 3.5, wide, 7);
     c.globalAlpha = 1;
     const before = bars[index - 1];
@@ -69,6 +92,13 @@ function draw({ context: c, width, height, colours }: Surface): void {
     }
   });
   c.restore();
+  if (!heard) return;
+  c.save();
+  c.beginPath();
+  c.rect(surface.width - SPECTRUM, 0, SPECTRUM, bottom + 4); // tones above the strip's are not shown
+  c.clip();
+  drawSpectrum(surface, y);
+  c.restore();
 }
 
 export function Tones() {
@@ -76,7 +106,7 @@ export function Tones() {
   const tone = store.value && latestTone(store.value, cutoff.value);
   return (
     <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>}>
-      <p class="tone-evidence" data-testid="tone-evidence">{toneEvidence(tone)}</p>
+      <p class="tone-evidence" data-testid="tone-evidence" title={bestTones(tone)}>{toneEvidence(tone)}</p>
       <Canvas label={toneTitle(tone)} testId="tone-canvas" draw={draw} keyOf={() => {
         const span = plotSpan(store.value);
         return `${store.value?.id} ${store.value?.tones.length} ${Math.round(span.from * 2)} ${Math.round(span.to * 2)} ${cutoff.value}`;

@@ -7,7 +7,7 @@ import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import { duration, fromEntry } from '../run/time';
-import { nextTimepoint } from '../timeline/model';
+import { isImportant, nextTimepoint } from '../timeline/model';
 
 /** holds: yes, no, or not known. */
 export interface Line {
@@ -52,6 +52,13 @@ export function waitingFor(
   return { kind: 'waiting', title: `Waiting for ${inWords(next.name)}`, words: next.note, lines: conditions(store, dictionary, next, cutoff) };
 }
 
+/** The named moment after the one that is waited for, when that one itself has no name that people know. */
+export function thenNamed(store: RunStore, plan: readonly TimepointRow[], cutoff: number): string | undefined {
+  const next = nextTimepoint(store, plan, cutoff);
+  if (!next || isImportant(next.name)) return undefined;
+  return plan.slice(plan.indexOf(next)).find((row) => isImportant(row.name))?.name;
+}
+
 function ended(store: RunStore): Waiting {
   const run = store.run;
   const complete = run.relayProgress >= 1 ? 'The recording is complete.' : `${Math.round(run.relayProgress * 100)} % of the recording came down.`;
@@ -82,7 +89,7 @@ function beginning(store: RunStore, dictionary: Dictionary): Waiting {
   return {
     kind: 'begin',
     title: missing ? `Press / and type “${missing.words}”` : 'Sent. Waiting for the vehicle’s answer',
-    words: missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, or by UHF once that is on.',
+    words: missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.',
     lines: steps.map((step) => {
       const evidence = stepEvidence(store, step);
       return { words: step.words, value: evidence ?? sending(store, step) ?? failure(store, step) ?? 'to be sent', holds: evidence !== undefined };

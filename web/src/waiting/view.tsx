@@ -1,17 +1,11 @@
-import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';
 import { openCommandLine } from '../commands/line';
-import { cutoff, dictionary, modeNow, runNow, store, timepoints } from '../run/session';
+import { cutoff, dictionary, runNow, store, takesCommands, timepoints } from '../run/session';
+import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
-import { waitingFor } from './model';
+import { inWords } from '../run/dictionary';
+import { thenNamed, waitingFor } from './model';
 import './style.css';
-
-const hintShown = signal(sessionStorage.getItem('aeolis-hint') !== 'dismissed');
-
-function dismiss(): void {
-  hintShown.value = false;
-  sessionStorage.setItem('aeolis-hint', 'dismissed');
-}
 
 const look = (holds: boolean | undefined) => (holds === undefined ? 'unknown' : holds ? 'holds' : 'missing');
 const SHAPES = { holds: '✓', missing: '○', unknown: '?' } as const;
@@ -31,11 +25,12 @@ export function WaitingFor() {
     );
   }
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value);
+  const then = waiting.kind === 'waiting' ? thenNamed(run, timepoints.value, cutoff.value) : undefined;
   return (
     <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting" aria-live="polite">
-      {modeNow() === 'past' && <span class="past-mark">past</span>}
+      <ModeMark />
       <h2>{waiting.title}</h2>
-      <p>{waiting.words}</p>
+      <p>{waiting.words}{then && <> Then <b>{inWords(then)}</b>.</>}</p>
       <ul>
         {waiting.lines.map((line) => (
           <li key={line.words} class={look(line.holds)}>
@@ -45,19 +40,8 @@ export function WaitingFor() {
           </li>
         ))}
       </ul>
-      {waiting.kind === 'begin' && modeNow() === 'rehearsal' && (
+      {waiting.kind === 'begin' && takesCommands() && (
         <button type="button" class="primary" onClick={() => openCommandLine(firstMissing())}>Open the command line <kbd>/</kbd></button>
-      )}
-      {hintShown.value && run.going && (
-        <p class="hint" data-testid="hint">
-          {waiting.kind === 'begin'
-            ? <>New here? Both commands must reach the vehicle in time. Enter goes one step on, Esc one back. <kbd>?</kbd> shows all keys.</>
-            : <>Nothing more to press. <kbd>+</kbd> and <kbd>−</kbd> change the pace, <kbd>p</kbd> pauses; the landing takes seven minutes from entry.</>}
-          <button type="button" class="quiet" onClick={dismiss} aria-label="dismiss the hint">×</button>
-        </p>
-      )}
-      {waiting.kind === 'ended' && hintShown.value && (
-        <p class="hint">Everything is kept. <kbd>r</kbd> asks for a recorded range; start another landing under Rehearsal.</p>
       )}
     </section>
   );

@@ -1,6 +1,6 @@
-// The frame of every panel: its title, what stands at its right, and the mark of a past view, which no panel can omit.
+// The frame of every panel: its title, its mode, which no panel can leave out, and what stands at its right.
 import type { ComponentChildren } from 'preact';
-import { modeNow } from './run/session';
+import { ModeMark } from '../mode/view';
 
 interface Properties {
   name: string;
@@ -10,13 +10,12 @@ interface Properties {
 }
 
 export function Panel({ name, title, extra, children }: Properties) {
-  const mode = modeNow();
   return (
     <section class={`panel panel-${name}`} data-testid={`panel-${name}`} aria-label={name}>
       <header class="panel-head">
         <h2>{title}</h2>
-        {mode === 'past' && <span class="past-mark">past</span>}
         <div class="panel-extra">{extra}</div>
+        <ModeMark />
       </header>
       <div class="panel-body">{children}</div>
     </section>

@@ -1,0 +1,32 @@
+#include "commands/command_queue.hpp"
+
+#include <algorithm>
+
+namespace aeolis::commands {
+
+void CommandQueue::add(const Entry& entry) {
+    const auto place = std::ranges::find_if(entries_, [&](const Entry& each) { return each.priority < entry.priority; });
+    entries_.insert(place, entry);
+}
+
+bool CommandQueue::set_held(std::uint64_t number, bool held) {
+    const auto found = std::ranges::find(entries_, number, &Entry::number);
+    if (found == entries_.end()) return false;
+    found->held = held;
+    return true;
+}
+
+bool CommandQueue::cancel(std::uint64_t number) {
+    return std::erase_if(entries_, [&](const Entry& each) { return each.number == number; }) > 0;
+}
+
+std::vector<std::uint64_t> CommandQueue::take_due(Ert now) {
+    std::vector<std::uint64_t> due;
+    const auto is_due = [&](const Entry& each) { return !each.held && (!each.release_at || *each.release_at <= now); };
+    for (const Entry& each : entries_)
+        if (is_due(each)) due.push_back(each.number);
+    std::erase_if(entries_, is_due);
+    return due;
+}
+
+} // namespace aeolis::commands

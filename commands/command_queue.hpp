@@ -1,0 +1,43 @@
+#pragma once
+
+#include "common/time.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace aeolis::commands {
+
+/// Commands that may be sent and have not left: they wait for their time, or for a controller.
+///
+/// Order    of those that are due, the larger priority first; of equals as they came
+/// Memory   a line a command; whoever adds them bounds their number
+class CommandQueue {
+  public:
+    struct Entry {
+        std::uint64_t number = 0;
+        std::uint32_t priority = 0;
+        std::optional<Ert> release_at; ///< none: at once
+        bool held = false;
+    };
+
+    void add(const Entry& entry);
+
+    /// False when no such command waits.
+    bool hold(std::uint64_t number) { return set_held(number, true); }
+    bool release(std::uint64_t number) { return set_held(number, false); } ///< it still waits for its time
+    bool cancel(std::uint64_t number);
+
+    /// Takes out those that are due, in the order in which they leave.
+    std::vector<std::uint64_t> take_due(Ert now);
+
+    /// In the order in which they would leave.
+    const std::vector<Entry>& waiting() const { return entries_; }
+
+  private:
+    bool set_held(std::uint64_t number, bool held);
+
+    std::vector<Entry> entries_;
+};
+
+} // namespace aeolis::commands

@@ -1,0 +1,231 @@
+#include "server/archive/reader.hpp"
+#include "server/archive/reader_state.hpp"
+#include "server/archive/row_reader.hpp"
+#include "server/archive/schema.hpp"
+#include "telemetry/text.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+// What was seen live against the recording. A unit is found on the other path by APID, SCLK and packet count; its octets decide.
+namespace aeolis::archive {
+
+namespace {
+
+enum class OnOtherPath : std::uint8_t { identical = 0, differs = 1, absent = 2, not_decoded = 3 };
+
+constexpr char other_sql[] =
+    "SELECT o.octets <> u.octets, o.octets FROM units u JOIN units o ON o.run = u.run AND o.apid = u.apid"
+    " AND o.source = 3 - u.source AND o.sclk = u.sclk AND o.packet IS NOT NULL"
+    " AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2) WHERE u.key = ?1 ORDER BY 1 LIMIT 1";
+
+constexpr char totals_sql[] =
+    "SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), u.packet, u.apid, u.source,"
+    " u.standing = 1, CASE WHEN u.packet IS NULL THEN 3 ELSE coalesce("
+    "(SELECT o.octets <> u.octets FROM units o WHERE o.run = u.run AND o.apid = u.apid AND o.source = 3 - u.source"
+    " AND o.sclk = u.sclk AND o.packet IS NOT NULL AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2)"
+    " ORDER BY 1 LIMIT 1), 2) END, count(*)"
+    " FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
+
+constexpr char selections_sql[] =
+    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
+
+constexpr char counters_sql[] = "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
+                                " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
+
+constexpr double half_a_symbol_s = 5.0; // a tone is sent for 10 s; no two begin in less than that
+
+const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
+    switch (found) {
+    case OnOtherPath::identical:
+        return "identical";
+    case OnOtherPath::differs:
+        return "differs";
+    case OnOtherPath::not_decoded:
+        return "not_decoded";
+    case OnOtherPath::absent:
+        break;
+    }
+    if (source == Source::recorded) return "never_seen_live";
+    return recording_complete ? "missing_in_recording" : "pending";
+}
+
+void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_complete, std::uint64_t units) {
+    if (found == OnOtherPath::not_decoded) {
+        row.set_not_decoded(row.not_decoded() + units);
+    } else if (source == Source::recorded) {
+        row.set_recorded(row.recorded() + units);
+        if (found == OnOtherPath::absent) row.set_never_seen_live(row.never_seen_live() + units);
+    } else {
+        row.set_realtime(row.realtime() + units);
+        if (found == OnOtherPath::identical) row.set_identical(row.identical() + units);
+        if (found == OnOtherPath::differs) row.set_differs(row.differs() + units);
+        if (found == OnOtherPath::absent && recording_complete) row.set_missing_in_recording(row.missing_in_recording() + units);
+        if (found == OnOtherPath::absent && !recording_complete) row.set_pending(row.pending() + units);
+    }
+}
+
+struct Selection {
+    double started_s = 0.0;
+    std::uint32_t tone = 0;
+    bool seen = false; ///< a decision of the receiver is about it, be it an erasure
+};
+
+/// Every tone that was sent, as the recording has it.
+Result<std::vector<Selection>> selections(Reader::State& reader, RunId run) {
+    std::vector<Selection> all;
+    const auto* packet = reader.dictionary.packet("ToneSelected");
+    if (packet == nullptr) return all;
+    const auto tone = telemetry::field_index(*packet, "tone");
+    const auto started = telemetry::field_index(*packet, "started_sclk");
+    auto rows = reader.query(selections_sql);
+    if (!rows) return rows.error();
+    (*rows)
+        ->bind(1, std::int64_t{run.value})
+        .bind(2, std::int64_t{packet->apid.value})
+        .bind(3, static_cast<std::int64_t>(packet - reader.dictionary.packets.data()));
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return all;
+        if (!tone || !started || !reader.decode((*rows)->octets(0))) continue;
+        const auto at = reader.decoded.value[*started], number = reader.decoded.value[*tone];
+        if (at && number) all.push_back({*at, static_cast<std::uint32_t>(*number)});
+    }
+}
+
+v1::ToneVerdict verdict_on(const ToneRecord& decided, std::vector<Selection>& sent, bool recording_complete) {
+    v1::ToneVerdict verdict;
+    verdict.set_sclk(decided.sclk.seconds);
+    if (decided.tone) verdict.set_decoded(decided.tone->value);
+    const auto distance = [&](const Selection& each) { return std::abs(each.started_s - decided.sclk.seconds); };
+    const auto nearest = std::ranges::min_element(sent, {}, distance);
+    const bool found = nearest != sent.end() && distance(*nearest) < half_a_symbol_s;
+    if (found) {
+        verdict.set_recorded(nearest->tone);
+        nearest->seen = true;
+    }
+    if (!decided.tone)
+        verdict.set_verdict("erased");
+    else if (!found)
+        verdict.set_verdict(recording_complete ? "missing_in_recording" : "pending");
+    else
+        verdict.set_verdict(decided.tone->value == nearest->tone ? "identical" : "differs");
+    return verdict;
+}
+
+} // namespace
+
+Result<bool> Reader::State::recording_complete(RunId run) {
+    auto rows = query("SELECT progress >= 1.0 FROM recordings WHERE run = ?1");
+    if (!rows) return rows.error();
+    (*rows)->bind(1, std::int64_t{run.value});
+    auto found = (*rows)->step();
+    if (!found) return found.error();
+    return *found && (*rows)->integer(0) != 0;
+}
+
+Result<Reader::State::Verdict> Reader::State::verdict_on(RunId run, const UnitRecord& unit, bool recording_complete) {
+    if (!unit.packet) return Verdict{name_of(OnOtherPath::not_decoded, unit.source, recording_complete)};
+    auto rows = query(other_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, unit.seq));
+    auto found = (*rows)->step();
+    if (!found) return found.error();
+    if (!*found) return Verdict{name_of(OnOtherPath::absent, unit.source, recording_complete)};
+    if ((*rows)->integer(0) == 0) return Verdict{name_of(OnOtherPath::identical, unit.source, recording_complete)};
+    const auto octets = (*rows)->octets(1);
+    return Verdict{name_of(OnOtherPath::differs, unit.source, recording_complete), {octets.begin(), octets.end()}};
+}
+
+Result<v1::ProofReport> Reader::proof(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    const auto complete = state_->recording_complete(run);
+    if (!complete) return complete.error();
+    const auto* words = state_->words_of(*info);
+
+    std::map<std::string, v1::ProofRow> streams, links;
+    auto rows = state_->query(totals_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        const auto& row = **rows;
+        const auto source = static_cast<Source>(row.integer(3));
+        const auto on_other_path = static_cast<OnOtherPath>(row.integer(5));
+        const auto units = static_cast<std::uint64_t>(row.integer(6));
+        const auto packet = static_cast<std::size_t>(row.integer(1));
+        const bool named = words != nullptr && !row.is_null(1) && packet < words->packets.size();
+        add(links[std::string{row.text(0)}], source, on_other_path, *complete, units);
+        const bool again = row.integer(4) != 0;
+        if (!again)
+            add(streams[named ? words->packets[packet].name : "APID " + std::to_string(row.integer(2))], source, on_other_path, *complete, units);
+    }
+    v1::ProofReport report;
+    report.set_recording_complete(*complete);
+    const auto give = [](std::map<std::string, v1::ProofRow>& from, auto* into) {
+        for (auto& [name, row] : from) {
+            row.set_name(name);
+            *into->Add() = std::move(row);
+        }
+    };
+    give(streams, report.mutable_streams());
+    give(links, report.mutable_links());
+    if (auto done = add_tones(run, *complete, report); !done) return done.error();
+    if (auto done = add_counters(run, report); !done) return done.error();
+    return report;
+}
+
+Result<void> Reader::add_tones(RunId run, bool complete, v1::ProofReport& report) {
+    auto sent = selections(*state_, run);
+    if (!sent) return sent.error();
+    auto rows = state_->query(row::tone_rows);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        *report.add_tones() = verdict_on(row::tone(**rows), *sent, complete);
+    }
+    for (const Selection& each : *sent) {
+        if (each.seen) continue;
+        auto& verdict = *report.add_tones();
+        verdict.set_sclk(each.started_s);
+        verdict.set_recorded(each.tone);
+        verdict.set_verdict("never_seen_live");
+    }
+    return {};
+}
+
+Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
+    auto rows = state_->query(counters_sql);
+    if (!rows) return rows.error();
+    (*rows)->bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return {};
+        const auto& row = **rows;
+        const auto number = [&](int column) { return static_cast<std::uint64_t>(row.integer(column)); };
+        auto& counters = *report.add_counters();
+        counters.set_link(std::string{row.text(0)});
+        counters.set_octets(number(1));
+        counters.set_frames(number(2));
+        counters.set_bad_crc(number(3));
+        counters.set_bad_header(number(4));
+        counters.set_skipped_octets(number(5));
+        counters.set_gaps(number(6));
+        counters.set_missing_frames(number(7));
+        counters.set_repeated_frames(number(8));
+        counters.set_octets_per_s(row.real(9));
+    }
+}
+
+} // namespace aeolis::archive

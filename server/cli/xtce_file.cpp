@@ -1,0 +1,47 @@
+#include "server/cli/xtce_file.hpp"
+
+#include "common/crc.hpp"
+#include "server/cli/shipped_paths.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::uintmax_t text_octets_max = std::uintmax_t{256} << 20U; // ours
+constexpr std::size_t findings_shown_max = 200;                        // ours: a person reads no more
+
+void print_findings(const std::vector<dictionary::Finding>& findings) {
+    for (std::size_t i = 0; i < findings.size() && i < findings_shown_max; ++i)
+        fmt::print(stderr, "{}:{}: {}\n", findings[i].file, findings[i].line, findings[i].message);
+    if (findings.size() > findings_shown_max)
+        fmt::print(stderr, "and {} more\n", findings.size() - findings_shown_max);
+}
+
+} // namespace
+
+Result<std::string> text_of_file(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    std::ifstream in{path, std::ios::binary};
+    if (error || !in) return Error{path.string() + " cannot be read"};
+    if (size > text_octets_max) return Error{path.string() + " is larger than " + std::to_string(text_octets_max) + " octets"};
+    return std::string{std::istreambuf_iterator<char>{in}, {}};
+}
+
+XtceFile read_xtce_file(const std::filesystem::path& path) {
+    const auto text = text_of_file(path);
+    if (!text) return {std::nullopt, failed(text.error().message, 2), 0};
+    std::vector<dictionary::Finding> all;
+    dictionary::Findings findings{path.string(), all};
+    XtceFile file{dictionary::xtce::read_packet_model(*text, findings), 0,
+                  crc16(std::vector<std::uint8_t>{text->begin(), text->end()})};
+    print_findings(all);
+    if (!file.model) file.exit_code = 1;
+    return file;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "common/result.hpp"
+#include "dictionaries/xtce/packet_model.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace aeolis::server {
+
+/// The text of a file, or one line that names it.
+Result<std::string> text_of_file(const std::filesystem::path& path);
+
+/// Any mission's XTCE file. What in it is not supported, or wrong, has been printed to stderr with its line.
+struct XtceFile {
+    std::optional<dictionary::xtce::PacketModel> model; ///< none: said why
+    int exit_code = 0;
+    std::uint16_t id = 0; ///< changes with every change of the file
+    explicit operator bool() const { return model.has_value(); }
+};
+XtceFile read_xtce_file(const std::filesystem::path& path);
+
+} // namespace aeolis::server

@@ -1,0 +1,185 @@
+#include "server/downlink/downlink_follower.hpp"
+
+#include "server/rehearsal/wall_clock.hpp"
+
+#include <algorithm>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::chrono::milliseconds connect_limit{10'000}; // ours
+constexpr std::chrono::milliseconds receive_limit{1'000};
+constexpr std::int64_t unix_to_2000_s = 946'728'000; // 1970-01-01 to 2000-01-01T12:00:00
+
+Ert now_on_earth() {
+    using namespace std::chrono;
+    const auto since_1970 = duration_cast<microseconds>(system_clock::now().time_since_epoch());
+    return Ert{since_1970.count() - unix_to_2000_s * 1'000'000};
+}
+
+} // namespace
+
+DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state)
+    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)), wait_(settings_.retry_first) {}
+
+Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline, OnState on_state) {
+    std::unique_ptr<DownlinkFollower> follower{new DownlinkFollower{std::move(settings), pipeline, std::move(on_state)}};
+    auto& self = *follower;
+    if (!needs_beginning(self.settings_.format))
+        if (const auto source = packet_source(self.settings_.format, {}); !source) return source.error();
+    if (self.settings_.address.udp) {
+        if (auto bound = self.socket_.open(self.settings_.address, connect_limit); !bound) return bound.error();
+        self.port_ = self.settings_.address.port = self.socket_.local_port();
+    }
+    self.start_.scenario = "downlink";
+    self.start_.title = self.settings_.address.text() + ", " + self.settings_.format.name + " by " + self.settings_.xtce;
+    self.start_.venue = "downlink";
+    self.start_.pace = 1.0;
+    self.start_.started = wall_clock_text();
+    const auto run = pipeline.begin(self.start_);
+    if (!run) return run.error();
+    self.run_ = *run;
+    spdlog::info("run {} begins: {}", self.run_.value, self.start_.title);
+    self.thread_ = std::thread{[&self] { self.follow(); }};
+    return follower;
+}
+
+DownlinkFollower::~DownlinkFollower() {
+    socket_.wake();
+    if (thread_.joinable()) thread_.join();
+}
+
+void DownlinkFollower::follow() {
+    on_state_(state("running"));
+    while (!stop_) {
+        if (settings_.address.udp)
+            say(true, "listening");
+        else if (!connect_again())
+            break;
+        receive_until_end();
+        end_of_stream();
+    }
+    const auto finished = pipeline_.finish({"stopped", "stopped", "", wall_clock_text()});
+    if (!finished) spdlog::error("run {}: its end could not be stored: {}", run_.value, finished.error().message);
+    spdlog::info("run {} ends: {} packets", run_.value, packets_);
+    on_state_(state("finished"));
+}
+
+/// False when it is over.
+bool DownlinkFollower::connect_again() {
+    while (!stop_) {
+        // After a stream that ended in confusion too: a sender that only confuses is not asked all the time.
+        if (!said_.empty() && socket_.sleep(wait_)) break;
+        wait_ = std::min(2 * wait_, settings_.retry_max);
+        const auto opened = socket_.open(settings_.address, connect_limit);
+        if (opened) {
+            say(true, "connected");
+            return true;
+        }
+        say(false, opened.error().message + "; trying again, at most every " + fmt::format("{:.3g} s", settings_.retry_max.count() * 1e-3));
+    }
+    stop_ = true;
+    return false;
+}
+
+void DownlinkFollower::receive_until_end() {
+    std::vector<std::uint8_t> piece(piece_octets);
+    lost_ = false;
+    for (;;) {
+        const auto received = socket_.receive(piece, receive_limit);
+        if (received.got == DownlinkSocket::Got::woken) {
+            stop_ = true;
+            return;
+        }
+        if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
+        if (received.got == DownlinkSocket::Got::nothing) continue;
+        take(std::span{piece}.first(received.octets));
+        if (settings_.address.udp && !needs_beginning(settings_.format) && settings_.format.name == "packets") end_of_stream();
+        if (stop_) return;
+        if (lost_ && !settings_.address.udp) {
+            socket_.close();
+            return say(false, "no packet begins where the last one ended: the connection is made anew");
+        }
+    }
+}
+
+void DownlinkFollower::take(std::span<const std::uint8_t> octets) {
+    if (!source_) {
+        if (!recognise(octets)) return;
+        octets = {};
+    }
+    if (!octets.empty()) source_->receive(octets);
+    deliver_packets();
+    lost_ = source_->lost();
+}
+
+/// Makes the source, once it is known how frames are, and gives it all that has come.
+bool DownlinkFollower::recognise(std::span<const std::uint8_t> octets) {
+    beginning_.insert(beginning_.end(), octets.begin(), octets.end());
+    // Looked through each time that it has doubled: what is received one octet at a time costs no more than twice.
+    const bool full = beginning_.size() >= beginning_octets_max;
+    const bool told = !needs_beginning(settings_.format);
+    if (!told && !full && beginning_.size() < 2 * tried_octets_) return false;
+    tried_octets_ = beginning_.size();
+    auto source = packet_source(settings_.format, beginning_);
+    if (source) {
+        source_.emplace(std::move(*source));
+        source_->receive(beginning_);
+    }
+    if (source || full) {
+        beginning_.clear();
+        tried_octets_ = 0;
+    }
+    if (full && !source) say(false, source.error().message);
+    return source.ok();
+}
+
+void DownlinkFollower::end_of_stream() {
+    if (source_) {
+        source_->end();
+        deliver_packets();
+    }
+    source_.reset();
+    beginning_.clear();
+    tried_octets_ = 0;
+}
+
+void DownlinkFollower::deliver_packets() {
+    Delivery delivery;
+    const Ert ert = now_on_earth();
+    while (const auto packet = source_->next())
+        delivery.entries.emplace_back(pipeline::DownlinkPacket{{packet->begin(), packet->end()}, ert});
+    if (delivery.entries.empty()) return;
+    packets_ += delivery.entries.size();
+    wait_ = settings_.retry_first;
+    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+}
+
+void DownlinkFollower::say(bool up, const std::string& reason) {
+    if (reason == said_) return;
+    said_ = reason;
+    if (up)
+        spdlog::info("downlink {}: {}", settings_.address.text(), reason);
+    else
+        spdlog::warn("downlink {}: {}", settings_.address.text(), reason);
+    Delivery delivery;
+    delivery.entries.emplace_back(pipeline::DownlinkState{up, reason, now_on_earth()});
+    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+    on_state_(state("running"));
+}
+
+v1::RunState DownlinkFollower::state(const std::string& word) const {
+    v1::RunState state;
+    state.set_run(run_.value);
+    state.set_scenario(start_.scenario);
+    state.set_title(start_.title);
+    state.set_venue(start_.venue);
+    state.set_state(word);
+    state.set_outcome(word == "finished" ? "stopped" : "running");
+    state.set_pace(start_.pace);
+    state.set_started(start_.started);
+    return state;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "flight/file_delivery/recording_delivery.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace aeolis::simulation {
+
+/// The rover's UHF radio after landing, with the delivery of files that runs on it.
+///
+/// In       the recording; PLTUs from ground; the rate of the pass, cycle by cycle     Out   PLTUs, as octets
+/// When nothing is left to send, and answers have not come in both light times and 10 s (ours), or a pass begins, the ends
+/// of the files on their way are announced again.
+class RelayRadio {
+  public:
+    explicit RelayRadio(double light_time_s) : answer_cycles_(cycles_for_answer(light_time_s)) {}
+
+    void receive(std::span<const std::uint8_t> pltu) { delivery_.on(pltu); }
+
+    /// One cycle at `rate_bps`, 0 without a pass: what is sent, good until the next. PLTUs go whole; a part of a cycle is saved up.
+    std::span<const std::uint8_t> cycle(const flight::RecordingDelivery::Recording& recording, double rate_bps);
+
+    /// A fault: it forgets what it was doing.
+    void restart() { delivery_ = {}; }
+
+    bool done(const flight::RecordingDelivery::Recording& recording) const { return delivery_.done(recording); }
+
+  private:
+    static std::int64_t cycles_for_answer(double light_time_s);
+
+    flight::RecordingDelivery delivery_;
+    std::vector<std::uint8_t> sent_;
+    double credit_octets_ = 0.0;
+    std::int64_t answer_cycles_, silent_cycles_ = 0;
+    bool in_pass_ = false;
+};
+
+} // namespace aeolis::simulation

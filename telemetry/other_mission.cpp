@@ -1,0 +1,243 @@
+#include "telemetry/other_mission.hpp"
+
+#include "common/bytes.hpp"
+#include "dictionaries/words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace aeolis::telemetry {
+namespace {
+
+using namespace dictionary::xtce;
+
+constexpr unsigned apid_position_bits = 5, apid_bits = 11; // [ccsds-133.0-b-2]
+
+std::optional<std::size_t> fixed_amount(const Amount& amount) {
+    const double value = amount.intercept;
+    if (!amount.known || amount.parameter || !amount.cases.empty() || !(value >= 0.0) || value > 1.0e6) return std::nullopt;
+    return static_cast<std::size_t>(value);
+}
+
+/// How many of a list are fields: all of a short list of known length.
+std::size_t elements_of(const std::vector<Amount>& last_indices) {
+    std::size_t elements = 1;
+    for (const Amount& last : last_indices) elements *= std::min(fixed_amount(last).value_or(OtherMission::elements_max - 1) + 1, OtherMission::elements_max);
+    return std::min(elements, OtherMission::elements_max);
+}
+
+bool is_number(const PacketType& type) {
+    switch (type.kind) {
+    case PacketType::Kind::integer:
+    case PacketType::Kind::real:
+    case PacketType::Kind::enumerated:
+    case PacketType::Kind::boolean:
+    case PacketType::Kind::time:
+        return type.coding.form != Coding::Form::text && type.coding.form != Coding::Form::octets;
+    default:
+        return false;
+    }
+}
+
+dictionary::Type type_of(const PacketType& type) {
+    dictionary::Type words;
+    words.name = type.name;
+    words.unit = type.kind == PacketType::Kind::time ? "s" : type.unit;
+    words.bits = static_cast<unsigned>(fixed_amount(type.coding.bits).value_or(0));
+    if (type.kind == PacketType::Kind::boolean) {
+        words.kind = dictionary::ValueKind::boolean;
+    } else if (type.kind == PacketType::Kind::enumerated) {
+        words.kind = dictionary::ValueKind::enumerated;
+        for (const auto& label : type.labels) words.enumeration.push_back({label.first, label.label});
+    } else if (type.kind != PacketType::Kind::integer || !type.coding.calibration.empty() || !type.coding.contexts.empty()) {
+        words.kind = dictionary::ValueKind::real;
+    }
+    const auto form = type.coding.form;
+    if (form == Coding::Form::ieee754 || form == Coding::Form::mil1750a)
+        words.encoding = dictionary::Encoding::ieee754;
+    else if (form != Coding::Form::unsigned_integer && form != Coding::Form::bcd)
+        words.encoding = dictionary::Encoding::twos_complement;
+    return words;
+}
+
+std::optional<double> channel_value(const DecodedValue& value) {
+    const auto number = [](const Datum& datum) -> std::optional<double> {
+        if (const auto* real = std::get_if<double>(&datum)) return *real;
+        if (const auto* whole = std::get_if<std::uint64_t>(&datum)) return static_cast<double>(*whole);
+        if (const auto* whole = std::get_if<std::int64_t>(&datum)) return static_cast<double>(*whole);
+        return std::nullopt;
+    };
+    // A label stands for its number.
+    if (std::holds_alternative<std::string>(value.calibrated)) return number(value.raw);
+    return number(value.calibrated);
+}
+
+} // namespace
+
+/// Makes packets and channels of containers and parameters, once.
+class OtherMission::Builder {
+  public:
+    Builder(OtherMission& mission, const PacketModel& model) : mission_(mission), model_(model) {}
+
+    void build() {
+        for (std::size_t i = 0; i < model_.containers.size(); ++i) {
+            const PacketContainer& container = model_.containers[i];
+            dictionary::Packet& packet = mission_.dictionary_.packets.emplace_back();
+            packet.name = names_.insert("packet " + container.name).second ? container.name : container.path.substr(1);
+            packet.apid = apid_of(i).value_or(any_apid);
+            mission_.fields_.emplace_back();
+            if (!container.abstract) add_container(i, 0);
+        }
+    }
+
+  private:
+    /// References within references multiply, also where depth is bounded: what is not reached counts as left out.
+    bool too_many_steps() {
+        if (++steps_ <= steps_max) return false;
+        mission_.left_out_ = std::max<std::size_t>(mission_.left_out_, 1);
+        return true;
+    }
+
+    /// Base containers first, as packets are read; no deeper than they are read.
+    void add_container(std::size_t index, unsigned depth) {
+        if (depth == ContainerDecoder::depth_max || too_many_steps()) return;
+        const PacketContainer& container = model_.containers[index];
+        if (container.base) add_container(*container.base, depth + 1);
+        for (const PacketEntry& entry : container.entries) {
+            if (entry.what == PacketEntry::What::unknown) return; // packets are read up to it
+            if (entry.what == PacketEntry::What::container) {
+                add_container(entry.index, depth + 1);
+                continue;
+            }
+            const PacketParameter& parameter = model_.parameters[entry.index];
+            const auto count = fixed_amount(entry.count);
+            parameter_ = entry.index;
+            if (count == 1U) {
+                add_type(parameter.name, model_.types[parameter.type], entry.last_indices, 0);
+                continue;
+            }
+            for (std::size_t i = 0; i < std::min(count.value_or(elements_max), elements_max); ++i)
+                add_type(parameter.name + "[" + std::to_string(i) + "]", model_.types[parameter.type], entry.last_indices, 0);
+        }
+    }
+
+    void add_type(const std::string& name, const PacketType& type, const std::vector<Amount>& last_indices, unsigned depth) {
+        if (depth == ContainerDecoder::depth_max || mission_.left_out_ > 0 || too_many_steps()) return;
+        if (type.kind == PacketType::Kind::aggregate) {
+            for (const auto& member : type.members) add_type(name + "." + member.name, model_.types[member.type], {}, depth + 1);
+        } else if (type.kind == PacketType::Kind::array) {
+            const auto& dimensions = last_indices.empty() ? type.last_indices : last_indices;
+            if (dimensions.size() != 1) return; // of tables only contents() speaks
+            for (std::size_t i = 0; i < elements_of(dimensions); ++i)
+                add_type(name + "[" + std::to_string(i) + "]", model_.types[type.element], {}, depth + 1);
+        } else if (is_number(type)) {
+            add_field(name, type);
+        }
+    }
+
+    void add_field(const std::string& name, const PacketType& type) {
+        auto& fields = mission_.fields_.back();
+        auto& channels = mission_.dictionary_.channels;
+        dictionary::Packet& packet = mission_.dictionary_.packets.back();
+        const FieldKey key{parameter_, name};
+        if (fields.contains(key)) return;
+        auto known = channels_.find(key);
+        if (++fields_ > fields_max || (known == channels_.end() && channels.size() == channels_max)) {
+            ++mission_.left_out_;
+            return;
+        }
+        if (known == channels_.end()) {
+            const PacketParameter& parameter = model_.parameters[parameter_];
+            const std::string with_path = parameter.path.substr(1) + name.substr(parameter.name.size());
+            const std::string& unique = names_.insert(name).second ? name : with_path;
+            const ChannelId channel{static_cast<std::uint16_t>(channels.size())};
+            channels.push_back({channel, unique, unique, type.name, type_of(type)});
+            known = channels_.emplace(key, channel).first;
+        }
+        const dictionary::Channel& channel = channels[known->second.value];
+        fields.emplace(key, packet.fields.size());
+        packet.fields.push_back({channel.name, channel.type, channel.id, 0, std::nullopt});
+    }
+
+    /// The parameter that stands where the primary header has the APID, in the container that all others derive from.
+    std::optional<std::size_t> apid_parameter(std::size_t root) const {
+        std::size_t position = 0;
+        for (const PacketEntry& entry : model_.containers[root].entries) {
+            if (entry.what != PacketEntry::What::parameter || entry.from != PacketEntry::From::previous ||
+                entry.when.form != Condition::Form::always || fixed_amount(entry.offset_bits) != 0U || fixed_amount(entry.count) != 1U)
+                return std::nullopt;
+            const PacketType& type = model_.types[model_.parameters[entry.index].type];
+            const auto bits = fixed_amount(type.coding.bits);
+            if (!is_number(type) || !bits) return std::nullopt;
+            if (position == apid_position_bits && *bits == apid_bits) return entry.index;
+            position += *bits;
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Apid> apid_of(std::size_t index) const {
+        std::size_t root = index;
+        for (unsigned depth = 0; model_.containers[root].base; root = *model_.containers[root].base)
+            if (++depth > ContainerDecoder::depth_max) return std::nullopt;
+        const auto parameter = apid_parameter(root);
+        if (!parameter) return std::nullopt;
+        for (std::size_t at = index;; at = *model_.containers[at].base) {
+            if (const auto apid = asked_for(model_.containers[at].when, *parameter)) return apid;
+            if (!model_.containers[at].base) return std::nullopt;
+        }
+    }
+
+    static std::optional<Apid> asked_for(const Condition& condition, std::size_t parameter) {
+        if (condition.form == Condition::Form::compare && condition.parameter == parameter && condition.member.empty() &&
+            condition.op == Condition::Operator::equal) {
+            const auto value = dictionary::to_integer(condition.value);
+            if (value && *value >= 0 && *value < 2048) return Apid{static_cast<std::uint16_t>(*value)};
+        }
+        if (condition.form != Condition::Form::all) return std::nullopt;
+        for (const Condition& part : condition.parts)
+            if (const auto apid = asked_for(part, parameter)) return apid;
+        return std::nullopt;
+    }
+
+    static constexpr std::size_t steps_max = std::size_t{1} << 21U; ///< ours: a second's work, and twice what fields_max takes
+    std::size_t steps_ = 0;
+    OtherMission& mission_;
+    const PacketModel& model_;
+    std::map<FieldKey, ChannelId> channels_;
+    std::set<std::string> names_; ///< taken
+    std::size_t parameter_ = 0;   ///< whose fields are being added
+    std::size_t fields_ = 0;
+};
+
+OtherMission::OtherMission(PacketModel model, std::uint16_t id) : model_(std::move(model)), decoder_(model_) {
+    dictionary_.mission = model_.name;
+    dictionary_.id = id;
+    Builder{*this, model_}.build();
+}
+
+std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> packet, Decoded& into) const {
+    // Of the primary header only what each mission means alike: parts of segmented packets are packets too.
+    if (space_packet_octets(packet) != packet.size()) return name_of(Refusal::not_a_packet);
+    const DecodedContents contents = decoder_.decode(packet);
+    if (model_.containers.empty() || contents.values.empty() || model_.containers[contents.container_index].abstract)
+        return contents.problem.empty() ? std::string{"no container describes it"} : contents.problem;
+    into.packet = contents.container_index;
+    into.header = {};
+    into.header.primary.apid = Apid{static_cast<std::uint16_t>(read_bits(packet, apid_position_bits, apid_bits))};
+    into.header.time = Sclk{contents.time ? contents.time->seconds : 0.0};
+    const std::size_t fields = dictionary_.packets[into.packet].fields.size();
+    into.raw.assign(fields, 0);
+    into.value.assign(fields, std::nullopt);
+    const auto& names = fields_[into.packet];
+    for (const DecodedValue& value : contents.values) {
+        const auto field = names.find({value.parameter, value.name});
+        if (field == names.end()) continue;
+        into.value[field->second] = channel_value(value);
+        if (const auto* raw = std::get_if<std::uint64_t>(&value.raw)) into.raw[field->second] = *raw;
+    }
+    return std::nullopt;
+}
+
+} // namespace aeolis::telemetry

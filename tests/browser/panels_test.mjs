@@ -1,0 +1,135 @@
+// Every panel alone and the whole console, in both themes and every mode: axe finds nothing, each says which mode it is in, nothing is
+// wider than the screen from 320 px to 4K; live against recorded is shown octet by octet; the script is as small as was promised.
+import assert from 'node:assert/strict';
+import { readFile, readdir } from 'node:fs/promises';
+import { createRequire } from 'node:module';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { gzipSync } from 'node:zlib';
+import { browser, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+
+const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'recorded', 'rehearsal'];
+const SCRIPT_KB = 150;
+
+let chrome;
+let folder;
+let server;
+
+before(async () => {
+    [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
+    server = await serve({ archive: path.join(folder.folder, 'panels.db'), more: ['--scenario', 'nominal_auto', '--pace', '0'] });
+    await waitFor(async () => (await server.get('/runs')).runs[0]?.state, (state) => state === 'finished', 60_000);
+});
+after(async () => {
+    await server?.stop();
+    await chrome?.close();
+    await folder?.remove();
+});
+
+/** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
+async function findings(page, theme) {
+    if (!(await page.evaluate(() => 'axe' in window))) await page.addScriptTag({ path: axe });
+    const rules = theme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'] : ['color-contrast', 'link-in-text-block'];
+    const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
+    return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
+}
+
+test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 180_000 }, async () => {
+    const found = [];
+    const { page, problems, shows } = await open(chrome, server.address);
+    for (const name of ['dark', 'light']) {
+        await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), name);
+        for (const panel of [...PANELS, undefined]) {
+            await page.goto(panel === undefined ? server.address : `${server.address}/?panel=${panel}`);
+            await shows('badge', /ENDED RUN/);
+            if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
+            if (panel !== 'phases') assert.match((await page.getByTestId('mode-mark').allInnerTexts()).join(), /ended, rehearsal/, `${panel} does not say its mode`);
+            found.push(...(await findings(page, name)).map((line) => `${panel ?? 'console'}, ${name}: ${line}`));
+        }
+        for (const [key, title] of [['y', /REPLAY, NOT LIVE/], ['r', /ENDED RUN/], ['?', /ENDED RUN/]]) {
+            await page.keyboard.press(key);
+            await shows('badge', title);
+            found.push(...(await findings(page, name)).map((line) => `console after ${key}, ${name}: ${line}`));
+            await page.keyboard.press('Escape');
+            await page.keyboard.press('Escape');
+        }
+    }
+    assert.deepEqual(found, []);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('a replay shows nothing of what came later, in every panel, and the way back is one key', { timeout: 40_000 }, async () => {
+    const { page, problems, text, shows } = await open(chrome, server.address);
+    await shows('waiting', /Landed/);
+    await page.keyboard.press('y');
+    await shows('badge', /REPLAY, NOT LIVE/);
+    await page.keyboard.press('p');
+    const marks = await page.getByTestId('mode-mark').allInnerTexts();
+    assert.ok(marks.length >= 10, `${marks.length} panels are marked`);
+    for (const mark of marks) assert.match(mark, /replay, rehearsal/i);
+    assert.doesNotMatch(await text('phases'), /✓\s*Entry/);
+    assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 0, 'an event that came later is shown');
+    assert.ok(await page.getByTestId('command-line').isDisabled());
+    await page.keyboard.press('Escape');
+    await shows('badge', /ENDED RUN/);
+    await shows('phases', /▶\s*Landed/);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('live is proven against the recording, by packet and by link, and a packet that differs has its octets marked', { timeout: 40_000 }, async () => {
+    const { page, problems, text, shows } = await open(chrome, server.address);
+    await shows('badge', /ENDED RUN/);
+    await page.keyboard.press('v');
+    const { streams, tones } = await server.get('/runs/latest/proof');
+    const live = streams.reduce((sum, row) => sum + Number(row.realtime), 0);
+    await waitFor(async () => (await text('verdict-sentence')).replaceAll(/\D/g, ''), (digits) => digits === String(live));
+    assert.match(await text('verdict-sentence'), /✓ All .* bit for bit/);
+    const shown = await page.locator('[data-testid="verdicts-by-packet"] tbody tr').count();
+    assert.equal(shown, streams.length + 1);
+    const identical = tones.filter((tone) => tone.verdict === 'identical').length;
+    assert.match(await text('tone-verdicts'), new RegExp(`\\b${identical} identical`));
+    await shows('verdict-count', /^none$/);
+
+    // No landing of ours brings one that differs, so the answer of the server is altered on its way.
+    await page.route('**/packets?verdict=never_seen_live*', async (route) => {
+        const answer = await (await route.fetch()).json();
+        const [packet] = answer.packets;
+        packet.verdict = 'differs';
+        packet.other_hex = packet.hex.slice(0, -2) + (packet.hex.endsWith('00') ? 'ff' : '00');
+        await route.fulfill({ json: answer });
+    });
+    await page.getByTestId('verdict-choice').selectOption('never_seen_live');
+    await page.getByTestId('verdict-packets').getByRole('button').first().click();
+    await shows('difference', /1 of \d+ octets differ/);
+    assert.equal(await page.getByTestId('difference').locator('mark').count(), 2, 'the octet is marked on both sides');
+    await page.keyboard.press('Escape');
+
+    await page.getByTestId('tab-links').click();
+    await waitFor(() => page.getByTestId('link-row-uhf_live').innerText(), /UHF live[^]*%/);
+    assert.deepEqual(problems.filter((problem) => !/favicon/.test(problem)), []);
+    await page.close();
+});
+
+test('from 320 px to 4K nothing is wider than the screen', { timeout: 60_000 }, async () => {
+    const { page, shows } = await open(chrome, server.address);
+    await shows('badge', /ENDED RUN/);
+    for (const [width, height] of [[320, 640], [768, 1024], [1024, 768], [1366, 768], [1920, 1080], [3840, 2160]]) {
+        await page.setViewportSize({ width, height });
+        await page.waitForTimeout(150);
+        const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(wide <= width, `${wide} px wide on ${width}`);
+    }
+    await page.close();
+});
+
+test('the script is at most 150 kB, compressed', async () => {
+    const assets = path.join(root, 'web/dist/assets');
+    const scripts = (await readdir(assets)).filter((name) => name.endsWith('.js'));
+    const sizes = await Promise.all(scripts.map(async (name) => gzipSync(await readFile(path.join(assets, name))).length / 1000));
+    const sum = sizes.reduce((total, size) => total + size, 0);
+    assert.ok(scripts.length >= 2 && sum > 1, 'no built scripts');
+    assert.ok(sum <= SCRIPT_KB, `${sum.toFixed(1)} kB`);
+});

@@ -1,0 +1,308 @@
+// aeolis serve --downlink: another mission's octets over real sockets, and what the API then says of them.
+#include "server/downlink/downlink_follower.hpp"
+#include "common/proximity_frame.hpp"
+#include "dictionaries/xtce/packet_model.hpp"
+#include "server/net/console_backend.hpp"
+#include "telemetry/other_mission.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/server/web_client.hpp"
+#include "tests/support/catch.hpp"
+
+#include <arpa/inet.h>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <netinet/in.h>
+#include <poll.h>
+#include <random>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <thread>
+#include <unistd.h>
+
+using namespace aeolis;
+using namespace aeolis::server;
+using namespace aeolis::test;
+
+namespace {
+
+using Octets = std::vector<std::uint8_t>;
+
+/// A mission of one packet: header, clock, a number, a label and a list as long as the packet says.
+constexpr const char* small_xtce = R"(<SpaceSystem name="Small"><TelemetryMetaData><ParameterTypeSet>
+<IntegerParameterType name="u5"><IntegerDataEncoding sizeInBits="5"/></IntegerParameterType>
+<IntegerParameterType name="u11"><IntegerDataEncoding sizeInBits="11"/></IntegerParameterType>
+<IntegerParameterType name="u32"><IntegerDataEncoding sizeInBits="32"/></IntegerParameterType>
+<IntegerParameterType name="u16"><IntegerDataEncoding sizeInBits="16"/></IntegerParameterType>
+<IntegerParameterType name="u8"><IntegerDataEncoding sizeInBits="8"/></IntegerParameterType>
+<FloatParameterType name="volts"><UnitSet><Unit>V</Unit></UnitSet><IntegerDataEncoding sizeInBits="16"><DefaultCalibrator>
+<PolynomialCalibrator><Term coefficient="0.5" exponent="1"/></PolynomialCalibrator></DefaultCalibrator></IntegerDataEncoding></FloatParameterType>
+<EnumeratedParameterType name="mode_t"><IntegerDataEncoding sizeInBits="8"/><EnumerationList><Enumeration value="2" label="ON"/></EnumerationList></EnumeratedParameterType>
+</ParameterTypeSet><ParameterSet>
+<Parameter name="first" parameterTypeRef="u5"/><Parameter name="apid" parameterTypeRef="u11"/><Parameter name="rest" parameterTypeRef="u32"/>
+<Parameter name="COARSE" parameterTypeRef="u32"/><Parameter name="FINE" parameterTypeRef="u16"/>
+<Parameter name="BUS_VOLTAGE" parameterTypeRef="volts"/><Parameter name="MODE" parameterTypeRef="mode_t"/>
+<Parameter name="N" parameterTypeRef="u8"/><Parameter name="LIST" parameterTypeRef="u8"/>
+</ParameterSet><ContainerSet>
+<SequenceContainer name="Header" abstract="true"><EntryList><ParameterRefEntry parameterRef="first"/><ParameterRefEntry parameterRef="apid"/>
+<ParameterRefEntry parameterRef="rest"/><ParameterRefEntry parameterRef="COARSE"/><ParameterRefEntry parameterRef="FINE"/></EntryList></SequenceContainer>
+<SequenceContainer name="Power"><EntryList><ParameterRefEntry parameterRef="BUS_VOLTAGE"/><ParameterRefEntry parameterRef="MODE"/>
+<ParameterRefEntry parameterRef="N"/><ParameterRefEntry parameterRef="LIST"><RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef="N"/>
+</DynamicValue></Count></RepeatEntry></ParameterRefEntry></EntryList>
+<BaseContainer containerRef="Header"><RestrictionCriteria><Comparison parameterRef="apid" value="77"/></RestrictionCriteria></BaseContainer></SequenceContainer>
+</ContainerSet></TelemetryMetaData></SpaceSystem>)";
+
+Octets power_packet(std::uint16_t count, std::uint32_t coarse, std::uint16_t raw_volts, unsigned apid = 77) {
+    Octets packet{static_cast<std::uint8_t>(0x08 | apid >> 8), static_cast<std::uint8_t>(apid),
+                  static_cast<std::uint8_t>(0xC0 | count >> 8), static_cast<std::uint8_t>(count), 0, 0};
+    for (int shift = 24; shift >= 0; shift -= 8) packet.push_back(static_cast<std::uint8_t>(coarse >> shift));
+    packet.insert(packet.end(), {0x80, 0x00, static_cast<std::uint8_t>(raw_volts >> 8), static_cast<std::uint8_t>(raw_volts), 2, 3, 7, 8, 9});
+    packet[5] = static_cast<std::uint8_t>(packet.size() - 7);
+    return packet;
+}
+
+Octets in_pltu(const Octets& packet, std::uint8_t sequence) {
+    Octets pltu(pltu_octets_max);
+    pltu.resize(write_pltu({.spacecraft = 9, .sequence = sequence}, packet, pltu));
+    return pltu;
+}
+
+std::unique_ptr<telemetry::OtherMission> mission_of(const std::string& xtce) {
+    std::vector<dictionary::Finding> findings;
+    dictionary::Findings into{"m.xml", findings};
+    auto model = dictionary::xtce::read_packet_model(xtce, into);
+    REQUIRE(model);
+    CHECK(findings.empty());
+    return std::make_unique<telemetry::OtherMission>(std::move(*model), std::uint16_t{4711});
+}
+
+/// What sends: a listener that gives each connection what it is told to.
+class Sender {
+  public:
+    Sender() : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in any{};
+        any.sin_family = AF_INET;
+        any.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof any;
+        REQUIRE(::bind(listener_, reinterpret_cast<sockaddr*>(&any), size) == 0);
+        REQUIRE(::listen(listener_, 4) == 0);
+        REQUIRE(::getsockname(listener_, reinterpret_cast<sockaddr*>(&any), &size) == 0);
+        port = ntohs(any.sin_port);
+    }
+    ~Sender() { ::close(listener_); }
+    Sender(const Sender&) = delete;
+    Sender& operator=(const Sender&) = delete;
+
+    /// Sends the octets in pieces of odd sizes to the next that connects, and closes.
+    void give(const Octets& octets) {
+        pollfd watched{listener_, POLLIN, 0};
+        REQUIRE(::poll(&watched, 1, 10'000) == 1);
+        const int connection = ::accept(listener_, nullptr, nullptr);
+        REQUIRE(connection >= 0);
+        std::size_t piece = 1;
+        for (std::size_t at = 0; at < octets.size(); at += piece, piece = piece % 977 + 6) {
+            const std::size_t size = std::min(piece, octets.size() - at);
+            REQUIRE(::send(connection, octets.data() + at, size, MSG_NOSIGNAL) == static_cast<ssize_t>(size));
+            if (piece < 20) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        }
+        ::close(connection);
+    }
+    std::uint16_t port = 0;
+
+  private:
+    int listener_;
+};
+
+/// `aeolis serve --downlink` in this process.
+class Follower {
+  public:
+    Follower(const telemetry::OtherMission& mission, const std::string& address, DownlinkForm format) {
+        spdlog::set_level(spdlog::level::off);
+        ConsoleBackend::Settings settings;
+        settings.port = 0;
+        settings.archive = folder_ / "a.db";
+        settings.scenarios = AEOLIS_SOURCE_DIR "/simulation/scenarios";
+        settings.web = folder_ / "web";
+        settings.other = &mission;
+        auto backend = ConsoleBackend::open(settings, mission.dictionary());
+        REQUIRE(backend);
+        backend_ = std::move(*backend);
+        DownlinkFollower::Settings follow;
+        follow.address = *DownlinkAddress::parse(address);
+        follow.format = std::move(format);
+        follow.xtce = "m.xml";
+        follow.retry_first = std::chrono::milliseconds{10};
+        follow.retry_max = std::chrono::milliseconds{40};
+        REQUIRE(backend_->follow(follow));
+        network_ = std::thread{[this] { backend_->run(); }};
+    }
+    ~Follower() {
+        backend_->stop();
+        network_.join();
+        backend_.reset();
+        spdlog::set_level(spdlog::level::err);
+    }
+    Follower(const Follower&) = delete;
+    Follower& operator=(const Follower&) = delete;
+
+    std::string ask(const std::string& target) const { return web_request(backend_->port(), "GET", "/api/v1" + target).body; }
+    /// The answer once it says so; else the last one.
+    std::string ask_until(const std::string& target, const std::function<bool(const std::string&)>& says) const {
+        std::string answer;
+        for (int i = 0; i < 400; ++i) {
+            answer = ask(target);
+            if (says(answer)) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds{25});
+        }
+        return answer;
+    }
+    std::uint16_t port() const { return backend_->port(); }
+    std::uint16_t downlink_port() const { return backend_->downlink_port(); }
+
+  private:
+    TemporaryFolder folder_;
+    std::unique_ptr<ConsoleBackend> backend_;
+    std::thread network_;
+};
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
+    return count;
+}
+
+void send_datagram(std::uint16_t port, const Octets& octets) {
+    const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(port);
+    REQUIRE(::sendto(socket, octets.data(), octets.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to) == static_cast<ssize_t>(octets.size()));
+    ::close(socket);
+}
+
+} // namespace
+
+TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a run that the API shows", "[server][downlink]") {
+    const auto mission = mission_of(small_xtce);
+    Sender sender;
+    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "pltu", .skip = 0, .frame_octets = {}}};
+    Octets stream;
+    std::mt19937 random{11};
+    for (std::uint16_t i = 0; i < 200; ++i) {
+        for (int n = static_cast<int>(random() % 40); n > 0; --n) stream.push_back(static_cast<std::uint8_t>(random()));
+        const auto pltu = in_pltu(power_packet(i, 1000U + i, static_cast<std::uint16_t>(2 * i)), static_cast<std::uint8_t>(i));
+        stream.insert(stream.end(), pltu.begin(), pltu.end());
+    }
+    sender.give(stream);
+    const auto values = follower.ask_until("/runs/1/channels?names=BUS_VOLTAGE&format=csv",
+                                           [](const std::string& text) { return count_of(text, "\n") == 201; });
+    CHECK(values.starts_with("channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1000.5,0,realtime\nBUS_VOLTAGE,V,1001.5,1,realtime\n"));
+    CHECK(values.ends_with("BUS_VOLTAGE,V,1199.5,199,realtime\n"));
+    CHECK(count_of(follower.ask("/runs/1/channels?names=LIST%5B2%5D&format=csv"), ",9,realtime") == 200);
+    CHECK(count_of(follower.ask("/runs/1/channels?names=MODE&format=csv"), ",2,realtime") == 200);
+
+    const auto packets = follower.ask("/runs/1/packets?apid=77&limit=3");
+    CHECK_THAT(packets, Catch::Contains("\"name\":\"Power\""));
+    CHECK_THAT(packets, Catch::Contains("\"link\":\"downlink\""));
+    CHECK_THAT(packets, Catch::Contains("\"name\":\"MODE\",\"text\":\"ON\""));
+    CHECK_THAT(packets, Catch::Contains("\"name\":\"LIST[2]\",\"text\":\"9\""));
+    const auto words = follower.ask("/dictionary");
+    CHECK_THAT(words, Catch::Contains("\"mission\":\"Small\""));
+    CHECK_THAT(words, Catch::Contains("\"name\":\"BUS_VOLTAGE\""));
+    CHECK_THAT(follower.ask("/runs/1"), Catch::Contains("\"venue\":\"downlink\"") && Catch::Contains("pltu by m.xml"));
+    CHECK_THAT(follower.ask("/runs/1/state"), Catch::Contains("\"BUS_VOLTAGE\""));
+}
+
+TEST_CASE("a link that drops is connected again, and nothing that came is lost or doubled", "[server][downlink]") {
+    const auto mission = mission_of(small_xtce);
+    Sender sender;
+    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 2, .frame_octets = {}}};
+    const auto prefixed = [](std::uint16_t i) {
+        Octets octets{0xFF, 0xFF};
+        const auto packet = power_packet(i, i, i);
+        octets.insert(octets.end(), packet.begin(), packet.end());
+        return octets;
+    };
+    auto first = prefixed(1), second = prefixed(2), third = prefixed(3);
+    first.insert(first.end(), second.begin(), second.begin() + 9); // the link drops within the second
+    sender.give(first);
+    second.insert(second.end(), {0, 0, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE}); // and here no packet begins
+    sender.give(second);
+    sender.give(third);
+    const auto says_all = [](const std::string& text) { return count_of(text, "\"Power\"") == 3; };
+    CHECK(count_of(follower.ask_until("/runs/1/packets", says_all), "\"hex\"") == 3);
+    CHECK(follower.ask("/runs/1/channels?names=BUS_VOLTAGE&format=csv") ==
+          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1.5,0.5,realtime\nBUS_VOLTAGE,V,2.5,1,realtime\nBUS_VOLTAGE,V,3.5,1.5,realtime\n");
+}
+
+TEST_CASE("each datagram stands for itself: garbage and packets of nobody are kept and named, the next is read", "[server][downlink]") {
+    const auto mission = mission_of(small_xtce);
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
+    const auto port = follower.downlink_port();
+    REQUIRE(port != 0);
+    send_datagram(port, power_packet(1, 10, 4));
+    send_datagram(port, Octets(200, 0xEE));
+    send_datagram(port, {});
+    Octets cut = power_packet(2, 11, 6);
+    cut.resize(cut.size() - 3);
+    send_datagram(port, cut);
+    send_datagram(port, power_packet(3, 12, 6, 99));
+    Octets two = power_packet(4, 13, 8);
+    const auto last = power_packet(5, 14, 10);
+    two.insert(two.end(), last.begin(), last.end());
+    send_datagram(port, two);
+    const auto packets = follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"Power\"") == 3; });
+    CHECK(count_of(packets, "\"Power\"") == 3);
+    CHECK(count_of(packets, "\"hex\"") == 4);
+    CHECK_THAT(packets, Catch::Contains("not decoded: no container describes it: Header is abstract"));
+    CHECK(follower.ask("/runs/1/channels?names=BUS_VOLTAGE&format=csv") ==
+          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,10.5,2,realtime\nBUS_VOLTAGE,V,13.5,4,realtime\nBUS_VOLTAGE,V,14.5,5,realtime\n");
+}
+
+TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][downlink]") {
+    const auto mission = mission_of(small_xtce);
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
+    const auto reply = web_request(follower.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal"})");
+    CHECK(reply.status >= 400);
+    CHECK_THAT(reply.body, Catch::Contains("follows the downlink of another mission"));
+}
+
+TEST_CASE("an instrument's own packets over TCP give its published values through the API", "[server][downlink]") {
+    const std::filesystem::path suda = AEOLIS_SOURCE_DIR "/../shared/data/packets/suda";
+    if (!std::filesystem::exists(suda / "expected.csv")) {
+        std::printf("SKIPPED: the instrument's packets are not beside the project (../shared/data)\n");
+        return;
+    }
+    const auto text_of = [&](const char* name) {
+        std::ifstream in{suda / name, std::ios::binary};
+        return std::string{std::istreambuf_iterator<char>{in}, {}};
+    };
+    const auto mission = mission_of(text_of("suda_combined_science_definition.xml"));
+    const std::string file = text_of("sciData_2022_130_17_41_53.spl");
+    std::istringstream expected{text_of("expected.csv")};
+    std::size_t packets = 0;
+    for (std::string line; std::getline(expected, line);)
+        if (line.find(",SHCOARSE,") != std::string::npos) ++packets;
+    REQUIRE(packets > 0);
+    Sender sender;
+    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 4, .frame_octets = {}}};
+    sender.give({file.begin(), file.end()});
+    const auto rows = follower.ask_until("/runs/1/packets", [&](const std::string& text) { return count_of(text, "\"hex\"") == packets; });
+    CHECK(count_of(rows, "\"hex\"") == packets);
+    CHECK(count_of(rows, "not decoded") == 0);
+    CHECK_THAT(rows, Catch::Contains("\"name\":\"SHCOARSE\",\"text\":\"389900330\""));
+    CHECK_THAT(follower.ask("/runs/1/channels?names=IDX__SCIFETCHTIME32&format=csv"), Catch::Contains(",350845307,realtime"));
+}
+
+TEST_CASE("addresses that cannot be are refused in one line", "[server][downlink]") {
+    for (const char* text : {"", "tcp://", "tcp://host", "tcp://:1", "tcp://h:0", "tcp://h:65536", "http://h:1", "tcp://h:1x"}) {
+        INFO(text);
+        CHECK_FALSE(DownlinkAddress::parse(text));
+    }
+    CHECK(DownlinkAddress::parse("tcp://[::1]:5000")->host == "::1");
+    CHECK(DownlinkAddress::parse("tcp://[::1]:5000")->text() == "tcp://[::1]:5000");
+    CHECK(DownlinkAddress::parse("udp://0.0.0.0:0")->udp);
+}

@@ -1,0 +1,29 @@
+import { describe, expect, it } from 'vitest';
+import { CORRIDOR } from './corridor';
+import { LEAST_M, fraction, halfWidth, placeIn } from './model';
+
+describe('the descent picture', () => {
+  it('gives the last ten metres as much room as the last hundred kilometres have for each factor of ten', () => {
+    const height = (m: number) => fraction(m, LEAST_M, 200000);
+    expect(height(100) - height(10)).toBeCloseTo(height(100000) - height(10000));
+    expect([height(0), height(200000)]).toEqual([0, 1]);
+  });
+  it('has a corridor that goes down from entry to touchdown', () => {
+    expect(CORRIDOR.length).toBeGreaterThan(10);
+    for (let i = 1; i < CORRIDOR.length; ++i) expect(CORRIDOR[i]?.altitude_m).toBeLessThan(CORRIDOR[i - 1]?.altitude_m ?? 0);
+    expect(CORRIDOR.at(-1)?.speed_mps).toBeLessThan(1);
+  });
+  it('calls the prediction itself inside, twice its width to a side above or below', () => {
+    for (const point of CORRIDOR.slice(1)) expect(placeIn(CORRIDOR, point.altitude_m, point.speed_mps)).toBe('inside');
+    const under = CORRIDOR.find((point) => point.altitude_m < 6000);
+    if (!under) throw new Error('no point under the parachute');
+    const off = 10 ** (2 * halfWidth(under));
+    expect(placeIn(CORRIDOR, under.altitude_m, under.speed_mps / off)).toBe('above');
+    expect(placeIn(CORRIDOR, under.altitude_m, under.speed_mps * off)).toBe('below');
+  });
+  it('says nothing where nothing was predicted', () => {
+    expect(placeIn(CORRIDOR, 190000, 5800)).toBeUndefined();
+    expect(placeIn(CORRIDOR, 1, 0.1)).toBeUndefined();
+    expect(placeIn([], 1000, 80)).toBeUndefined();
+  });
+});

@@ -1,0 +1,50 @@
+// @vitest-environment happy-dom
+import { describe, expect, it } from 'vitest';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
+import { aDictionary, aRun, aStore, firing, samples, stage } from '../testing/fixtures';
+import { GUIDE_STEPS, guideShown, guideStep, toggleGuide } from './model';
+
+const done = (count: number) => ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].slice(0, count).map((name, i) =>
+  stage({ command: BigInt(i + 1), name, stage: 'executed', status: 'ok' }));
+const keys = (step: ReturnType<typeof guideStep>) => step?.press.map((press) => press.key ?? press.type);
+const at = (eS: number, fields: Partial<RunState> = {}) => {
+  const run = aRun({ ...fields, $typeName: undefined } as never);
+  if (run.clocks) run.clocks = { ...run.clocks, eS, sclk: 1000 + eS, seenSclk: 1000 + eS };
+  return run;
+};
+
+describe('the guide', () => {
+  it('leads key by key through both commands', () => {
+    expect(keys(guideStep(aStore(), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['/', 'set edl parameters', 'Enter']);
+    expect(keys(guideStep(aStore(), aDictionary, 'rehearsal', 'review', Infinity))).toEqual(['Enter', 'Esc']);
+    const second = aStore(done(1));
+    expect(guideStep(second, aDictionary, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 2, wants: 'command' });
+    expect(keys(guideStep(second, aDictionary, 'rehearsal', 'armed', Infinity))).toEqual(['EDL_DO_EDL', 'Enter']);
+  });
+  it('says that a command which was sent is not yet one that was taken', () => {
+    const sent = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'radiated', status: 'ok' })]);
+    expect(guideStep(sent, aDictionary, 'rehearsal', 'type', Infinity)?.title).toContain('Waiting');
+  });
+  it('has the dull minutes sped up and the landing slowed down', () => {
+    const cruise = [...done(2), firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 200 }), samples(300, { 1: 0 })];
+    expect(keys(guideStep(aStore(cruise, at(-700)), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['+']);
+    expect(guideStep(aStore(cruise, at(-700, { pace: 100 })), aDictionary, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 3, wants: 'nothing' });
+    const entry = [...cruise, samples(1100, { 1: 4 })];
+    expect(keys(guideStep(aStore(entry, at(100, { pace: 100 })), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['−']);
+    expect(keys(guideStep(aStore(entry, at(100, { state: 'paused' })), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['p']);
+  });
+  it('ends with the landing, and says what can be looked at then', () => {
+    const over = aStore(done(2), aRun({ state: 'finished', outcome: 'touchdown' }));
+    expect(guideStep(over, aDictionary, 'ended', 'type', Infinity)).toMatchObject({ number: GUIDE_STEPS, title: 'You have landed it' });
+    expect(guideStep(aStore([], aRun({ state: 'finished', outcome: 'impact' })), aDictionary, 'ended', 'type', Infinity)?.title).not.toContain('landed');
+  });
+  it('is silent in the real venue', () => {
+    expect(guideStep(aStore([], aRun({ venue: 'downlink' })), aDictionary, 'live', 'type', Infinity)).toBeUndefined();
+  });
+  it('once put away stays away', () => {
+    expect(guideShown.value).toBe(true);
+    toggleGuide();
+    expect([guideShown.value, localStorage.getItem('aeolis-guide')]).toEqual([false, 'hidden']);
+    toggleGuide();
+  });
+});

@@ -1,0 +1,64 @@
+// Each link: its state and silences as it told them, what came over it, and how much of it was damaged.
+import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
+import type { RunStore } from '../run/store';
+import { outages } from '../timeline/model';
+import type { Outage } from '../timeline/model';
+
+/** "uhf_mro" → "UHF MRO", "relay" → "Relay". */
+export function linkTitle(link: string): string {
+  if (link === 'x_band') return 'X-band';
+  const [kind = '', ...rest] = link.split('_');
+  const title = kind === 'uhf' ? 'UHF' : kind === 'relay' ? 'Relay' : kind;
+  return [title, ...rest.map((part) => (part === 'live' ? part : part.toUpperCase()))].join(' ').trim();
+}
+
+export type LinkState = 'up' | 'down' | 'unknown';
+
+export interface LinkView {
+  link: string;
+  state: LinkState;
+  reason: string;
+  since_e_s: number | undefined;
+  silences: Outage[];
+  units: number;
+  octets: number;
+  seenBefore: number;
+  counters: LinkCounters | undefined;
+  judged: { live: number; identical: number; recorded: number; neverLive: number } | undefined;
+}
+
+export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number): LinkView[] {
+  const names = new Set([
+    ...store.links.keys(), ...store.unitTotals.keys(), ...(proof?.counters.map((each) => each.link) ?? []), ...(proof?.links.map((each) => each.name) ?? []),
+  ]);
+  const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
+  return [...names].sort(byImportance).map((link) => {
+    const last = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff))?.fact;
+    const totals = store.unitTotals.get(link);
+    const judged = proof?.links.find((row) => row.name === link);
+    return {
+      link,
+      state: last === undefined ? 'unknown' : last.up ? 'up' : 'down',
+      reason: last?.reason ?? '',
+      since_e_s: last && store.sclkSeenAt(last.ert) - store.entrySclk,
+      silences: outages(store, link, now, cutoff),
+      units: totals?.units ?? 0, octets: totals?.octets ?? 0, seenBefore: totals?.duplicates ?? 0,
+      counters: proof?.counters.find((each) => each.link === link),
+      judged: judged && {
+        live: Number(judged.realtime), identical: Number(judged.identical), recorded: Number(judged.recorded), neverLive: Number(judged.neverSeenLive),
+      },
+    };
+  });
+}
+
+const ORDER = ['uhf_live', 'uhf', 'x', 'relay'];
+function byImportance(a: string, b: string): number {
+  const rank = (name: string) => ORDER.findIndex((each) => name === each || name.startsWith(`${each}_`));
+  return rank(a) - rank(b) || a.localeCompare(b);
+}
+
+/** Of the frames that should have come, how many did, 0 … 1; undefined where none was due. */
+export function framesKept(counters: LinkCounters): number | undefined {
+  const due = Number(counters.frames) + Number(counters.missingFrames);
+  return due === 0 ? undefined : Number(counters.frames) / due;
+}

@@ -1,0 +1,34 @@
+import { describe, expect, it } from 'vitest';
+import { aRun } from '../testing/fixtures';
+import { MODES, isReal, modeOf, panelMark } from './model';
+import css from './style.css?raw';
+
+const going = (venue: string) => ({ run: aRun({ venue }), going: true });
+
+describe('the mode', () => {
+  it('is a rehearsal unless the run follows a real downlink, whatever its venue is called', () => {
+    expect(['rehearsal', '', 'performance', 'LIVE', 'flight'].map((venue) => modeOf(going(venue), false, false))).toEqual(Array(5).fill('rehearsal'));
+    expect(modeOf(going('downlink'), false, false)).toBe('live');
+    expect(isReal(aRun({ venue: 'downlink' }))).toBe(true);
+  });
+  it('of a past view comes before all else: neither a rehearsal nor the real thing looks live in it', () => {
+    for (const venue of ['rehearsal', 'downlink']) {
+      expect(modeOf(going(venue), true, false)).toBe('range');
+      expect(modeOf(going(venue), true, true)).toBe('replay');
+      expect(modeOf({ ...going(venue), going: false }, true, false)).toBe('range');
+      expect(modeOf({ ...going(venue), going: false }, false, false)).toBe('ended');
+    }
+    expect(modeOf(undefined, false, false)).toBe('none');
+  });
+  it('differs in badge, mark, shape, colour and pattern of border from every other', () => {
+    for (const part of ['badge', 'mark', 'shape'] as const) expect(new Set(Object.values(MODES).map((each) => each[part])).size).toBe(6);
+    for (const mode of ['live', 'rehearsal', 'ended', 'range', 'replay']) expect(css).toContain(`.mode-${mode} { --mode: var(--mode-${mode})`);
+    const border = (mode: string) => new RegExp(`\\.mode-${mode} \\{[^}]*\\}`).exec(css)?.[0].replaceAll(mode, '');
+    expect(new Set(['range', 'replay', 'ended', 'live'].map(border)).size).toBe(4);
+  });
+  it('in a panel says of the past where it happened', () => {
+    expect(panelMark('replay', aRun())).toBe('replay, rehearsal');
+    expect(panelMark('range', aRun({ venue: 'downlink' }))).toBe('past, real venue');
+    expect(panelMark('rehearsal', aRun())).toBe('rehearsal');
+  });
+});

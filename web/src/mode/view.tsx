@@ -1,0 +1,33 @@
+// The mode, where no one can miss it: tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
+import { backToLive, modeNow, pastRange, replay, runNow, stream } from '../run/session';
+import { fromEntry } from '../run/time';
+import { MODES, isReal, panelMark } from './model';
+import './style.css';
+
+/** Striped for a rehearsal, whichever way it is looked at; absent from the real thing. */
+export function Tape() {
+  const run = runNow();
+  if (!run || isReal(run.run)) return null;
+  return <div class="tape" data-testid="tape" role="region" aria-label="This is a rehearsal"><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span></div>;
+}
+
+export function PastBar() {
+  const past = pastRange.value;
+  const run = runNow();
+  const lost = stream.value.state === 'lost';
+  if (lost && !past) {
+    return <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">✖ NO CONNECTION: everything here is old. Trying again, attempt {stream.value.attempt}.</div>;
+  }
+  if (!past || replay.value) return null;
+  return (
+    <div class="past-bar" role="alert" data-testid="past-bar">
+      THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live{run?.going ? '; the run goes on' : ''}.
+      <button type="button" onClick={backToLive}>leave <kbd>Esc</kbd></button>
+    </div>
+  );
+}
+
+export function ModeMark() {
+  const mode = modeNow();
+  return <span class="mode-mark" data-testid="mode-mark" title={MODES[mode].words}><span aria-hidden="true">{MODES[mode].shape}</span> {panelMark(mode, runNow()?.run)}</span>;
+}

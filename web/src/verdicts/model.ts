@@ -1,0 +1,105 @@
+// What was seen live against the recording: the sentence that matters, the rows in order of trouble, and where octets differ.
+import type { ProofReport, ProofRow, ToneVerdict } from '../gen/aeolis/v1/run_pb';
+import type { Status } from '../design/status';
+
+export const VERDICTS = ['differs', 'missing_in_recording', 'not_decoded', 'never_seen_live', 'pending', 'identical'] as const;
+export type Verdict = (typeof VERDICTS)[number];
+
+export const VERDICT_LOOK: Record<Verdict, { status: Status; words: string; means: string }> = {
+  identical: { status: 'holds', words: 'identical', means: 'live and recording have the same octets' },
+  differs: { status: 'failed', words: 'differs', means: 'live and recording have other octets for the same packet' },
+  missing_in_recording: { status: 'failed', words: 'missing in recording', means: 'came live; the complete recording does not have it' },
+  never_seen_live: { status: 'unknown', words: 'never seen live', means: 'known from the recording only' },
+  not_decoded: { status: 'caution', words: 'not decoded', means: 'arrived, and no packet of the dictionary fits it' },
+  pending: { status: 'missing', words: 'pending', means: 'the recording is not complete yet' },
+};
+
+export interface Row {
+  name: string;
+  live: number;
+  identical: number;
+  differs: number;
+  missing: number;
+  recorded: number;
+  neverLive: number;
+  notDecoded: number;
+  pending: number;
+}
+
+export function rowOf(row: ProofRow): Row {
+  return {
+    name: row.name, live: Number(row.realtime), identical: Number(row.identical), differs: Number(row.differs),
+    missing: Number(row.missingInRecording), recorded: Number(row.recorded), neverLive: Number(row.neverSeenLive),
+    notDecoded: Number(row.notDecoded), pending: Number(row.pending),
+  };
+}
+
+export const trouble = (row: Row) => row.differs + row.missing + row.notDecoded;
+
+/** What is in trouble first, then what there is most of. */
+export function rowsOf(rows: readonly ProofRow[]): Row[] {
+  return rows.map(rowOf).sort((a, b) => trouble(b) - trouble(a) || b.recorded + b.live - a.recorded - a.live || a.name.localeCompare(b.name));
+}
+
+export function totalOf(rows: readonly Row[]): Row {
+  const total: Row = { name: 'all', live: 0, identical: 0, differs: 0, missing: 0, recorded: 0, neverLive: 0, notDecoded: 0, pending: 0 };
+  for (const row of rows) {
+    for (const key of ['live', 'identical', 'differs', 'missing', 'recorded', 'neverLive', 'notDecoded', 'pending'] as const) total[key] += row[key];
+  }
+  return total;
+}
+
+const many = (count: number) => count.toLocaleString('en').replaceAll(',', ' ');
+
+/** The one sentence. Before the recording is complete, missing means not yet, and nothing is called proven. */
+export function sentence(proof: ProofReport): { status: Status; text: string } {
+  const total = totalOf(proof.streams.map(rowOf));
+  if (total.differs > 0) return { status: 'failed', text: `${many(total.differs)} of ${many(total.live)} packets seen live differ from the recording.` };
+  if (!proof.recordingComplete) {
+    return { status: 'missing', text: total.recorded === 0 ? `${many(total.live)} packets were seen live; the recording has not come yet.`
+      : `${many(total.identical)} of ${many(total.live)} packets seen live are in the recording so far, bit for bit; ${many(total.pending || total.live - total.identical)} wait for the rest of it.` };
+  }
+  if (total.missing > 0) return { status: 'failed', text: `${many(total.missing)} of ${many(total.live)} packets seen live are not in the recording.` };
+  if (total.notDecoded > 0) return { status: 'caution', text: `${many(total.notDecoded)} packets could not be decoded; no other trouble.` };
+  if (total.live === 0) return { status: 'unknown', text: `Nothing was seen live; the recording has ${many(total.recorded)} packets.` };
+  return { status: 'holds', text: `All ${many(total.live)} packets seen live are in the recording, bit for bit.` };
+}
+
+/** How often each verdict on tones was given, and those that need a look. */
+export function toneSummary(tones: readonly ToneVerdict[]): { counts: [string, number][]; odd: ToneVerdict[] } {
+  const counts = new Map<string, number>();
+  for (const tone of tones) counts.set(tone.verdict, (counts.get(tone.verdict) ?? 0) + 1);
+  return { counts: [...counts].sort((a, b) => b[1] - a[1]), odd: tones.filter((tone) => tone.verdict !== 'identical') };
+}
+
+export interface Octet {
+  text: string;
+  differs: boolean;
+}
+export interface DiffLine {
+  at: string;
+  one: Octet[];
+  other: Octet[];
+}
+
+const A_LINE = 16;
+
+/** Both packets, sixteen octets a line; an octet that only one of them has differs too. */
+export function diffLines(one: string, other: string): { lines: DiffLine[]; differing: number } {
+  const split = (hex: string): string[] => hex.toLowerCase().match(/../g) ?? [];
+  const [a, b] = [split(one), split(other)];
+  const length = Math.max(a.length, b.length);
+  const lines: DiffLine[] = [];
+  let differing = 0;
+  for (let at = 0; at < length; at += A_LINE) {
+    const line: DiffLine = { at: at.toString(16).padStart(4, '0'), one: [], other: [] };
+    for (let i = at; i < Math.min(at + A_LINE, length); ++i) {
+      const differs = a[i] !== b[i];
+      if (differs) ++differing;
+      line.one.push({ text: a[i] ?? '--', differs });
+      line.other.push({ text: b[i] ?? '--', differs });
+    }
+    lines.push(line);
+  }
+  return { lines, differing };
+}
