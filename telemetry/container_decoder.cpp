@@ -10,6 +10,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 namespace aeolis::telemetry {
@@ -75,7 +76,7 @@ Datum calibrated_by(const Calibration& calibration, double raw) {
 class Reading {
   public:
     Reading(const PacketModel& model, std::span<const std::uint8_t> packet)
-        : model_(model), packet_(packet), latest_(model.parameters.size()) {}
+        : model_(model), packet_(packet) {}
 
     /// False when the packet cannot be read on.
     bool read_container(const PacketContainer& container, std::size_t start_bits, unsigned depth) {
@@ -118,7 +119,9 @@ class Reading {
     }
 
     const DecodedValue* value_of(std::size_t parameter, const std::string& member) const {
-        const Latest& latest = latest_[parameter];
+        const auto found_latest = latest_.find(parameter);
+        if (found_latest == latest_.end()) return nullptr;
+        const Latest& latest = found_latest->second;
         const auto values = std::span{contents.values}.subspan(latest.first, latest.count);
         if (member.empty()) return values.empty() ? nullptr : values.data();
         const auto found = std::ranges::find(values, latest.name + member, &DecodedValue::name);
@@ -354,7 +357,7 @@ class Reading {
 
     const PacketModel& model_;
     std::span<const std::uint8_t> packet_;
-    std::vector<Latest> latest_; ///< by parameter
+    std::unordered_map<std::size_t, Latest> latest_; ///< by parameter; only those that the packet has: a model has thousands
     std::size_t position_ = 0;
     std::size_t steps_ = 0;
     std::size_t reading_ = 0; ///< the parameter

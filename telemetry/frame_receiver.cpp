@@ -2,6 +2,7 @@
 
 #include "common/crc.hpp"
 #include "common/randomiser.hpp"
+#include "telemetry/packet_extractor.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,28 @@ constexpr std::size_t shortest_frame_octets = 9; // a header, a CRC and one octe
 bool begins_with_marker(std::span<const std::uint8_t> octets) {
     return octets.size() >= attached_sync_marker.size() &&
            std::equal(attached_sync_marker.begin(), attached_sync_marker.end(), octets.begin());
+}
+
+/// Packets that come whole out of a stream read in this way, less those that its own frames contradict: with check
+/// symbols taken for data, a packet ends where no frame says that the next begins. None when not one frame can be read.
+std::optional<std::int64_t> packets_in_agreement(const FrameStream& stream, std::span<const std::uint8_t> octets) {
+    FrameReceiver receiver{stream};
+    receiver.receive(octets);
+    std::map<std::uint32_t, PacketExtractor> channels;
+    while (const auto received = receiver.next()) {
+        PacketExtractor& channel = channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
+        channel.add(received->frame, received->missing_before > 0);
+        while (channel.next()) {
+        }
+    }
+    if (channels.empty()) return std::nullopt;
+    std::int64_t agreement = 0;
+    for (const auto& [id, channel] : channels) {
+        const PacketCounters& counted = channel.counters();
+        agreement += static_cast<std::int64_t>(counted.packets + counted.idle_packets);
+        agreement -= static_cast<std::int64_t>(counted.cut_packets + (counted.unreadable_octets > 0 ? 1 : 0));
+    }
+    return agreement;
 }
 
 } // namespace
@@ -101,7 +124,10 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets)
     octets = octets.first(std::min(octets.size(), looked_at_octets));
     const auto length = cadu_frame_octets(octets);
     if (!length) return std::nullopt;
-    for (const bool crc : {true, false})
+    std::optional<FrameStream> best;
+    std::int64_t most = 0;
+    for (const bool crc : {true, false}) {
+        if (best) break; // a CRC that holds leaves no doubt
         for (const std::size_t symbols : check_symbols)
             for (const bool randomised : {false, true})
                 for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
@@ -112,11 +138,13 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets)
                     stream.suffix_octets = symbols;
                     stream.randomised = randomised;
                     stream.agreed.crc = crc;
-                    FrameReceiver receiver{stream};
-                    receiver.receive(octets);
-                    if (receiver.next()) return stream;
+                    const auto agreement = packets_in_agreement(stream, octets);
+                    if (!agreement || (best && *agreement <= most)) continue;
+                    best = stream;
+                    most = *agreement;
                 }
-    return std::nullopt;
+    }
+    return best;
 }
 
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets) {

@@ -25,8 +25,9 @@ std::vector<Octets> some_packets(std::mt19937& random) {
 }
 
 /// TM or AOS frames of `length` octets with all packets one after another in one virtual channel; fill at the end.
-std::vector<Octets> frames_of(const std::vector<Octets>& packets, FrameStream::Kind kind, std::size_t length) {
-    const std::size_t room = length - (kind == FrameStream::Kind::tm ? 8 : 10);
+std::vector<Octets> frames_of(const std::vector<Octets>& packets, FrameStream::Kind kind, std::size_t length,
+                              bool crc = true) {
+    const std::size_t room = length - (kind == FrameStream::Kind::tm ? 6 : 8) - (crc ? 2 : 0);
     Octets octets;
     std::vector<std::size_t> starts;
     for (const Octets& packet : packets) {
@@ -47,9 +48,9 @@ std::vector<Octets> frames_of(const std::vector<Octets>& packets, FrameStream::K
         if (next != starts.end() && *next < at + room) frame.first_header_pointer = static_cast<std::uint16_t>(*next - at);
         frames.emplace_back(length);
         if (kind == FrameStream::Kind::tm)
-            write_tm_frame(frame, static_cast<std::uint8_t>(frames.size()), true, frames.back());
+            write_tm_frame(frame, static_cast<std::uint8_t>(frames.size()), crc, frames.back());
         else
-            write_aos_frame(frame, true, frames.back());
+            write_aos_frame(frame, crc, frames.back());
     }
     return frames;
 }
@@ -94,27 +95,31 @@ TEST_CASE("packets come out of bare packets with a prefix, of frames and of PLTU
     }
 }
 
-TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with check symbols or without", "[telemetry]") {
+TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with check symbols or without, with a CRC or without", "[telemetry]") {
     std::mt19937 random{2};
     const auto packets = some_packets(random);
-    for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos})
-        for (const bool randomised : {false, true})
-            for (const std::size_t symbols : {0U, 32U, 160U}) {
-                Octets stream;
-                for (Octets frame : frames_of(packets, kind, 223)) {
-                    append(stream, attached_sync_marker);
-                    append(frame, test::random_octets(random, symbols));
-                    if (randomised) randomise_tm(frame);
-                    append(stream, frame);
+    for (const bool crc : {true, false})
+        for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos})
+            for (const bool randomised : {false, true})
+                for (const std::size_t symbols : {0U, 32U, 160U}) {
+                    INFO("CRC " << crc << ", AOS " << (kind == FrameStream::Kind::aos) << ", randomised " << randomised
+                                << ", check symbols " << symbols);
+                    Octets stream;
+                    for (Octets frame : frames_of(packets, kind, 223, crc)) {
+                        append(stream, attached_sync_marker);
+                        append(frame, test::random_octets(random, symbols));
+                        if (randomised) randomise_tm(frame);
+                        append(stream, frame);
+                    }
+                    const auto found = recognise_cadus(stream);
+                    REQUIRE(found);
+                    CHECK(found->agreed.crc == crc);
+                    CHECK(found->kind == kind);
+                    CHECK(found->randomised == randomised);
+                    CHECK(found->frame_octets == 223);
+                    CHECK(found->suffix_octets == symbols);
+                    CHECK(all(PacketSource::of_frames(*found), stream, random) == packets);
                 }
-                const auto found = recognise_cadus(stream);
-                REQUIRE(found);
-                CHECK(found->kind == kind);
-                CHECK(found->randomised == randomised);
-                CHECK(found->frame_octets == 223);
-                CHECK(found->suffix_octets == symbols);
-                CHECK(all(PacketSource::of_frames(*found), stream, random) == packets);
-            }
 }
 
 TEST_CASE("bare packets end where no header stands or one is cut, and the rest is counted", "[telemetry]") {
