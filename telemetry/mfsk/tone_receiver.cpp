@@ -9,8 +9,24 @@ namespace {
 
 constexpr double level_gain = 0.1; // of each hop in the running mean of C/N0: 1.2 s; ours
 
-bool is_number(const std::complex<float>& sample) {
-    return std::isfinite(sample.real()) && std::isfinite(sample.imag());
+// A pulse is 40 dB above the mean power, which noise never is; the mean forgets in 1024 samples. Ours.
+constexpr double pulse_ratio = 1e4;
+constexpr double power_gain = 1.0 / 1024.0;
+
+/// As double: the square of a float need not be one.
+double power_of(const std::complex<float>& sample) {
+    return std::norm(std::complex<double>{sample});
+}
+
+/// The middle of a block's powers: a few pulses do not move it.
+double middle_power(std::span<const std::complex<float>> samples) {
+    std::vector<double> powers;
+    for (const auto& sample : samples)
+        if (const double power = power_of(sample); std::isfinite(power)) powers.push_back(power);
+    if (powers.empty()) return 0.0;
+    const auto middle = powers.begin() + static_cast<std::ptrdiff_t>(powers.size() / 2);
+    std::ranges::nth_element(powers, middle);
+    return *middle;
 }
 
 } // namespace
@@ -32,12 +48,23 @@ ToneReceiver::ToneReceiver(const MfskWaveform& waveform, double rate_hz, TimeTab
       correlator_(waveform, layout_.thinned_rate_hz(), layout_.thinned_samples()),
       sequence_(static_cast<int>(std::lround(waveform.symbol_s / layout_.hop_s())), layout_.hop_samples()) {}
 
+/// What is no number is one too. A level that rises for good is followed within some tens of samples.
+bool ToneReceiver::is_pulse(const std::complex<float>& sample) {
+    const double power = power_of(sample);
+    if (!std::isfinite(power)) return true;
+    if (mean_power_ == 0.0) mean_power_ = power;
+    const double limit = pulse_ratio * mean_power_;
+    mean_power_ += power_gain * (std::min(power, limit) - mean_power_);
+    return power > limit;
+}
+
 void ToneReceiver::push(std::span<const std::complex<float>> samples) {
     const std::size_t before = samples_.size();
     samples_.insert(samples_.end(), samples.begin(), samples.end());
+    if (mean_power_ == 0.0) mean_power_ = middle_power(samples);
     for (std::size_t i = before; i < samples_.size(); ++i) {
-        if (!is_number(samples_[i])) samples_[i] = {};
-        status_.loudest = std::max(status_.loudest, static_cast<double>(std::norm(samples_[i])));
+        if (is_pulse(samples_[i])) samples_[i] = {};
+        status_.loudest = std::max(status_.loudest, power_of(samples_[i]));
     }
     work();
 }

@@ -38,7 +38,7 @@ struct ReceiverStatus {
 /// In      blocks of samples of any length, at a fixed rate; the predict that was removed before sampling
 /// Out     a reception a symbol, 1 to 20 s after the symbol's end, by take()
 /// Memory  4 s of samples while it searches, 5 s while it tracks, a few symbols of sums
-/// Faults  silence, noise and what is no number give no reception; a carrier lost is searched for again
+/// Faults  silence, noise and what is no number give no reception; a pulse far above the rest is blanked; a carrier lost is searched for again
 class ToneReceiver {
   public:
     static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6; ///< ours
@@ -58,6 +58,7 @@ class ToneReceiver {
   private:
     ToneReceiver(const MfskWaveform& waveform, double rate_hz, TimeTable predict_hz, double start_s);
 
+    bool is_pulse(const std::complex<float>& sample);
     std::span<const std::complex<float>> kept() const { return std::span{samples_}.subspan(head_); }
     void drop(std::size_t count);
     void work();
@@ -85,6 +86,7 @@ class ToneReceiver {
     std::vector<CarrierHop> hops_;
     std::vector<DecidedSymbol> decided_;
     std::vector<ToneReception> receptions_;
+    double mean_power_ = 0.0; ///< of the samples lately; 0: none yet
     double lead_s_ = 0.0; ///< of the subcarriers' time, by Doppler
     double carrier_n0_hz_ = 0.0;
     ReceiverStatus status_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 using namespace aeolis;
 using namespace aeolis::telemetry;
@@ -118,6 +119,27 @@ TEST_CASE("silence, noise and broken numbers give nothing", "[tones]") {
     auto in_broken = receiver();
     for (const float part : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 3e38F})
         CHECK(received(in_broken, std::vector<std::complex<float>>(200000, {part, -part})).empty());
+}
+
+TEST_CASE("pulses a thousand million times louder cost nothing but themselves", "[tones]") {
+    auto samples = samples_of(steady(), some_tones(), 80.0);
+    std::mt19937 random{4};
+    samples[0] = {1e38F, 0.0F};
+    for (int i = 0; i < 500; ++i)
+        samples[random() % samples.size()] = {i % 2 == 0 ? 1e30F : 3e38F, -1e9F};
+    auto ear = receiver();
+    check_tones(some_tones(), received(ear, samples));
+}
+
+TEST_CASE("a level that rises a million times is followed", "[tones]") {
+    auto samples = samples_of(steady(), some_tones(), 80.0);
+    for (std::size_t i = 0; i < samples.size() / 2; ++i)
+        samples[i] *= 1e-3F;
+    auto ear = receiver();
+    const auto heard = received(ear, samples);
+    REQUIRE(heard.size() >= 4);
+    CHECK(heard.front().tone == some_tones().front().tone);
+    CHECK(heard.back().tone == some_tones().back().tone);
 }
 
 TEST_CASE("a carrier without a tone gives no symbol", "[tones]") {
