@@ -108,6 +108,19 @@ Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictio
     return run;
 }
 
+Result<void> Archive::continue_run(RunId run) {
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    auto row = state_->database.prepare("UPDATE runs SET state = 'running', last_seq = NULL WHERE run = ? AND state = 'interrupted'");
+    if (!row) return row.error();
+    row->bind(1, std::int64_t{run.value});
+    if (auto done = row->run(); !done) return done;
+    auto changed = state_->database.integer_of("SELECT changes()");
+    if (!changed) return changed.error();
+    if (*changed != 1) return Error{"run " + std::to_string(run.value) + " was not cut off"};
+    return transaction->commit();
+}
+
 Result<void> Archive::State::add_dictionary(const dictionary::Dictionary& dictionary) {
     const std::int64_t id = dictionary.id;
     auto known =

@@ -33,6 +33,9 @@ class Archive {
     /// Durable when it returns. The dictionary's words are kept with the first run that uses them.
     Result<RunId> begin_run(const RunStart& start, const dictionary::Dictionary& dictionary);
 
+    /// A run that was cut off goes on: durable when it returns. Fails when it was not.
+    Result<void> continue_run(RunId run);
+
     /// All of `batch` or none of it; durable when it returns. With `batch.end` the run is finished.
     Result<void> append(RunId run, const Batch& batch);
 

@@ -80,6 +80,35 @@ Result<Sequence> Reader::last_seq(RunId run) {
     return state_->last_seq(run);
 }
 
+Result<CutOffRun> Reader::cut_off(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    auto rows = state_->query("SELECT state, scenario_text, started, seed, dictionary FROM runs WHERE run = ?");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    auto found = row.step();
+    if (!found) return found.error();
+    if (!*found) return Error{"no run " + std::to_string(run.value)};
+    if (row.text(0) != "interrupted")
+        return Error{"run " + std::to_string(run.value) + " was not cut off: it is " + std::string(row.text(0))};
+    CutOffRun cut{run, std::string(row.text(1)), std::string(row.text(2)), static_cast<std::uint64_t>(row.integer(3)), 0, {}};
+    if (auto same = state_->same_dictionary({run, false, static_cast<std::uint16_t>(row.integer(4)), {}}); !same)
+        return same.error();
+    auto last = state_->last_seq(run);
+    if (!last) return last.error();
+    cut.last_seq = *last;
+    auto requests = state_->query("SELECT cycle, request FROM requests WHERE run = ? ORDER BY position");
+    if (!requests) return requests.error();
+    (*requests)->bind(1, std::int64_t{run.value});
+    for (;;) {
+        auto one = (*requests)->step();
+        if (!one) return one.error();
+        if (!*one) return cut;
+        cut.requests.push_back({static_cast<std::uint64_t>((*requests)->integer(0)), std::string((*requests)->text(1))});
+    }
+}
+
 namespace {
 constexpr char runs_sql[] =
     "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"

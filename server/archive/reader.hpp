@@ -109,6 +109,8 @@ class Reader {
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit);
     Result<ItemPage> items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds);
     Result<Sequence> last_seq(RunId run);
+    /// Fails when that run was not interrupted.
+    Result<CutOffRun> cut_off(RunId run);
 
     /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);

@@ -16,6 +16,7 @@ void Batch::clear() {
     links.clear();
     alarms.clear();
     segments.clear();
+    requests.clear();
     totals.reset();
     link_totals.clear();
     end.reset();

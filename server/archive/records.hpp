@@ -183,6 +183,21 @@ struct RunEnd {
     std::string ended; ///< wall clock, ISO 8601
 };
 
+/// A controller's request to the gateway that it took: with the scenario and the seed, all that decides how a run goes.
+struct RequestRecord {
+    std::uint64_t cycle = 0; ///< cycles of 1/64 s that had been flown
+    std::string request;     ///< CommandRequest as Protobuf text
+};
+
+/// A run that was cut off, and what it takes to fly it again up to there.
+struct CutOffRun {
+    RunId run;
+    std::string scenario_text, started;
+    std::uint64_t seed = 0;
+    Sequence last_seq = 0; ///< durable, and perhaps published
+    std::vector<RequestRecord> requests; ///< as they were taken
+};
+
 /// What becomes durable together.
 struct Batch {
     Sequence first_seq = 0, last_seq = 0; ///< of all items in it; both 0 when it has none
@@ -198,11 +213,14 @@ struct Batch {
     std::vector<LinkRecord> links;
     std::vector<AlarmRecord> alarms;
     std::vector<SegmentRecord> segments;
+    std::vector<RequestRecord> requests;
     std::optional<RecordingTotals> totals;
     std::vector<LinkTotals> link_totals; ///< those that changed
     std::optional<RunEnd> end;
 
-    bool empty() const { return last_seq == 0 && segments.empty() && !totals && link_totals.empty() && !end; }
+    bool empty() const {
+        return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && !end;
+    }
     void clear(); ///< keeps capacity
 };
 

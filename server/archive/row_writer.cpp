@@ -58,6 +58,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
         {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::request_, "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
     };
     for (const auto& [member, sql] : statements) {
@@ -78,6 +79,7 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
     if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
     if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r); }); !done) return done;
+    if (auto done = each(batch.requests, [&](const auto& r) { return request(run, r); }); !done) return done;
     if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
     if (batch.totals) return totals(run, *batch.totals);
     return {};
@@ -294,6 +296,11 @@ Result<void> RowWriter::column(std::int64_t key, const SegmentRecord& record, st
     }
     column_.bind_octets(9, octets_of(values));
     return column_.run();
+}
+
+Result<void> RowWriter::request(RunId run, const RequestRecord& record) {
+    request_.bind(1, std::int64_t{run.value}).bind(2, number(record.cycle)).bind(3, std::string_view(record.request));
+    return request_.run();
 }
 
 Result<void> RowWriter::totals(RunId run, const RecordingTotals& totals) {

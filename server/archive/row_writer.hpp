@@ -27,12 +27,13 @@ class RowWriter {
     Result<void> alarm(RunId run, const AlarmRecord& record);
     Result<void> segment(RunId run, const SegmentRecord& record);
     Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);
+    Result<void> request(RunId run, const RequestRecord& record);
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
     sqlite::Database* database_ = nullptr;
     sqlite::Statement unit_, event_, tone_, command_, stage_, firing_, explanation_, condition_, link_, alarm_,
-        segment_, column_, link_number_, link_word_, totals_, link_totals_, tone_evidence_, tone_likelihood_;
+        segment_, column_, link_number_, link_word_, totals_, link_totals_, request_, tone_evidence_, tone_likelihood_;
 };
 
 } // namespace aeolis::archive

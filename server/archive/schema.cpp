@@ -175,6 +175,9 @@ CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
     bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
     repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+CREATE TABLE requests (
+    run INTEGER NOT NULL, position INTEGER NOT NULL, cycle INTEGER NOT NULL, request TEXT NOT NULL,
+    PRIMARY KEY (run, position)) STRICT, WITHOUT ROWID;
 )sql"},
 };
 

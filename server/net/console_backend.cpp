@@ -33,7 +33,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     auto archive = archive::Archive::open(chosen.archive);
     if (!archive) return archive.error();
     for (const auto run : archive->interrupted())
-        spdlog::warn("run {} was cut off: marked interrupted", run.value);
+        spdlog::warn("run {} was cut off: it can be continued in the console, or by POST /api/v1/rehearsals {{\"continue_run\":{}}}",
+                     run.value, run.value);
     auto queries = QueryThreads::open(chosen.archive, dictionary, chosen.other);
     if (!queries) return queries.error();
     backend->queries_ = std::move(*queries);
@@ -46,6 +47,10 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     backend->pipeline_->want_items(false);
     backend->desk_ = std::make_unique<RehearsalDesk>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
+        [self](archive::RunId run, const auto& done) {
+            const bool taken = self->queries_->ask([run, done](archive::Reader& reader) { done(reader.cut_off(run)); });
+            if (!taken) done(Error{"too many questions wait: try again"});
+        },
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
     backend->api_ = std::make_unique<Api>(

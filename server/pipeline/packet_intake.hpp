@@ -23,6 +23,7 @@ class Numbering {
         if (batch.first_seq == 0) batch.first_seq = batch.last_seq;
         return batch.last_seq;
     }
+    Sequence last() const { return next_ - 1; }
 
   private:
     Sequence next_ = 1;

@@ -23,7 +23,11 @@ struct Pipeline::State {
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0; ///< of the recording
         Sequence last_durable = 0;
+        Sequence repeat_until = 0; ///< up to here items are durable already
+        Compare compare;           ///< while items are repeated
+        std::optional<Error> differs;
 
+        bool repeats() const { return compare != nullptr; }
         archive::RecordingTotals totals() const {
             auto totals = intake.totals();
             totals.progress = progress;
@@ -31,11 +35,13 @@ struct Pipeline::State {
         }
     };
 
-    Result<void> room() const;
+    Result<void> room();
     void take(const simulation::ReceivedPacket& packet);
     void take(const simulation::ReceivedTone& tone);
     void take(const simulation::LinkState& link);
-    std::shared_ptr<const PublishedBatch> published() const;
+    void hold_against_archive();
+    Result<void> go_on_where_it_was_cut_off();
+    std::shared_ptr<const PublishedBatch> published(bool built) const;
 
     archive::Archive& archive;
     const dictionary::Dictionary& dictionary;
@@ -83,12 +89,52 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start) {
     return *id;
 }
 
+Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare) {
+    if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
+    AEOLIS_CHECK(compare != nullptr);
+    state_->run.emplace(run, start, *state_);
+    state_->run->repeat_until = durable;
+    state_->run->last_durable = durable;
+    state_->run->compare = std::move(compare);
+    return {};
+}
+
+/// What waits is durable already: compared and dropped.
+void Pipeline::State::hold_against_archive() {
+    if (!run->differs && run->pending.last_seq > run->repeat_until)
+        run->differs = Error{"what came with item " + std::to_string(run->repeat_until) + ", the last that is stored, now has " +
+                             std::to_string(run->pending.last_seq - run->repeat_until) + " more items"};
+    if (!run->differs && run->pending.last_seq != 0)
+        if (auto same = run->compare(*published(true)); !same) run->differs = same.error();
+    run->pending.clear();
+}
+
+/// From the last durable item on; nothing to do before it, and after.
+Result<void> Pipeline::State::go_on_where_it_was_cut_off() {
+    if (!run->repeats() || run->numbering.last() < run->repeat_until) return {};
+    hold_against_archive();
+    if (run->differs) return {};
+    if (auto done = archive.continue_run(run->id); !done) return done;
+    run->compare = nullptr;
+    return {};
+}
+
+Result<bool> Pipeline::caught_up() {
+    AEOLIS_CHECK(state_->run.has_value());
+    auto& run = *state_->run;
+    if (auto done = commit(); !done) return done.error();
+    if (auto done = state_->go_on_where_it_was_cut_off(); !done) return done.error();
+    if (run.differs) return *run.differs;
+    return !run.repeats();
+}
+
 void Pipeline::abandon() {
     state_->run.reset();
 }
 
-Result<void> Pipeline::State::room() const {
+Result<void> Pipeline::State::room() {
     AEOLIS_CHECK(run.has_value());
+    if (auto done = go_on_where_it_was_cut_off(); !done) return done;
     const std::size_t octets = run->pending.octets.size() + run->pending.values.size() * sizeof(double);
     if (octets < pending_octets_max) return {};
     return Error{archive.file().string() + ": " + std::to_string(octets >> 20U) +
@@ -137,6 +183,12 @@ Result<void> Pipeline::accept(const DownlinkState& state) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
     run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert});
+    return {};
+}
+
+Result<void> Pipeline::accept(archive::RequestRecord request) {
+    if (auto room = state_->room(); !room) return room;
+    state_->run->pending.requests.push_back(std::move(request));
     return {};
 }
 
@@ -218,11 +270,15 @@ Result<void> Pipeline::commit_if_full() {
 Result<void> Pipeline::commit() {
     if (!state_->run) return {};
     auto& run = *state_->run;
+    if (run.repeats()) {
+        state_->hold_against_archive();
+        return {};
+    }
     if (!run.pending.units.empty() || run.progress != run.durable_progress) run.pending.totals = run.totals();
     if (run.pending.empty()) return {};
     if (auto done = state_->archive.append(run.id, run.pending); !done) return done;
     run.durable_progress = run.progress;
-    const auto batch = state_->published();
+    const auto batch = state_->published(state_->items_wanted);
     run.pending.clear();
     if (!batch) return {};
     run.last_durable = batch->last_seq;
@@ -240,15 +296,15 @@ Result<void> Pipeline::finish(const archive::RunEnd& end) {
     return {};
 }
 
-std::shared_ptr<const PublishedBatch> Pipeline::State::published() const {
+std::shared_ptr<const PublishedBatch> Pipeline::State::published(bool built) const {
     const auto& batch = run->pending;
     if (batch.last_seq == 0) return nullptr;
     auto made = std::make_shared<PublishedBatch>();
     made->run = run->id;
     made->first_seq = batch.first_seq;
     made->last_seq = batch.last_seq;
-    made->built = items_wanted;
-    if (!items_wanted) return made;
+    made->built = built;
+    if (!built) return made;
     made->items.resize(static_cast<std::size_t>(batch.last_seq - batch.first_seq + 1));
     const auto place = [&](v1::Item item) {
         const auto index = static_cast<std::size_t>(item.seq() - batch.first_seq);

@@ -34,6 +34,8 @@ struct PublishedBatch {
 using Observer = std::function<void(const telemetry::Decoded& decoded, std::span<const std::uint8_t> octets,
                                     archive::Source source, Ert ert)>;
 using Publish = std::function<void(std::shared_ptr<const PublishedBatch>)>;
+/// Whether what is flown again is what the archive has of it; an Error names the first item that is not.
+using Compare = std::function<Result<void>(const PublishedBatch& again)>;
 
 inline constexpr std::chrono::milliseconds commit_interval{10}; ///< design.md: group commits at most every 10 ms
 inline constexpr std::size_t commit_items = 8192;               ///< or when so many wait: some 4096 units
@@ -83,6 +85,15 @@ class Pipeline {
 
     /// A new run, durable when it returns. One at a time: the last one must have been finished or abandoned.
     Result<RunId> begin(const archive::RunStart& start);
+
+    /// A run that was cut off is flown again from its beginning: items up to `durable` are neither stored nor published again
+    /// but held against the archive by `compare`. After the last of them it goes on as any run. One at a time, as begin().
+    Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare);
+    /// Compares what waits. True once all that was durable has come again; an Error for good when something else came, or
+    /// the run cannot be marked as running again.
+    Result<bool> caught_up();
+    /// A controller's request that was taken: stored with the next commit.
+    Result<void> accept(archive::RequestRecord request);
 
     /// All of a cycle's packets, tones and link changes. The report is not kept.
     Result<void> accept(const simulation::CycleReport& report);

@@ -1,12 +1,37 @@
 #include "server/rehearsal/pipeline_thread.hpp"
 
+#include "server/archive/reader.hpp"
+
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
 namespace {
 
 constexpr std::chrono::milliseconds retry_interval{500}; // ours: a full disk does not empty faster
+constexpr std::size_t words_of_difference = 200;         // of an item: enough to see which it is
 constexpr int retries_when_closing = 4;                  // then the last commit is given up, and said so
+
+/// Whether a run's items that came again are those that the archive has; an Error names the first that is not.
+Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch& again) {
+    archive::Sequence after = again.first_seq - 1;
+    auto item = again.items.begin();
+    while (after < again.last_seq) {
+        const std::size_t wanted = std::min<std::size_t>(archive::items_page_max, again.last_seq - after);
+        const auto page = stored.items(again.run, after, wanted);
+        if (!page) return page.error();
+        for (const auto& before : page->items) {
+            if (item == again.items.end()) break;
+            if (before.SerializeAsString() != item->SerializeAsString())
+                return Error{fmt::format("run {}: flown again, item {} is not what it was ({})", again.run.value, before.seq(),
+                                         item->ShortDebugString().substr(0, words_of_difference))};
+            ++item;
+        }
+        if (page->complete_through <= after) return Error{fmt::format("run {}: item {} is not in the archive", again.run.value, after + 1)};
+        after = page->complete_through;
+    }
+    return {};
+}
 
 } // namespace
 
@@ -18,7 +43,7 @@ void Delivery::add(const simulation::CycleReport& report) {
 
 PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
                                pipeline::Publish publish, const telemetry::OtherMission* other)
-    : archive_(std::move(archive)), pipeline_(archive_, dictionary, other), faults_(faults) {
+    : archive_(std::move(archive)), dictionary_(dictionary), pipeline_(archive_, dictionary, other), faults_(faults) {
     pipeline_.on_publish([this, publish = std::move(publish)](std::shared_ptr<const pipeline::PublishedBatch> batch) {
         ++batches_;
         items_ += batch->last_seq - batch->first_seq + 1;
@@ -37,6 +62,36 @@ Result<archive::RunId> PipelineThread::begin(const archive::RunStart& start) {
     auto done = job.done.get_future();
     if (!jobs_.push(std::move(job))) return Error{"the archive is closing"};
     return done.get();
+}
+
+void PipelineThread::perform(Action action) {
+    std::promise<void> performed;
+    auto done = performed.get_future();
+    const bool taken = jobs_.push(Action{[&] {
+        action();
+        performed.set_value();
+    }});
+    if (taken) done.wait();
+}
+
+Result<void> PipelineThread::resume(const archive::CutOffRun& cut, const archive::RunStart& start) {
+    auto reader = archive::Reader::open(archive_.file(), dictionary_);
+    if (!reader) return reader.error();
+    auto stored = std::make_shared<archive::Reader>(std::move(*reader));
+    const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
+    Result<void> result = Error{"the archive is closing"};
+    perform([&] { result = pipeline_.resume(cut.run, start, cut.last_seq, compare); });
+    return result;
+}
+
+Result<bool> PipelineThread::caught_up() {
+    Result<bool> result = Error{"the archive is closing"};
+    perform([&] { result = pipeline_.caught_up(); });
+    return result;
+}
+
+void PipelineThread::abandon() {
+    perform([&] { pipeline_.abandon(); });
 }
 
 bool PipelineThread::deliver(Delivery delivery) {
@@ -72,6 +127,8 @@ void PipelineThread::run() {
                 begin->done.set_value(pipeline_.begin(begin->start));
             } else if (auto* delivery = std::get_if<Delivery>(&*job)) {
                 take(*delivery);
+            } else if (auto* action = std::get_if<Action>(&*job)) {
+                (*action)();
             } else {
                 auto& finish = std::get<Finish>(*job);
                 if (insist([&] { return pipeline_.finish(finish.end); }))

@@ -20,7 +20,7 @@ namespace aeolis::server {
 struct Delivery {
     using Entry =
         std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord,
-                     pipeline::DownlinkPacket, pipeline::DownlinkState>;
+                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links; ///< empty: as told before
@@ -46,6 +46,13 @@ class PipelineThread {
 
     /// Waits until the run is in the archive.
     Result<archive::RunId> begin(const archive::RunStart& start);
+    /// A run that was cut off, flown again from its beginning: what is stored already is compared and not stored again.
+    Result<void> resume(const archive::CutOffRun& cut, const archive::RunStart& start);
+    /// Waits until everything delivered was taken: true when the run has caught up with what is stored; an Error when it
+    /// did not come out the same.
+    Result<bool> caught_up();
+    /// Gives the run up; in the archive it stays as it is.
+    void abandon();
     /// Waits while the queue is full. False when writing was given up.
     bool deliver(Delivery delivery);
     /// Waits until everything delivered is durable and the run is marked finished.
@@ -70,14 +77,19 @@ class PipelineThread {
         archive::RunEnd end;
         std::promise<Result<void>> done;
     };
-    using Job = std::variant<Begin, Delivery, Finish>;
+    /// Anything else, done on the thread.
+    using Action = std::function<void()>;
+    using Job = std::variant<Begin, Delivery, Finish, Action>;
 
     void run();
+    /// Done on the thread, and waited for.
+    void perform(Action action);
     void take(Delivery& delivery);
     /// Repeats `attempt` until it succeeds; false when that is given up.
     bool insist(const std::function<Result<void>()>& attempt);
 
     archive::Archive archive_;
+    const dictionary::Dictionary& dictionary_;
     pipeline::Pipeline pipeline_;
     Faults faults_;
     BoundedQueue<Job> jobs_{deliveries_max};

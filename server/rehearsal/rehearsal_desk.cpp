@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace aeolis::server {
 namespace {
@@ -18,9 +19,9 @@ Result<double> checked_pace(double pace) {
 } // namespace
 
 RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                             PipelineThread& pipeline, Post post, Callbacks callbacks)
+                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, Callbacks callbacks)
     : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
-      callbacks_(std::move(callbacks)) {}
+      read_cut_off_(std::move(read_cut_off)), callbacks_(std::move(callbacks)) {}
 
 RehearsalDesk::~RehearsalDesk() = default;
 
@@ -34,6 +35,19 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     const auto pace = checked_pace(request.pace());
     if (!pace) return began(pace.error());
+    if (request.continue_run() != 0) {
+        if (request.has_inline_scenario() || !request.scenario().empty() || request.seed() != 0)
+            return began(Error{"continue_run: the run has its scenario and its seed; leave them out"});
+        if (request.continue_run() > std::numeric_limits<std::uint32_t>::max())
+            return began(Error{fmt::format("no run {}", request.continue_run())});
+        return read_cut_off_(archive::RunId{static_cast<std::uint32_t>(request.continue_run())},
+                             [this, began = std::move(began), pace = *pace](Result<archive::CutOffRun> cut) {
+                                 post_([this, began, pace, cut = std::move(cut)]() mutable {
+                                     if (!cut) return began(cut.error());
+                                     continue_run(std::move(*cut), pace, began);
+                                 });
+                             });
+    }
     if (request.has_inline_scenario() && !request.scenario().empty())
         return began(Error{"scenario and inline_scenario: one of them, not both"});
     auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
@@ -46,6 +60,20 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     runner_.reset();
+    runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,
+                                                callbacks_for(std::move(began)));
+}
+
+void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began began) {
+    if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
+    auto scenario = scenario_from_text(cut.scenario_text, fmt::format("the scenario of run {}", cut.run.value));
+    if (!scenario) return began(scenario.error());
+    runner_.reset();
+    runner_ = std::make_unique<RehearsalRunner>(std::move(*scenario), std::move(cut), pace, dictionary_, pipeline_,
+                                                callbacks_for(std::move(began)));
+}
+
+RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     RehearsalRunner::Callbacks callbacks;
     callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {
         post_([this, began, state = std::move(state)] {
@@ -65,8 +93,7 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
     callbacks.on_clocks = [this](v1::Clocks clocks) {
         post_([this, clocks = std::move(clocks)]() mutable { callbacks_.on_clocks(std::move(clocks)); });
     };
-    runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,
-                                                std::move(callbacks));
+    return callbacks;
 }
 
 Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {

@@ -22,10 +22,12 @@ class RehearsalDesk {
         std::function<void(v1::Clocks)> on_clocks;
     };
     using Post = std::function<void(std::function<void()>)>;
+    /// Brings a run that was cut off, on any thread; an Error when it was not.
+    using ReadCutOff = std::function<void(archive::RunId, std::function<void(Result<archive::CutOffRun>)>)>;
     using Began = std::function<void(Result<v1::RunState>)>;
 
     RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
-                  Post post, Callbacks callbacks);
+                  Post post, ReadCutOff read_cut_off, Callbacks callbacks);
     ~RehearsalDesk();
 
     /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
@@ -41,12 +43,15 @@ class RehearsalDesk {
     bool going_on() const { return runner_ && !runner_->over(); }
 
   private:
+    void continue_run(archive::CutOffRun cut, double pace, Began began);
+    RehearsalRunner::Callbacks callbacks_for(Began began);
     Result<void> refusal_while_going_on() const;
 
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;
     Post post_;
+    ReadCutOff read_cut_off_;
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;

@@ -4,6 +4,8 @@
 #include "server/rehearsal/wall_clock.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
+#include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -19,6 +21,7 @@ constexpr milliseconds state_interval{1000};
 constexpr milliseconds links_interval{1000};
 constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pace
 constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
+constexpr std::uint64_t cycles_between_looks = 64; // while flying again: as far as a run may go on before its pace counts
 
 } // namespace
 
@@ -29,6 +32,14 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
       callbacks_(std::move(callbacks)) {
     control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
     scenario_.radio.tones_from_samples = from_samples(scenario_.radio, pace_);
+    thread_ = std::thread{[this] { run(); }};
+}
+
+RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
+                                 const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks)
+    : scenario_(std::move(scenario)), seed_(cut.seed), cut_(std::move(cut)), dictionary_(dictionary), pipeline_(pipeline),
+      callbacks_(std::move(callbacks)) {
+    control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
     thread_ = std::thread{[this] { run(); }};
 }
 
@@ -85,14 +96,11 @@ bool RehearsalRunner::over() const {
 void RehearsalRunner::run() {
     Rehearsal rehearsal{scenario_, seed_, 0, dictionary_};
     start_ = rehearsal.run_start(pace_);
-    const auto run = pipeline_.begin(start_);
-    if (run) {
-        run_id_ = *run;
-        spdlog::info("run {} begins: {} seed {} pace {}", run_id_.value, scenario_.name, seed_, pace_);
+    if (const auto begun = begin(rehearsal)) {
         callbacks_.on_begun(state(rehearsal));
         fly(rehearsal);
     } else {
-        callbacks_.on_begun(run.error());
+        callbacks_.on_begun(begun.error());
     }
     std::vector<std::pair<v1::CommandRequest, Reply>> late;
     {
@@ -106,6 +114,52 @@ void RehearsalRunner::run() {
         refusal.set_reason("the run is over: nothing listens on board");
         reply(std::move(refusal));
     }
+}
+
+Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
+    if (cut_) return catch_up(rehearsal);
+    const auto run = pipeline_.begin(start_);
+    if (!run) return run.error();
+    run_id_ = *run;
+    spdlog::info("run {} begins: {} seed {} pace {}", run_id_.value, scenario_.name, seed_, pace_);
+    return {};
+}
+
+bool RehearsalRunner::stop_wanted() const {
+    const std::scoped_lock lock{mutex_};
+    return control_.stop;
+}
+
+Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
+    run_id_ = cut_->run;
+    start_.started = cut_->started;
+    spdlog::info("run {} is flown again up to item {}", run_id_.value, cut_->last_seq);
+    if (auto resumed = pipeline_.resume(*cut_, start_); !resumed) return resumed;
+    const auto given_up = [&](const std::string& why) {
+        pipeline_.abandon();
+        return Error{fmt::format("run {} cannot be continued: {}", run_id_.value, why)};
+    };
+    auto request = cut_->requests.begin();
+    for (;;) {
+        if (stop_wanted()) return given_up("it was stopped");
+        for (; request != cut_->requests.end() && request->cycle == rehearsal.cycles(); ++request) {
+            v1::CommandRequest again;
+            if (!google::protobuf::TextFormat::ParseFromString(request->request, &again) || !rehearsal.submit(again).accepted())
+                return given_up("a command that was taken at cycle " + std::to_string(request->cycle) + " is refused now");
+            for (auto& stage : rehearsal.take_stages())
+                delivery_.entries.emplace_back(std::move(stage));
+        }
+        if (rehearsal.cycles() % cycles_between_looks == 0) {
+            if (!deliver(rehearsal, Clock::now())) return given_up("the archive gave up");
+            const auto caught_up = pipeline_.caught_up();
+            if (!caught_up) return given_up(caught_up.error().message);
+            if (*caught_up && request == cut_->requests.end()) break;
+            if (rehearsal.finished()) return given_up(fmt::format("flown again it ends before item {}", cut_->last_seq));
+        }
+        collect(rehearsal, rehearsal.step());
+    }
+    spdlog::info("run {} goes on from item {}, at E{:+.1f} s", run_id_.value, cut_->last_seq, rehearsal.clocks().e_s());
+    return {};
 }
 
 void RehearsalRunner::fly(Rehearsal& rehearsal) {
@@ -176,6 +230,8 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
 
 void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
     for (auto& [request, reply] : requests) {
+        std::string text;
+        google::protobuf::TextFormat::PrintToString(request, &text);
         auto answer = rehearsal.submit(request);
         spdlog::info("run {}: command {} {}", run_id_.value, request.command(),
                      answer.accepted() ? fmt::format("radiated as number {}", answer.command())
@@ -184,6 +240,7 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<
             reply(std::move(answer));
             continue;
         }
+        if (!request.dry_run()) delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
         for (auto& stage : rehearsal.take_stages())
             delivery_.entries.emplace_back(std::move(stage));
         delivery_.when_durable.push_back(

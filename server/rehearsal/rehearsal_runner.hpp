@@ -26,6 +26,9 @@ class Rehearsal;
 /// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else drawn
 ///          from the symbol error: the pace asked for at the start decides, for the whole run, so that none is lost or
 ///          doubled when the pace changes (decision 0019)
+/// Cut off  a run that a crash ended is flown again with the same seed and the same requests at the same cycles, as fast as it
+///          goes; each item is held against the archive, and after the last that is stored the run goes on as if nothing
+///          had been. When one is not what it was, the run stays interrupted and on_begun gets the error (decision 0021)
 /// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error
 class RehearsalRunner {
   public:
@@ -50,6 +53,9 @@ class RehearsalRunner {
     /// Dictionary and pipeline must outlive this.
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
+    /// Goes on with a run that was cut off; `scenario` is the one in its row.
+    RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace, const dictionary::Dictionary& dictionary,
+                    PipelineThread& pipeline, Callbacks callbacks);
     ~RehearsalRunner(); ///< stops the run and waits for its thread
 
     void pause(bool paused);
@@ -68,6 +74,10 @@ class RehearsalRunner {
     };
 
     void run();
+    Result<void> begin(Rehearsal& rehearsal);
+    /// Flies again what the archive has of the run.
+    Result<void> catch_up(Rehearsal& rehearsal);
+    bool stop_wanted() const;
     void fly(Rehearsal& rehearsal);
     void send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests);
     void collect(Rehearsal& rehearsal, const simulation::CycleReport& report);
@@ -79,6 +89,7 @@ class RehearsalRunner {
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;
+    std::optional<archive::CutOffRun> cut_;
     const dictionary::Dictionary& dictionary_;
     PipelineThread& pipeline_;
     Callbacks callbacks_;

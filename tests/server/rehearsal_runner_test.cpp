@@ -2,6 +2,7 @@
 
 #include "server/archive/reader.hpp"
 #include "server/rehearsal/rehearsal.hpp"
+#include "server/scenario/scenario_text.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
@@ -9,7 +10,12 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
+#include <google/protobuf/text_format.h>
+#include <random>
+#include <sys/wait.h>
 #include <thread>
+#include <unistd.h>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -98,4 +104,188 @@ TEST_CASE("a change of pace in mid-run loses, doubles and changes no tone, and t
         CHECK(tone.likelihood() == expected[i].likelihood);
         CHECK(tone.spectrum().size() == 128);
     }
+}
+
+namespace {
+
+simulation::Scenario short_landing() {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 900.0;
+    scenario.commands[0].send_before_entry_s = 895.0;
+    scenario.commands[1].send_before_entry_s = 885.0;
+    scenario.radio.tones_from_samples = false;
+    return scenario;
+}
+
+/// Flies with a command now and then until this process is killed; every published sequence number goes into the pipe.
+[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published) {
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    auto archive = archive::Archive::open(file);
+    if (!archive) ::_exit(1);
+    PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [&](const auto& batch) {
+                                const archive::Sequence seq = batch->last_seq;
+                                if (::write(published, &seq, sizeof seq) != sizeof seq) ::_exit(1);
+                            }};
+    std::atomic<bool> begun{false};
+    RehearsalRunner::Callbacks callbacks;
+    callbacks.on_begun = [&](const auto&) { begun = true; };
+    callbacks.on_state = [](const auto&) {};
+    callbacks.on_clocks = [](const auto&) {};
+    RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
+    for (;;) {
+        v1::CommandRequest request;
+        request.set_command("NO_OP");
+        if (begun) runner.submit(request, [](const auto&) {});
+        std::this_thread::sleep_for(std::chrono::milliseconds{40});
+    }
+}
+
+/// The same run without any crash: every item up to `last`, with the requests at their cycles.
+std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Sequence last, const std::filesystem::path& file) {
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    {
+        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary, PipelineThread::Faults::give_up,
+                                [](const auto&) {}};
+        Rehearsal rehearsal{short_landing(), 7, 0, dictionary};
+        REQUIRE(pipeline.begin(rehearsal.run_start(0.0)));
+        archive::Sequence stored = 0;
+        for (auto request = cut.requests.begin(); stored < last;) {
+            Delivery delivery;
+            for (; request != cut.requests.end() && request->cycle == rehearsal.cycles(); ++request) {
+                v1::CommandRequest again;
+                REQUIRE(google::protobuf::TextFormat::ParseFromString(request->request, &again));
+                REQUIRE(rehearsal.submit(again).accepted());
+                for (auto& stage : rehearsal.take_stages())
+                    delivery.entries.emplace_back(std::move(stage));
+            }
+            delivery.add(rehearsal.step());
+            for (auto& stage : rehearsal.take_stages())
+                delivery.entries.emplace_back(std::move(stage));
+            REQUIRE(pipeline.deliver(std::move(delivery)));
+            if (rehearsal.cycles() % 640 != 0) continue;
+            REQUIRE(pipeline.caught_up());
+            stored = pipeline.figures().published_items;
+        }
+        pipeline.abandon();
+    }
+    auto reader = archive::Reader::open(file, dictionary);
+    REQUIRE(reader);
+    std::vector<std::string> items;
+    while (items.size() < last) {
+        const auto page = reader->items(archive::RunId{1}, items.size(), archive::items_page_max);
+        REQUIRE(page);
+        for (const auto& item : page->items)
+            items.push_back(item.SerializeAsString());
+    }
+    items.resize(last);
+    return items;
+}
+
+archive::Sequence kill_after(archive::Sequence published, const std::filesystem::path& file) {
+    int pipe[2];
+    REQUIRE(::pipe(pipe) == 0);
+    const pid_t child = ::fork();
+    REQUIRE(child >= 0);
+    if (child == 0) fly_until_killed(file, pipe[1]);
+    ::close(pipe[1]);
+    archive::Sequence acknowledged = 0;
+    while (acknowledged < published && ::read(pipe[0], &acknowledged, sizeof acknowledged) > 0) {
+    }
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    while (::read(pipe[0], &acknowledged, sizeof acknowledged) > 0) {
+    }
+    ::close(pipe[0]);
+    return acknowledged;
+}
+
+/// Kills a flying process once `published` items are out, continues the run in this one for `further` items, and holds every
+/// item against a run that nothing happened to.
+void kill_and_continue(archive::Sequence published, archive::Sequence further) {
+    INFO("killed after item " << published);
+    test::TemporaryFolder folder;
+    const auto file = folder / "killed.db";
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    const archive::Sequence acknowledged = kill_after(published, file);
+    REQUIRE(acknowledged >= published);
+    std::optional<archive::CutOffRun> cut;
+    std::string failure;
+    {
+        auto archive = archive::Archive::open(file);
+        REQUIRE(archive);
+        REQUIRE(archive->interrupted() == std::vector<archive::RunId>{archive::RunId{1}});
+        auto found = archive::Reader::open(file, dictionary)->cut_off(archive::RunId{1});
+        REQUIRE(found);
+        cut = *found;
+        CHECK(cut->last_seq >= acknowledged);
+        auto scenario = scenario_from_text(cut->scenario_text, "its row");
+        REQUIRE(scenario);
+        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        std::atomic<bool> begun{false};
+        RehearsalRunner::Callbacks callbacks;
+        callbacks.on_begun = [&](Result<v1::RunState> state) {
+            if (!state) failure = state.error().message;
+            begun = true;
+        };
+        callbacks.on_state = [](const auto&) {};
+        callbacks.on_clocks = [](const auto&) {};
+        RehearsalRunner runner{*scenario, *cut, 0.0, dictionary, pipeline, callbacks};
+        while (!runner.over() && pipeline.figures().published_items < further)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        runner.stop();
+        while (!runner.over())
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        CHECK(begun);
+    }
+    REQUIRE(failure.empty());
+    auto reader = archive::Reader::open(file, dictionary);
+    const archive::Sequence last = cut->last_seq + further;
+    const auto undisturbed = items_flown(*cut, last, folder / "undisturbed.db");
+    std::size_t seen = 0;
+    while (seen < last) {
+        const auto page = reader->items(archive::RunId{1}, seen, archive::items_page_max);
+        REQUIRE(page);
+        REQUIRE_FALSE(page->items.empty());
+        for (const auto& item : page->items)
+            if (seen < last) REQUIRE(item.SerializeAsString() == undisturbed[seen++]);
+    }
+}
+
+} // namespace
+
+TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands and all",
+          "[rehearsal][archive][R41][R43]") {
+    for (const archive::Sequence published : {1U, 2'000U, 9'000U})
+        kill_and_continue(published, 3'000);
+}
+
+TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
+    std::mt19937_64 random{1};
+    for (int i = 0; i < 50; ++i)
+        kill_and_continue(1 + random() % 60'000, 5'000);
+}
+
+TEST_CASE("a run that does not come out the same is not continued, and what it has stays as it is", "[rehearsal][archive][R43]") {
+    test::TemporaryFolder folder;
+    const auto file = folder / "killed.db";
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    kill_after(2'000, file);
+    auto archive = archive::Archive::open(file);
+    REQUIRE(archive);
+    auto cut = archive::Reader::open(file, dictionary)->cut_off(archive::RunId{1});
+    REQUIRE(cut);
+    cut->seed = 8;
+    std::string failure;
+    {
+        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        RehearsalRunner::Callbacks callbacks;
+        callbacks.on_begun = [&](Result<v1::RunState> state) { failure = state ? "continued" : state.error().message; };
+        RehearsalRunner runner{short_landing(), *cut, 0.0, dictionary, pipeline, callbacks};
+        while (!runner.over())
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
+    CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
+    auto reader = archive::Reader::open(file, dictionary);
+    CHECK(reader->run(archive::RunId{1})->state() == "interrupted");
+    CHECK(reader->last_seq(archive::RunId{1}).value() == cut->last_seq);
 }
