@@ -65,7 +65,10 @@ Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dicti
 void Api::handle(const HttpRequest& request, const Respond& respond) {
     if (request.path.starts_with(api_prefix)) return handle_api(request, respond);
     if (request.method != "GET" && request.method != "HEAD") return respond(wrong_method(request, "GET"));
-    if (request.path == "/healthz") return respond({200, "text/plain; charset=utf-8", "no-store", "ok\n"});
+    if (request.path == "/healthz") {
+        const std::string fault = parts_.pipeline.fault();
+        return respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", (fault.empty() ? "ok" : fault) + "\n"});
+    }
     if (request.path == "/metrics") return respond(metrics());
     const bool taken = parts_.queries.ask(
         [this, path = request.path, respond](archive::Reader&) { respond(parts_.console.file(path)); });

@@ -25,6 +25,7 @@ struct ServeOptions {
     std::optional<std::string> downlink; ///< "tcp://HOST:PORT", "udp://HOST:PORT": follow another mission
     std::filesystem::path xtce;          ///< of that mission
     DownlinkForm format{};
+    std::string log_level = "info", log_format = "text";
 };
 int serve(const ServeOptions& options);
 

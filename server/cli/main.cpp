@@ -67,12 +67,27 @@ int main(int argc, char** argv) {
     ServeOptions serving;
     serving.shared = {shipped("dictionaries/msl"), shipped("simulation/scenarios")};
     serving.web = shipped("web/dist");
-    auto* serve_command = app.add_subcommand("serve", "the console backend: open the address it prints in a browser");
+    auto* serve_command = app.add_subcommand(
+        "serve", "the console backend: open the address it prints in a browser.\n"
+                 "Each option can also stand in a file (--config), a line each without its dashes: archive=/var/lib/aeolis/aeolis.db.\n"
+                 "What the command line says counts first, then the environment variable named beside an option, then the file.");
+    serve_command->set_config("--config", "", "read options from this file");
+    serve_command->allow_config_extras(CLI::config_extras_mode::error);
     serve_command->add_option("--listen", serving.listen, "loopback ADDRESS:PORT; port 0 takes a free one")
+        ->envname("AEOLIS_LISTEN")
         ->capture_default_str();
     serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
+        ->envname("AEOLIS_ARCHIVE")
         ->capture_default_str();
-    serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
+    serve_command->add_option("--web", serving.web, "directory of the built console")->envname("AEOLIS_WEB")->capture_default_str();
+    serve_command->add_option("--log-level", serving.log_level, "what goes to standard error")
+        ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
+        ->envname("AEOLIS_LOG_LEVEL")
+        ->capture_default_str();
+    serve_command->add_option("--log-format", serving.log_format, "text for people, json: an object a line")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->envname("AEOLIS_LOG_FORMAT")
+        ->capture_default_str();
     auto* scenario_option = serve_command->add_option("--scenario", serving.scenario,
                                                       "start this rehearsal at once: a file, or a name that ships");
     auto* downlink = serve_command

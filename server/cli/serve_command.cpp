@@ -1,11 +1,13 @@
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/api/json_object.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
 
 #include <charconv>
 #include <csignal>
 #include <fmt/format.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 #include <thread>
 
@@ -30,6 +32,26 @@ std::optional<Listen> listen_of(const std::string& text) {
     return listen;
 }
 
+/// A log line as one JSON object. spdlog's patterns do not escape what they print.
+class JsonLine final : public spdlog::formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+        time_.format(message, line);
+        const std::string_view text{message.payload.data(), message.payload.size()};
+        fmt::format_to(std::back_inserter(line), R"("level":"{}","message":{}}})", to_string_view(message.level), json_text(text));
+        line.push_back('\n');
+    }
+    std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonLine>(); }
+
+  private:
+    spdlog::pattern_formatter time_{R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",)", spdlog::pattern_time_type::utc, ""};
+};
+
+void set_log(const ServeOptions& options) {
+    spdlog::set_level(spdlog::level::from_str(options.log_level));
+    if (options.log_format == "json") spdlog::set_formatter(std::make_unique<JsonLine>());
+}
+
 std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
     if (!scenario) return "Open it in a browser and start a rehearsal.";
     const auto* const waits_for = scenario->test_venue == simulation::TestVenue::gnc_alone
@@ -43,6 +65,7 @@ std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
 } // namespace
 
 int serve(const ServeOptions& options) {
+    set_log(options);
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);

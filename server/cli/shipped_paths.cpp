@@ -12,7 +12,8 @@ namespace aeolis::server {
 std::filesystem::path shipped(const std::string& folder) {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    for (const auto& root : {program, program / "../..", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
+    // Beside the program, above build/release, where the package puts it, and where it was built from.
+    for (const auto& root : {program, program / "../..", program / "../share/aeolis", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
         if (std::filesystem::is_directory(root / folder, error)) return (root / folder).lexically_normal();
     return std::filesystem::path{AEOLIS_SOURCE_DIRECTORY} / folder;
 }
