@@ -1,6 +1,7 @@
 #include "commands/command_queue.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace aeolis::commands {
 
@@ -20,9 +21,15 @@ bool CommandQueue::cancel(std::uint64_t number) {
     return std::erase_if(entries_, [&](const Entry& each) { return each.number == number; }) > 0;
 }
 
+bool CommandQueue::approve(std::uint64_t number) {
+    const auto found = std::ranges::find(entries_, number, &Entry::number);
+    if (found == entries_.end()) return false;
+    return std::exchange(found->needs_approval, false);
+}
+
 std::vector<std::uint64_t> CommandQueue::take_due(Ert now) {
     std::vector<std::uint64_t> due;
-    const auto is_due = [&](const Entry& each) { return !each.held && (!each.release_at || *each.release_at <= now); };
+    const auto is_due = [&](const Entry& each) { return !each.held && !each.needs_approval && (!each.release_at || *each.release_at <= now); };
     for (const Entry& each : entries_)
         if (is_due(each)) due.push_back(each.number);
     std::erase_if(entries_, is_due);

@@ -8,7 +8,7 @@
 
 namespace aeolis::commands {
 
-/// Commands that may be sent and have not left: they wait for their time, or for a controller.
+/// Commands that may be sent and have not left: they wait for their time, for a controller, or for a second one.
 ///
 /// Order    of those that are due, the larger priority first; of equals as they came
 /// Memory   a line a command; whoever adds them bounds their number
@@ -19,6 +19,7 @@ class CommandQueue {
         std::uint32_t priority = 0;
         std::optional<Ert> release_at; ///< none: at once
         bool held = false;
+        bool needs_approval = false; ///< by a second person
     };
 
     void add(const Entry& entry);
@@ -27,6 +28,8 @@ class CommandQueue {
     bool hold(std::uint64_t number) { return set_held(number, true); }
     bool release(std::uint64_t number) { return set_held(number, false); } ///< it still waits for its time
     bool cancel(std::uint64_t number);
+    /// False also when it needs none.
+    bool approve(std::uint64_t number);
 
     /// Takes out those that are due, in the order in which they leave.
     std::vector<std::uint64_t> take_due(Ert now);

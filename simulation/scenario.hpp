@@ -226,6 +226,7 @@ struct Scenario {
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
     std::vector<ScriptedCommand> commands;
+    std::vector<std::string> second_person; ///< commands that leave only when a second controller has approved them
     std::vector<SystemFault> system_faults;
     std::vector<DeviceFault> device_faults;
     std::vector<ComputerReset> computer_resets;

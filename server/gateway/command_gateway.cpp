@@ -37,6 +37,17 @@ Result<std::optional<commands::Fop::Service>> service_named(const std::string& n
     return Error{fmt::format("unknown service '{}': AD, BD, or none for what suits", name)};
 }
 
+constexpr std::size_t controller_name_max = 64; // ours
+
+/// Of a person, as it was typed: without blanks around it, in small letters.
+std::string same_person(std::string_view name) {
+    const auto first = name.find_first_not_of(' ');
+    if (first == std::string_view::npos) return {};
+    std::string same{name.substr(first, name.find_last_not_of(' ') - first + 1)};
+    std::ranges::transform(same, same.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return same;
+}
+
 } // namespace
 
 std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution) {
@@ -60,9 +71,9 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
 }
 
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
-                               std::vector<commands::NamedValue> solution)
+                               std::vector<commands::NamedValue> solution, std::vector<std::string> second_person)
     : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), clcw_(clcw_place(dictionary)),
-      link_(light_time_s), solution_(std::move(solution)), heard_(dictionary.channels.size()) {}
+      link_(light_time_s), solution_(std::move(solution)), second_person_(std::move(second_person)), heard_(dictionary.channels.size()) {}
 
 std::optional<CommandGateway::FieldPlace> CommandGateway::clcw_place(const dictionary::Dictionary& dictionary) {
     for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
@@ -129,11 +140,23 @@ v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert n
     const auto authorised =
         commands::authorise(*prepared->command, {request.armed(), request.confirmation()}, prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
+    const auto approval = needs_approval(request);
+    if (!approval) return refuse(approval.error().message);
+    reply.set_needs_approval(*approval);
     if (request.dry_run())
         reply.set_accepted(true);
     else
         queue(*prepared, request, now, reply, stages);
     return reply;
+}
+
+Result<bool> CommandGateway::needs_approval(const v1::CommandRequest& request) const {
+    if (request.controller().size() > controller_name_max)
+        return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
+    if (std::ranges::find(second_person_, request.command()) == second_person_.end()) return false;
+    if (same_person(request.controller()).empty())
+        return Error{request.command() + " needs a second person: say who you are (controller), then another controller approves it"};
+    return true;
 }
 
 void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& request, Ert now,
@@ -147,7 +170,7 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = commands::read_back_packet(dictionary_, *prepared.command);
     auto& underway = underway_.emplace_back(
-        Underway{++commands_, prepared.packet, prepared.arguments, prepared.wanted, report,
+        Underway{++commands_, prepared.packet, prepared.arguments, request.controller(), prepared.wanted, report,
                  commands::CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % commands::count_modulus);
 
@@ -157,13 +180,14 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
                            changes_);
     lifecycle.ground_stage(
         Stage::authorised, Status::ok,
-        (commands::is_hazardous(*prepared.command) ? "armed and confirmed by name" : "no arming needed") + not_known, now,
-        changes_);
+        (commands::is_hazardous(*prepared.command) ? "armed and confirmed by name" : "no arming needed") +
+            (request.controller().empty() ? "" : ", by " + request.controller()) + not_known,
+        now, changes_);
     append(underway, changes_, stages);
     reply.set_accepted(true);
     reply.set_command(underway.number);
-    queue_.add({underway.number, request.priority(), prepared.release_at, request.hold()});
-    if (request.hold() || prepared.release_at) tell_wait(underway, now, stages);
+    queue_.add({underway.number, request.priority(), prepared.release_at, request.hold(), reply.needs_approval()});
+    if (request.hold() || prepared.release_at || reply.needs_approval()) tell_wait(underway, now, stages);
     release_due(now, stages);
 }
 
@@ -173,8 +197,27 @@ void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive:
     if (entry == waiting.end()) return;
     const std::string when = entry->release_at ? "leaves at " + day_of_year_text(*entry->release_at) : "then leaves at once";
     changes_.clear();
-    underway.lifecycle.await_release(entry->held ? "held until a controller releases it; " + when : when, now, changes_);
+    const std::string approval = entry->needs_approval ? "waits for the approval of another controller than " + underway.controller + "; " : "";
+    underway.lifecycle.await_release(approval + (entry->held ? "held until a controller releases it; " + when : when), now, changes_);
     append(underway, changes_, stages);
+}
+
+std::string CommandGateway::perform(const v1::CommandRequest& asked, const Underway* command) {
+    const std::string& action = asked.action();
+    const auto number = asked.number();
+    const auto waits = [&](bool done) {
+        return done ? std::string{} : fmt::format("command {} does not wait: it has left, was cancelled, or there is none", number);
+    };
+    if (action == "hold") return waits(queue_.hold(number));
+    if (action == "release") return waits(queue_.release(number));
+    if (action == "cancel") return waits(queue_.cancel(number));
+    if (action != "approve") return fmt::format("unknown action '{}': release, hold, cancel or approve", action);
+    if (command == nullptr) return waits(false);
+    const std::string person = same_person(asked.controller());
+    if (person.empty() || asked.controller().size() > controller_name_max) return "controller: say who approves it";
+    if (person == same_person(command->controller))
+        return fmt::format("command {} was asked for by {}: another controller must approve it", number, command->controller);
+    return queue_.approve(number) ? std::string{} : fmt::format("command {} waits for no approval", number);
 }
 
 v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
@@ -183,15 +226,11 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
     reply.set_request(request.request());
     const std::string& action = request.action();
     auto* command = underway(request.number());
-    const bool known = action == "hold" || action == "release" || action == "cancel";
-    const bool done = known && (action == "hold"      ? queue_.hold(request.number())
-                                : action == "release" ? queue_.release(request.number())
-                                                      : queue_.cancel(request.number()));
-    if (!known) {
-        reply.set_reason(fmt::format("unknown action '{}': release, hold or cancel", action));
-    } else if (!done || command == nullptr) {
-        reply.set_reason(fmt::format("command {} does not wait: it has left, was cancelled, or there is none", request.number()));
+    const std::string refusal = perform(request, command);
+    if (!refusal.empty()) {
+        reply.set_reason(refusal);
     } else {
+        AEOLIS_CHECK(command != nullptr); // what waits is under way
         reply.set_accepted(true);
         reply.set_command(command->number);
         if (action == "cancel") {
@@ -199,6 +238,12 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
             command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by a controller", now,
                                             changes_);
             append(*command, changes_, stages);
+        } else if (action == "approve") {
+            changes_.clear();
+            command->lifecycle.ground_stage(commands::Stage::authorised, commands::Status::ok,
+                                            fmt::format("approved by {}, as the second person", request.controller()), now, changes_);
+            append(*command, changes_, stages);
+            tell_wait(*command, now, stages);
         } else {
             tell_wait(*command, now, stages);
         }

@@ -38,8 +38,9 @@ class CommandGateway {
   public:
     static constexpr std::size_t commands_max = 4096; ///< ours: a landing needs two
 
+    /// `second_person`: names of commands that leave only when another controller than the one who asked has approved them.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
-                   std::vector<commands::NamedValue> solution);
+                   std::vector<commands::NamedValue> solution, std::vector<std::string> second_person = {});
 
     /// Ground has another navigation solution from here on.
     void renew_solution(std::vector<commands::NamedValue> solution) { solution_ = std::move(solution); }
@@ -62,7 +63,7 @@ class CommandGateway {
     struct Underway {
         std::uint64_t number = 0;
         std::vector<std::uint8_t> packet;
-        std::string arguments;
+        std::string arguments, controller;
         std::optional<commands::Fop::Service> wanted;
         const dictionary::Packet* report = nullptr; ///< in which flight reports what it holds after this command
         commands::CommandLifecycle lifecycle;
@@ -89,8 +90,12 @@ class CommandGateway {
     void tell(const Prepared& prepared, Ert now, v1::CommandReply& reply) const;
     void queue(const Prepared& prepared, const v1::CommandRequest& request, Ert now, v1::CommandReply& reply,
                std::vector<archive::StageRecord>& stages);
-    /// Hold, release or cancel of one that waits.
+    /// Whether a second person must approve it; an Error when then nobody says who asks.
+    Result<bool> needs_approval(const v1::CommandRequest& request) const;
+    /// Hold, release, cancel or approval of one that waits.
     v1::CommandReply act(const v1::CommandRequest& request, Ert now, std::vector<archive::StageRecord>& stages);
+    /// Does what is asked; why not, or nothing.
+    std::string perform(const v1::CommandRequest& asked, const Underway* command);
     void tell_wait(Underway& underway, Ert now, std::vector<archive::StageRecord>& stages);
     /// Hands those that are due to the uplink: after another look at their preconditions, by what is known now.
     void release_due(Ert now, std::vector<archive::StageRecord>& stages);
@@ -116,6 +121,7 @@ class CommandGateway {
     commands::CommandLink link_;
     std::vector<std::vector<std::uint8_t>> uplinks_;
     std::vector<commands::NamedValue> solution_;
+    std::vector<std::string> second_person_;
     std::vector<Heard> heard_; ///< by ChannelId
     std::list<Underway> underway_;
     std::vector<commands::StageChange> changes_;

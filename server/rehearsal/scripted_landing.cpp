@@ -25,7 +25,7 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary)
     : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary)), station_(landing_.light_time_s()),
-      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution())),
+      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person),
       script_(scenario.commands), dispersed_(landing_.dispersed()) {}
 
 const simulation::CycleReport& ScriptedLanding::step() {

@@ -341,6 +341,7 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         scenario.test_venue = *venue;
     }
     if (message.telemetry_plan() == v1::TELEMETRY_PLAN_WIDEBAND) scenario.telemetry_plan = flight::Plan::wideband;
+    scenario.second_person.assign(message.second_person().begin(), message.second_person().end());
     for (const auto& row : message.commands()) {
         simulation::ScriptedCommand command;
         command.send_before_entry_s = row.send_before_entry_s();
@@ -386,6 +387,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     message.set_test_venue(static_cast<v1::TestVenue>(static_cast<int>(scenario.test_venue) + 1));
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);
+    for (const auto& name : scenario.second_person)
+        message.add_second_person(name);
     for (const auto& command : scenario.commands) {
         auto& row = *message.add_commands();
         row.set_send_before_entry_s(command.send_before_entry_s);

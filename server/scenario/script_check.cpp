@@ -6,11 +6,15 @@
 namespace aeolis::server {
 
 Result<void> check_script(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+    for (const auto& name : scenario.second_person)
+        if (dictionary.command(name) == nullptr) return Error{fmt::format("second_person: '{}' is no command of the dictionary", name)};
     for (std::size_t i = 0; i < scenario.commands.size(); ++i) {
         const auto& scripted = scenario.commands[i];
         const auto* command = dictionary.command(scripted.command);
         if (command == nullptr)
             return Error{fmt::format("commands[{}].command: '{}' is no command of the dictionary", i, scripted.command)};
+        if (std::ranges::find(scenario.second_person, scripted.command) != scenario.second_person.end())
+            return Error{fmt::format("commands[{}].command: {} needs a second person, and a script has none", i, scripted.command)};
         for (const auto& [name, value] : scripted.arguments)
             if (std::ranges::none_of(command->arguments, [&](const auto& known) { return known.name == name; }))
                 return Error{fmt::format("commands[{}].arguments: {} has no argument '{}'", i, scripted.command, name)};

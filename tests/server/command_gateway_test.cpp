@@ -29,7 +29,8 @@ v1::CommandRequest request(const std::string& command) {
 }
 
 struct Station {
-    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution())};
+    std::vector<std::string> second_person{};
+    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution()), second_person};
     std::vector<archive::StageRecord> stages;
 
     v1::CommandReply send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
@@ -244,6 +245,42 @@ TEST_CASE("a dry run says what would happen, with every check and its values, an
     CHECK_FALSE(refused.accepted());
     CHECK_THAT(refused.reason(), Catch::Contains("armed"));
     CHECK(refused.preconditions_size() == static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()));
+}
+
+TEST_CASE("where two persons are wanted a command leaves when another than who asked has approved it, and not before",
+          "[gateway][R23][R44]") {
+    Station station{.second_person = {"NO_OP"}};
+    CHECK_THAT(station.refusal(request("NO_OP")), Catch::Contains("say who you are"));
+    auto asked = request("NO_OP");
+    asked.set_controller("Ann");
+    asked.set_dry_run(true);
+    CHECK(station.send(asked).needs_approval());
+    asked.set_dry_run(false);
+    REQUIRE(station.send(asked).command() == 1);
+    CHECK_THAT(station.latest("authorised")->evidence, Catch::Contains("by Ann"));
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("approval of another controller than Ann"));
+
+    const auto act = [&](const std::string& action, const std::string& controller) {
+        v1::CommandRequest wanted;
+        wanted.set_action(action);
+        wanted.set_number(1);
+        wanted.set_controller(controller);
+        return station.send(wanted).reason();
+    };
+    CHECK_THAT(act("approve", " ann "), Catch::Contains("another controller must approve it"));
+    CHECK_THAT(act("approve", ""), Catch::Contains("say who approves it"));
+    CHECK(act("release", "Ben").empty()); // of a hold that it has not: the approval is still wanted
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK(act("approve", "Ben").empty());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    CHECK_THAT(station.latest("authorised")->evidence, Catch::Contains("approved by Ben"));
+    CHECK_THAT(act("approve", "Eve"), Catch::Contains("no approval"));
+
+    auto other = request("EDL_DO_EDL");
+    other.set_armed(true);
+    other.set_confirmation("EDL_DO_EDL");
+    other.set_controller(std::string(65, 'x'));
+    CHECK_THAT(station.send(other).reason(), Catch::Contains("at most 64"));
 }
 
 TEST_CASE("a command with a time leaves then, a held one when it is released, a cancelled one never", "[gateway][R44]") {

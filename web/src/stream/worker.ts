@@ -256,7 +256,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
           $typeName: 'aeolis.v1.CommandRequest', run: BigInt(message.run), command: message.command,
           arguments: message.arguments.map((a) => ({ $typeName: 'aeolis.v1.CommandArgument', ...a })),
           armed: message.armed, confirmation: message.confirmation, request: BigInt(message.request),
-          fromSolution: message.fromSolution, service: '', dryRun: false, releaseAt: '', hold: false, priority: 0, action: '', number: 0n,
+          fromSolution: message.fromSolution, service: '', dryRun: false, releaseAt: '', hold: false, priority: 0, action: '', number: 0n, controller: '',
         },
       });
       if (!sent) post({ type: 'refusal', reason: 'not connected: nothing was sent' });
