@@ -48,13 +48,14 @@ ToneReceiver::ToneReceiver(const MfskWaveform& waveform, double rate_hz, TimeTab
       correlator_(waveform, layout_.thinned_rate_hz(), layout_.thinned_samples()),
       sequence_(static_cast<int>(std::lround(waveform.symbol_s / layout_.hop_s())), layout_.hop_samples()) {}
 
-/// What is no number is one too. A level that rises for good is followed within some tens of samples.
+/// What is no number is one too. A level that rises or falls for good is followed within some hundreds of samples.
 bool ToneReceiver::is_pulse(const std::complex<float>& sample) {
     const double power = power_of(sample);
     if (!std::isfinite(power)) return true;
     if (mean_power_ == 0.0) mean_power_ = power;
     const double limit = pulse_ratio * mean_power_;
     mean_power_ += power_gain * (std::min(power, limit) - mean_power_);
+    if (power * pulse_ratio < mean_power_) mean_power_ /= 2.0; // noise is that weak once in ten thousand samples
     return power > limit;
 }
 

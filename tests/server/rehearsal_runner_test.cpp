@@ -202,6 +202,7 @@ archive::Sequence kill_after(archive::Sequence published, const std::filesystem:
 /// Kills a flying process once `published` items are out, continues the run in this one for `further` items, and holds every
 /// item against a run that nothing happened to.
 void kill_and_continue(archive::Sequence published, archive::Sequence further) {
+    spdlog::set_level(spdlog::level::err);
     INFO("killed after item " << published);
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
@@ -269,6 +270,7 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    spdlog::set_level(spdlog::level::err);
     kill_after(2'000, file);
     auto archive = archive::Archive::open(file);
     REQUIRE(archive);
