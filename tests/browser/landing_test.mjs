@@ -158,12 +158,6 @@ test('whoever only does what the guide says lands it, and once put away the guid
             await shows('guide', title);
             await obey(page);
         }
-        await shows('guide', /Let it begin/);
-        // Who types faster than the vehicle's status comes, once a second, is told what is missing; people do not.
-        await waitFor(async () => {
-            const state = await (await fetch(`${server.address}/api/v1/runs/latest/state`)).json();
-            return (state.channels ?? []).find((channel) => channel.name === 'parameters_received')?.value?.[0];
-        }, (value) => value === 1);
         for (const title of [/Let it begin/, /read it/, /EDL_DO_EDL/]) {
             await shows('guide', title);
             await obey(page);
