@@ -135,7 +135,8 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
     const { page, problems, text, shows } = await open(chrome, `${server.address}/?panel=packets`);
     await shows('badge', /ENDED RUN/);
     const { streams } = await server.get('/runs/latest/proof');
-    await waitFor(() => page.locator('[data-testid="packet-streams"] tbody tr').count(), (count) => count >= streams.filter((row) => Number(row.recorded) > 0).length);
+    const live = streams.filter((row) => Number(row.realtime) > 0).map((row) => row.name).sort();
+    await waitFor(async () => (await page.locator('[data-testid="packet-streams"] tbody button').allInnerTexts()).sort().join(), (names) => names === live.join());
     await page.getByRole('button', { name: 'GncNavigation', exact: true }).focus();
     await page.keyboard.press('Enter');
     await waitFor(async () => new Set(await page.locator('[data-testid="unit-table"] tbody tr td:nth-child(4)').allInnerTexts()), (names) => names.size === 1 && names.has('GncNavigation'));

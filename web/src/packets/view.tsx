@@ -93,6 +93,7 @@ function Links({ run, whole }: { run: RunStore; whole: boolean }) {
         </span>
       ))}
       {rows.length === 0 && <span>no unit yet</span>}
+      {!whole && run.run.relayProgress > 0 && <span>units of the recording: ask for a range <kbd>r</kbd></span>}
     </div>
   );
 }
