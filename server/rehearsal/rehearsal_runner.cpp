@@ -177,9 +177,13 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
 void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
     for (auto& [request, reply] : requests) {
         auto answer = rehearsal.submit(request);
-        spdlog::info("run {}: command {} {}", run_id_.value, request.command(),
-                     answer.accepted() ? fmt::format("radiated as number {}", answer.command())
-                                       : "refused: " + answer.reason());
+        if (request.dry_run()) { // a console asks each second while it shows what would be sent
+            reply(std::move(answer));
+            continue;
+        }
+        const auto what = request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+        spdlog::info("run {}: command {} {}", run_id_.value, what,
+                     answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
         if (!answer.accepted()) {
             reply(std::move(answer));
             continue;

@@ -95,7 +95,7 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
 
         await review(page, 'no op');
         await tabTo(page, 'release-at');
-        await page.keyboard.type('E-19:00');
+        await page.keyboard.type('E-17:00');
         await tabTo(page, 'priority');
         await page.keyboard.type('3');
         await page.keyboard.press('Enter');

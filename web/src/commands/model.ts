@@ -191,6 +191,7 @@ export function readReleaseAt(text: string, store: RunStore | undefined): string
 }
 
 export interface Arrival {
+  leaves_ert: string;
   arrives_e_s: number;
   /** The next planned timepoint that it still comes before, and when it must leave at the latest for that. */
   before: { name: string; leave_ert: string; slack_s: number } | undefined;
@@ -206,7 +207,7 @@ export function arrivalOf(reply: { arrives: string }, store: RunStore, plan: rea
   const planned = plan.flatMap((row) => (row.plannedES === undefined ? [] : [{ name: row.name, at: row.plannedES }])).sort((a, b) => a.at - b.at);
   const next = planned.find((row) => row.at > arrives_e_s);
   return {
-    arrives_e_s,
+    leaves_ert: dayOfYear(secondsOfDayOfYear(reply.arrives) - light_s), arrives_e_s,
     before: next && { name: next.name, leave_ert: dayOfYear(store.ertOf(store.entrySclk + next.at) - 2 * light_s), slack_s: next.at - arrives_e_s },
     tooLateFor: planned.filter((row) => row.at > now_e_s && row.at <= arrives_e_s).map((row) => row.name),
   };

@@ -83,7 +83,7 @@ describe('what is asked of the uplink', () => {
     if (run.clocks) run.clocks = { ...run.clocks, sclk: 160, eS: -840, seenSclk: 100 };
     // Received now, at 05:00:00: SCLK 100, which was SCET 04:59:00. What leaves now comes at SCLK 220, which is E-780.
     expect(arrivalOf({ arrives: '2012-219T05:01:00' }, aStore([], run), aPlan)).toEqual({
-      arrives_e_s: -780, tooLateFor: ['coolant_vent'],
+      leaves_ert: '2012-219T05:00:00.0', arrives_e_s: -780, tooLateFor: ['coolant_vent'],
       before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.0', slack_s: 780 },
     });
   });
