@@ -16,7 +16,7 @@ after(async () => {
     await folder?.remove();
 });
 
-test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 120_000 }, async () => {
+test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 240_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'landing.db'), more: ['--scenario', 'nominal'] });
     try {
         const { page, problems, text, shows } = await open(chrome, server.address);
@@ -37,7 +37,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await waitFor(() => focused(page), /command-line/);
         await page.keyboard.type('do edl');
         await page.keyboard.press('Enter');
-        await shows('command-review', /✓ [^]*parameters_received is [^]*arms it; nothing is sent yet/);
+        await shows('command-review', /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters_received == 1 is 1/);
         await page.keyboard.press('Enter');
         await shows('command-armed', /ARMED/);
         await waitFor(() => focused(page), /command-confirmation/);
@@ -126,7 +126,7 @@ async function obey(page) {
     }
 }
 
-test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 120_000 }, async () => {
+test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 240_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'guide.db'), more: ['--scenario', 'nominal'] });
     try {
         const { page, problems, text, shows } = await open(chrome, server.address);
@@ -147,7 +147,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
             return page.getByTestId('pace').inputValue();
         }, (value) => Number(value) >= 20);
         await pace(page, 100);
-        await shows('guide', /Entry[^]*see it happen/, 60_000);
+        await shows('guide', /Entry[^]*see it happen/, 150_000);
         await obey(page);
         await shows('guide', /You have landed it/, 90_000);
         assert.match(await text('badge'), /touchdown/);
@@ -199,12 +199,12 @@ test('after kill -9 in mid-landing the run is there, interrupted, up to the last
     }
 });
 
-test('cut off in mid-entry the page says so, says what it missed once it is back, and has all of it', { timeout: 60_000 }, async () => {
+test('cut off in mid-entry the page says so, says what it missed once it is back, and has all of it', { timeout: 180_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'cut.db'), more: ['--scenario', 'nominal_auto', '--pace', '100'] });
     const way = await breakable(server.port);
     try {
         const { page, problems, text, shows } = await open(chrome, way.address);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 120, 40_000);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 120, 90_000);
         await pace(page, 10);
         await shows('stream-state', /connected/);
         way.cut();
@@ -216,7 +216,7 @@ test('cut off in mid-entry the page says so, says what it missed once it is back
         await shows('notices', /The connection was lost at E\+0\d:\d\d and is back[^]*were filled in from the archive, none is missing/);
         await shows('stream-state', /connected/);
         await pace(page, 100);
-        await shows('badge', /ENDED RUN.*touchdown/s, 40_000);
+        await shows('badge', /ENDED RUN.*touchdown/s, 90_000);
         // What came while it was away is there, once each: as many events as the archive has, and no hole in the trace.
         const { events } = await server.get('/runs/1/events?limit=10000');
         const names = (rows) => rows.reduce((count, name) => count.set(name, (count.get(name) ?? 0) + 1), new Map());

@@ -54,7 +54,7 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
                 await shows('packet', /unit \d/);
             }],
             ['commands', async () => {
-                await page.getByTestId('command-history').getByRole('button').first().click();
+                await page.getByRole('button', { name: /EDL_SET_PARAMETERS #/ }).first().click();
                 await shows('read-back', /held as sent/);
             }],
         ]) {

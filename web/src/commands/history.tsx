@@ -49,10 +49,11 @@ async function toggle(command: number): Promise<void> {
   }
 }
 
-function ReadBack({ row, run }: { row: CommandRow; run: RunStore }) {
+function ReadBack({ row }: { row: CommandRow }) {
+  const run = runNow();
   const words = dictionary.value;
-  const back = words && readBackOf(row, words, run, cutoff.value);
-  if (!words || !back) return null;
+  const back = run && words && readBackOf(row, words, run, cutoff.value);
+  if (!back) return null;
   const differ = back.lines.filter((line) => line.equal === false).length;
   return (
     <section data-testid="read-back">
@@ -92,7 +93,7 @@ function Details({ row, cells, run, known }: { row: CommandRow; cells: StageCell
           })}
         </tbody>
       </table>
-      <ReadBack row={row} run={run} />
+      <ReadBack row={row} />
       {row.arguments && <p class="encoded" tabIndex={0} aria-label="arguments as sent">{row.arguments}</p>}
       <p class="encoded" tabIndex={0} aria-label="octets as sent">{raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}</p>
     </div>

@@ -242,7 +242,8 @@ export function stageCells(row: CommandRow, known: (at: string) => boolean = () 
 /** The last stage with something to say, in words. */
 export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
-  const newest = failed ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
+  const waits = cells.find((cell) => cell.stage === 'released' && cell.look === 'pending');
+  const newest = failed ?? waits ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
 }
 

@@ -114,6 +114,9 @@ function DryRun({ command }: { command: DictionaryCommand }) {
         : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
           : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
             : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
+      {step.value === 'review' && (
+        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
+      )}
       {reply && <Told reply={reply} />}
     </div>
   );
@@ -124,12 +127,9 @@ export function Review({ command, onKey }: Properties) {
     <div class="review" data-testid="command-review">
       <p><b>{command.name}</b> {command.text}</p>
       {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+      <DryRun command={command} />
       <Fields onKey={onKey} />
       <Uplink onKey={onKey} />
-      <DryRun command={command} />
-      {step.value === 'review' && (
-        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
-      )}
     </div>
   );
 }

@@ -80,9 +80,14 @@ function onListKey(event: KeyboardEvent, lines: Line[]): void {
   event.stopPropagation();
 }
 
-const rateText = (rate: Rate | undefined) => (rate ? `${(rate.octets_per_s * 8 / 1000).toFixed(1)} kb/s` : '');
+function rateText(rate: Rate | undefined): string {
+  const bits_per_s = (rate?.octets_per_s ?? 0) * 8;
+  return !rate ? '' : bits_per_s >= 1000 ? `${(bits_per_s / 1000).toFixed(1)} kb/s` : `${Math.round(bits_per_s)} b/s`;
+}
 
-function Links({ run, whole }: { run: RunStore; whole: boolean }) {
+function Links({ whole }: { whole: boolean }) {
+  const run = runNow();
+  if (!run) return null;
   const rows = linkRows(run);
   return (
     <div class="table-tools link-rates" data-testid="link-rates">
@@ -98,7 +103,8 @@ function Links({ run, whole }: { run: RunStore; whole: boolean }) {
   );
 }
 
-function Streams({ run }: { run: RunStore }) {
+function Streams() {
+  const run = runNow();
   const choose = (name: string | undefined) => {
     wanted.value = name;
     close();
@@ -108,7 +114,7 @@ function Streams({ run }: { run: RunStore }) {
       <table data-testid="packet-streams">
         <thead><tr><th>APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
         <tbody>
-          {packetStreams(run).map((row) => (
+          {(run ? packetStreams(run) : []).map((row) => (
             <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
               <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
               <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
@@ -235,7 +241,7 @@ export function Packets() {
   const top = held.value?.run === run.id ? lines[0]?.fact.unit : undefined;
   return (
     <div class="table-box">
-      <Links run={run} whole={past !== undefined} />
+      <Links whole={past !== undefined} />
       {(wanted.value !== undefined || top !== undefined) && (
         <div class="table-tools">
           {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of the {past ? `${SHOWN} listed` : 'newest held'} <button type="button" onClick={() => {
@@ -246,7 +252,7 @@ export function Packets() {
         </div>
       )}
       <div class={`packets ${packet ? 'with-packet' : ''}`}>
-        <Streams run={run} />
+        <Streams />
         <Units run={run} lines={lines} />
         {packet && <Packet packet={packet} />}
       </div>
