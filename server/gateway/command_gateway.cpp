@@ -195,7 +195,8 @@ void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive:
     const auto& waiting = queue_.waiting();
     const auto entry = std::ranges::find(waiting, underway.number, &commands::CommandQueue::Entry::number);
     if (entry == waiting.end()) return;
-    const std::string when = entry->release_at ? "leaves at " + day_of_year_text(*entry->release_at) : "then leaves at once";
+    std::string when = entry->release_at ? "leaves at " + day_of_year_text(*entry->release_at) : "then leaves at once";
+    if (entry->priority > 0) when += fmt::format(", priority {}", entry->priority);
     changes_.clear();
     const std::string approval = entry->needs_approval ? "waits for the approval of another controller than " + underway.controller + "; " : "";
     underway.lifecycle.await_release(approval + (entry->held ? "held until a controller releases it; " + when : when), now, changes_);

@@ -233,14 +233,18 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<
         std::string text;
         google::protobuf::TextFormat::PrintToString(request, &text);
         auto answer = rehearsal.submit(request);
-        spdlog::info("run {}: command {} {}", run_id_.value, request.command(),
-                     answer.accepted() ? fmt::format("radiated as number {}", answer.command())
-                                       : "refused: " + answer.reason());
+        if (request.dry_run()) { // a console asks each second while it shows what would be sent
+            reply(std::move(answer));
+            continue;
+        }
+        const auto what = request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+        spdlog::info("run {}: command {} {}", run_id_.value, what,
+                     answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
         if (!answer.accepted()) {
             reply(std::move(answer));
             continue;
         }
-        if (!request.dry_run()) delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
+        delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
         for (auto& stage : rehearsal.take_stages())
             delivery_.entries.emplace_back(std::move(stage));
         delivery_.when_durable.push_back(

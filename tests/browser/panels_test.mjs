@@ -6,7 +6,7 @@ import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { browser, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+import { browser, focused, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
 
 const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
 const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'recorded', 'rehearsal'];
@@ -35,7 +35,7 @@ async function findings(page, theme) {
     return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
 }
 
-test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 180_000 }, async () => {
+test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 240_000 }, async () => {
     const found = [];
     const { page, problems, shows } = await open(chrome, server.address);
     for (const name of ['dark', 'light']) {
@@ -47,6 +47,24 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
             if (panel !== 'phases') assert.match((await page.getByTestId('mode-mark').allInnerTexts()).join(), /ended, rehearsal/, `${panel} does not say its mode`);
             found.push(...(await findings(page, name)).map((line) => `${panel ?? 'console'}, ${name}: ${line}`));
         }
+        for (const [panel, reach] of [
+            ['packets', async () => {
+                await page.getByTestId('units').focus();
+                await page.keyboard.press('ArrowDown');
+                await shows('packet', /unit \d/);
+            }],
+            ['commands', async () => {
+                await page.getByRole('button', { name: /EDL_SET_PARAMETERS #/ }).first().click();
+                await shows('read-back', /held as sent/);
+            }],
+        ]) {
+            await page.goto(`${server.address}/?panel=${panel}`);
+            await shows('badge', /ENDED RUN/);
+            await reach();
+            found.push(...(await findings(page, name)).map((line) => `${panel} opened, ${name}: ${line}`));
+        }
+        await page.goto(server.address);
+        await shows('badge', /ENDED RUN/);
         for (const [key, title] of [['y', /REPLAY, NOT LIVE/], ['r', /ENDED RUN/], ['?', /ENDED RUN/]]) {
             await page.keyboard.press(key);
             await shows('badge', title);
@@ -110,6 +128,46 @@ test('live is proven against the recording, by packet and by link, and a packet 
     await page.getByTestId('tab-links').click();
     await waitFor(() => page.getByTestId('link-row-uhf_live').innerText(), /UHF live[^]*%/);
     assert.deepEqual(problems.filter((problem) => !/favicon/.test(problem)), []);
+    await page.close();
+});
+
+test('a packet is read by keyboard: its fields light their octets, an octet lights its fields, and a packet can be chosen alone', { timeout: 40_000 }, async () => {
+    const { page, problems, text, shows } = await open(chrome, `${server.address}/?panel=packets`);
+    await shows('badge', /ENDED RUN/);
+    const { streams } = await server.get('/runs/latest/proof');
+    const live = streams.filter((row) => Number(row.realtime) > 0).map((row) => row.name).sort();
+    await waitFor(async () => (await page.locator('[data-testid="packet-streams"] tbody button').allInnerTexts()).sort().join(), (names) => names === live.join());
+    await page.getByRole('button', { name: 'GncNavigation', exact: true }).focus();
+    await page.keyboard.press('Enter');
+    await waitFor(async () => new Set(await page.locator('[data-testid="unit-table"] tbody tr td:nth-child(4)').allInnerTexts()), (names) => names.size === 1 && names.has('GncNavigation'));
+    assert.equal(await focused(page), 'units');
+    await page.keyboard.press('ArrowDown');
+    await shows('packet', /GncNavigation over [^]*octets/);
+    const first = await text('packet');
+    await page.keyboard.press('ArrowDown');
+    await waitFor(() => text('packet'), (now) => now !== first);
+
+    const unit = /unit (\d+)/.exec(await text('packet'))[1];
+    const { packets } = await server.get(`/runs/latest/packets?name=GncNavigation&limit=1000`);
+    const packet = packets.find((each) => each.unit.unit === unit);
+    const shown = (await page.locator('[data-octet]').allInnerTexts()).join('');
+    if (packet) assert.equal(shown, packet.hex);
+    const litOctets = () => page.locator('[data-octet].lit').evaluateAll((all) => all.map((each) => Number(each.dataset.octet)));
+    const litFields = () => page.locator('[data-field].lit').evaluateAll((all) => all.map((each) => each.dataset.field));
+
+    await page.getByTestId('packet-fields').focus();
+    for (let field = 0; field < 4; ++field) await page.keyboard.press('ArrowDown');
+    const [name] = await litFields();
+    const octets = await litOctets();
+    assert.ok(octets.length > 0, `${name} lights no octet`);
+    await shows('packet-place', new RegExp(`${name}: (bits? [^]* of )?octets? ${octets[0]}`));
+    await page.locator(`[data-octet="${octets[0]}"]`).hover();
+    await waitFor(litFields, (fields) => fields.includes(name));
+    await page.getByTestId('packet-fields').focus();
+    await page.keyboard.press('Escape');
+    await waitFor(() => page.getByTestId('packet').count(), (count) => count === 0);
+    assert.equal(await focused(page), 'units');
+    assert.deepEqual(problems, []);
     await page.close();
 });
 

@@ -3,6 +3,7 @@ import { spawn } from 'node:child_process';
 import { once } from 'node:events';
 import { mkdtemp, rm } from 'node:fs/promises';
 import { createRequire } from 'node:module';
+import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -89,6 +90,55 @@ export async function waitFor(read, wanted, timeout_ms = 20_000) {
         await new Promise((resolve) => setTimeout(resolve, 60));
     }
 }
+
+/** A way to a server on `port` that can be cut and mended, while the server goes on. */
+export async function breakable(port) {
+    const open = new Set();
+    let broken = false;
+    const way = createServer((near) => {
+        if (broken) return near.destroy();
+        const far = connect(port, '127.0.0.1');
+        near.pipe(far).pipe(near);
+        for (const [one, other] of [[near, far], [far, near]]) {
+            open.add(one);
+            one.on('error', () => other.destroy()).on('close', () => {
+                open.delete(one);
+                other.destroy();
+            });
+        }
+    });
+    const cut = () => {
+        broken = true;
+        for (const socket of open) socket.destroy();
+    };
+    way.listen(0, '127.0.0.1');
+    await once(way, 'listening');
+    return {
+        address: `http://127.0.0.1:${way.address().port}`, cut, mend: () => (broken = false),
+        close: () => {
+            cut();
+            way.close();
+        },
+    };
+}
+
+/** Until the pace is what is wanted, by its keys. */
+export async function setPace(page, wanted) {
+    for (let presses = 0; presses < 12; ++presses) {
+        const now = Number(await page.getByTestId('pace').inputValue());
+        if (now === wanted) return;
+        await page.keyboard.press(now === 0 || now > wanted ? '-' : '+');
+        await waitFor(() => page.getByTestId('pace').inputValue(), (value) => Number(value) !== now, 5_000);
+    }
+    throw new Error(`the pace never became ${wanted}`);
+}
+
+/** What a stage of the newest command of this name looks like in the history: ok, failed, unknown, pending, none. */
+export const stageLook = (page, command, name) =>
+    page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
+
+/** What has the focus, by its test name. */
+export const focused = (page) => page.evaluate(() => document.activeElement?.dataset.testid);
 
 /** "E+00:04:28" in seconds. */
 export function secondsFromEntry(text) {

@@ -1,8 +1,10 @@
 // The state of the command line, and its three keys: Enter goes one step on, Esc one step back, arrows choose.
 import { computed, signal } from '@preact/signals';
-import { dictionary, sendCommand, store, tick } from '../run/session';
-import { argumentOffers, candidates, fieldsOf, isHazardous, readLine, unknownNames } from './model';
-import type { Step } from './model';
+import type { CommandReply } from '../gen/aeolis/v1/run_pb';
+import { dictionary, sendCommand, store, stream, tick } from '../run/session';
+import type { CommandIntent, QueueAction } from '../stream/messages';
+import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
+import type { Step, UplinkText } from './model';
 
 export const step = signal<Step>('type');
 export const line = signal('');
@@ -12,6 +14,7 @@ export const message = signal<{ good: boolean | undefined; text: string } | unde
 const chosenName = signal<string | undefined>(undefined);
 /** What is typed into the form; the line's own name=value come first. */
 export const formText = signal<ReadonlyMap<string, string>>(new Map());
+export const uplink = signal<UplinkText>(AT_ONCE);
 
 export const typed = computed(() => readLine(line.value));
 /** Set once the line names a command and goes on with its arguments. */
@@ -28,6 +31,38 @@ export const fields = computed(() => {
     ? fieldsOf(chosen.value, new Map([...formText.value, ...typed.value.given]), store.value?.run.solution ?? [])
     : [];
 });
+
+/** What would be sent, or why nothing can be. */
+const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
+  const command = chosen.value;
+  if (!command) return undefined;
+  const stray = inArguments.value?.strays[0];
+  if (stray !== undefined) return { problem: `${stray} is no argument with a value: write name=value` };
+  const unknown = unknownNames(command, typed.value.given)[0];
+  if (unknown !== undefined) return { problem: `${command.name} has no argument ${unknown}` };
+  return intentOf(command, fields.value, uplink.value, store.value);
+});
+export const problemNow = computed(() => (intent.value && 'problem' in intent.value ? intent.value.problem : undefined));
+/** Changes when what would be sent does. */
+export const intentKey = computed(() => JSON.stringify(intent.value));
+
+/** The server's answer to a dry run of what is shown: nothing is sent by it. */
+export const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
+export const previewNow = computed(() => (preview.value?.of === intentKey.value ? preview.value.reply : undefined));
+
+/** Asks what would happen if it were armed, confirmed and sent now. Without connection, or with a problem of ours, nothing is asked. */
+export async function tryOut(): Promise<CommandReply | undefined> {
+  const [wanted, of, command] = [intent.value, intentKey.value, chosen.value];
+  if (!wanted || 'problem' in wanted || !command) return undefined;
+  try {
+    const reply = await sendCommand({ ...wanted, dryRun: true, armed: isHazardous(command), confirmation: command.name });
+    if (of === intentKey.value) preview.value = { of, reply };
+    return reply;
+  } catch {
+    if (of === intentKey.value) preview.value = undefined; // the header says that there is no connection; an old answer must not stand
+    return undefined;
+  }
+}
 
 export function openCommandLine(text?: string): void {
   if (text !== undefined) {
@@ -53,6 +88,7 @@ export function choose(name: string): void {
   chosenName.value = name;
   confirmation.value = '';
   formText.value = new Map();
+  uplink.value = AT_ONCE;
   step.value = 'review';
   message.value = undefined;
 }
@@ -80,16 +116,12 @@ export async function forward(): Promise<void> {
     return;
   }
   if (!command || step.value === 'sending') return;
-  const problem = problemNow();
-  if (problem !== undefined) {
-    message.value = { good: false, text: problem };
+  const wanted = intent.value;
+  if (!wanted || 'problem' in wanted) {
+    message.value = { good: false, text: wanted?.problem ?? 'nothing is chosen' };
     return;
   }
-  if (step.value === 'review' && isHazardous(command)) {
-    step.value = 'armed';
-    message.value = undefined;
-    return;
-  }
+  if (step.value === 'review' && isHazardous(command)) return arm();
   if (step.value === 'armed' && confirmation.value.trim().toUpperCase() !== command.name) {
     message.value = { good: false, text: `type ${command.name} to confirm; nothing was sent` };
     return;
@@ -98,15 +130,10 @@ export async function forward(): Promise<void> {
   step.value = 'sending';
   message.value = { good: undefined, text: `${command.name}: sending` };
   try {
-    const reply = await sendCommand({
-      command: command.name,
-      arguments: fields.value.filter((field) => field.from === 'typed').map((field) => ({ name: field.argument.name, value: field.value as number })),
-      armed: wasArmed, confirmation: wasArmed ? command.name : '',
-      fromSolution: fields.value.some((field) => field.from === 'solution'),
-    });
+    const reply = await sendCommand({ ...wanted, armed: wasArmed, confirmation: wasArmed ? command.name : '' });
     message.value = reply.accepted
-      ? { good: true, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets: ${reply.octets.slice(0, 48)}${reply.octets.length > 48 ? '…' : ''}` }
-      : { good: false, text: `${command.name} refused: ${reply.reason}` };
+      ? { good: true, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}` }
+      : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) line.value = '';
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
@@ -117,15 +144,28 @@ export async function forward(): Promise<void> {
   openCommandLine();
 }
 
-function problemNow(): string | undefined {
-  const command = chosen.value;
-  if (!command) return undefined;
-  const stray = inArguments.value?.strays[0];
-  if (stray !== undefined) return `${stray} is no argument with a value: write name=value`;
-  const unknown = unknownNames(command, typed.value.given)[0];
-  if (unknown !== undefined) return `${command.name} has no argument ${unknown}`;
-  const bad = fields.value.find((field) => field.problem !== undefined);
-  return bad && `${bad.argument.name} ${bad.problem}${bad.text ? `: ${bad.text}` : ''}`;
+/** Not while it is known that it would be refused: an armed command is one that can be sent. */
+async function arm(): Promise<void> {
+  const of = intentKey.value;
+  const reply = stream.value.state === 'live' ? await tryOut() : undefined;
+  if (step.value !== 'review' || intentKey.value !== of) return;
+  if (reply && !reply.accepted) {
+    message.value = { good: false, text: `not armed: ${reply.reason}` };
+    return;
+  }
+  step.value = 'armed';
+  message.value = undefined;
+}
+
+/** On a command that waits. */
+export async function act(number: number, action: QueueAction): Promise<void> {
+  const done = { release: 'released', hold: 'held', cancel: 'cancelled' }[action];
+  try {
+    const reply = await sendCommand({ action, number: BigInt(number) });
+    message.value = reply.accepted ? { good: true, text: `#${number} ${done}` } : { good: false, text: reply.reason };
+  } catch (error) {
+    message.value = { good: false, text: `#${number} was not ${done}: ${error instanceof Error ? error.message : String(error)}` };
+  }
 }
 
 export function back(all = false): void {

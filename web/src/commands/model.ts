@@ -1,9 +1,11 @@
 // From what is typed to what is sent, step by step, all of it pure: what is sent is decided here and tested.
 import type { CommandArgument } from '../gen/aeolis/v1/scenario_pb';
-import type { DictionaryArgument, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
+import type { DictionaryArgument, DictionaryCommand, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { Dictionary } from '../run/dictionary';
 import { numberText } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
+import { dayOfYear, readFromEntry, secondsOfDayOfYear } from '../run/time';
+import type { CommandIntent } from '../stream/messages';
 
 /** "type": choosing; "review": all is shown, nothing is sent; "armed": a hazardous one waits for its name. */
 export type Step = 'type' | 'review' | 'armed' | 'sending';
@@ -129,7 +131,7 @@ export interface Precondition {
   value: string;
 }
 
-/** Preconditions as the page sees them; the server decides by itself, and so does flight. */
+/** Preconditions as the page sees them, for who waits for one; before sending the server is asked, and flight decides by itself. */
 export function preconditionsOf(command: DictionaryCommand, dictionary: Dictionary, store: RunStore | undefined): Precondition[] {
   return command.preconditions.map((words, index) => {
     const condition = command.conditions[index];
@@ -152,6 +154,69 @@ function compare(value: number, relation: string, bound: number): boolean {
     case '>': return value > bound;
     default: return value >= bound;
   }
+}
+
+/** How it is to leave, as typed. */
+export interface UplinkText {
+  service: '' | 'AD' | 'BD'; // '': what suits
+  releaseAt: string;
+  hold: boolean;
+  priority: string;
+}
+export const AT_ONCE: UplinkText = { service: '', releaseAt: '', hold: false, priority: '' };
+
+/** What is asked of the uplink: exactly this, dry run or not. */
+export function intentOf(command: DictionaryCommand, fields: readonly Field[], uplink: UplinkText, store: RunStore | undefined): CommandIntent | { problem: string } {
+  const bad = fields.find((field) => field.problem !== undefined);
+  if (bad) return { problem: `${bad.argument.name} ${bad.problem}${bad.text ? `: ${bad.text}` : ''}` };
+  const releaseAt = readReleaseAt(uplink.releaseAt, store);
+  if (releaseAt === undefined) return { problem: `“${uplink.releaseAt}” is no time to leave: write it as 2012-219T05:00:00 or as E-15:00` };
+  if (!/^\d{0,6}$/.test(uplink.priority.trim())) return { problem: `“${uplink.priority}” is no priority: a whole number` };
+  return {
+    command: command.name,
+    arguments: fields.filter((field) => field.from === 'typed').map((field) => ({ name: field.argument.name, value: field.value as number })),
+    fromSolution: fields.some((field) => field.from === 'solution'),
+    service: uplink.service, releaseAt, hold: uplink.hold, priority: Number(uplink.priority),
+  };
+}
+
+/** Day of year, or seconds from entry as the clock on top shows them. '' is at once; undefined: it is no time. */
+export function readReleaseAt(text: string, store: RunStore | undefined): string | undefined {
+  const typed = text.trim();
+  if (typed === '' || Number.isFinite(secondsOfDayOfYear(typed))) return typed.replace(/Z$/, '');
+  const e_s = /^e/i.test(typed) ? readFromEntry(typed) : undefined;
+  if (e_s === undefined || !store) return undefined;
+  const ert = store.ertOf(store.entrySclk + e_s);
+  return Number.isFinite(ert) ? dayOfYear(ert) : undefined;
+}
+
+export interface Arrival {
+  leaves_ert: string;
+  arrives_e_s: number;
+  /** The next planned timepoint that it still comes before, and when it must leave at the latest for that. */
+  before: { name: string; leave_ert: string; slack_s: number } | undefined;
+  /** Timepoints that will be past while it is on its way. */
+  tooLateFor: string[];
+}
+
+/** What a dry run's times mean for the plan. */
+export function arrivalOf(reply: { arrives: string }, store: RunStore, plan: readonly TimepointRow[]): Arrival {
+  const light_s = store.run.lightTimeS;
+  const arrives_e_s = secondsOfDayOfYear(reply.arrives) + light_s - store.ertOf(store.entrySclk);
+  const now_e_s = store.clocks?.eS ?? store.seenE;
+  const planned = plan.flatMap((row) => (row.plannedES === undefined ? [] : [{ name: row.name, at: row.plannedES }])).sort((a, b) => a.at - b.at);
+  const next = planned.find((row) => row.at > arrives_e_s);
+  return {
+    leaves_ert: dayOfYear(secondsOfDayOfYear(reply.arrives) - light_s), arrives_e_s,
+    before: next && { name: next.name, leave_ert: dayOfYear(store.ertOf(store.entrySclk + next.at) - 2 * light_s), slack_s: next.at - arrives_e_s },
+    tooLateFor: planned.filter((row) => row.at > now_e_s && row.at <= arrives_e_s).map((row) => row.name),
+  };
+}
+
+/** The server's words of a precondition, split at its value: "parameters_received == 1: is 0". */
+export function conditionWords(text: string): { words: string; value: string } {
+  const at = text.indexOf(': ');
+  return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
 }
 
 export const STAGES = ['queued', 'authorised', 'released', 'radiated', 'received', 'accepted', 'executed', 'verified'] as const;
@@ -177,6 +242,48 @@ export function stageCells(row: CommandRow, known: (at: string) => boolean = () 
 /** The last stage with something to say, in words. */
 export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
-  const newest = failed ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
+  const waits = cells.find((cell) => cell.stage === 'released' && cell.look === 'pending');
+  const newest = failed ?? waits ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
+}
+
+/** Those that may be sent and have not left, in the order of their numbers. */
+export function waitingCommands(store: RunStore): { row: CommandRow; evidence: string; held: boolean }[] {
+  return [...store.commands.values()].flatMap((row) => {
+    const released = row.stages.get('released')?.at(-1);
+    return released?.status === 'pending' ? [{ row, evidence: released.evidence, held: released.evidence.startsWith('held') }] : [];
+  }).sort((a, b) => a.row.command - b.row.command);
+}
+
+export interface ReadBackLine {
+  name: string;
+  sent: string;
+  held: number | undefined; // NaN: undefined on board
+  equal: boolean | undefined;
+}
+
+/**
+ * What was sent beside what the vehicle reports that it holds, argument by argument, where channels of one packet bear all of the
+ * arguments' names; undefined where none does. `sclk`: of the report; one from before the command came on board says nothing of it.
+ */
+export function readBackOf(row: CommandRow, dictionary: Dictionary, store: RunStore, cutoff = Infinity): { lines: ReadBackLine[]; sclk: number | undefined } | undefined {
+  const sent = row.arguments.split(' ').flatMap((part) => {
+    const at = part.indexOf('=');
+    return at > 0 ? [{ name: part.slice(0, at), value: part.slice(at + 1) }] : [];
+  });
+  const channels = sent.map((argument) => dictionary.pick([argument.name]));
+  const packet = channels[0]?.packet;
+  if (!packet || channels.some((channel) => channel?.packet !== packet)) return undefined;
+  const radiated = row.stages.get('radiated')?.at(-1)?.at;
+  const since = radiated === undefined ? Infinity : store.sclkSeenAt(radiated) + 2 * store.run.lightTimeS; // when it came on board
+  const samples = channels.map((channel) => channel && store.latest(channel.id, cutoff));
+  const sclk = samples[0]?.sclk;
+  const known = sclk !== undefined && sclk > since;
+  return {
+    sclk: known ? sclk : undefined,
+    lines: sent.map(({ name, value }, i) => {
+      const held = known ? samples[i]?.value : undefined;
+      return { name, sent: value, held, equal: held === undefined ? undefined : held === Number(value) };
+    }),
+  };
 }

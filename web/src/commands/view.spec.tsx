@@ -3,9 +3,12 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { afterEach, beforeEach, describe, expect, it } from 'vitest';
 import { useForTest } from '../run/session';
-import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
+import { aDictionary, aPlan, aRun, aStore, samples, stage } from '../testing/fixtures';
 import { back, chosen, complete, forward, line, message, step, type } from './line';
-import { argumentOffers, candidates, fieldsOf, isHazardous, preconditionsOf, readLine, stageCells } from './model';
+import {
+  AT_ONCE, argumentOffers, arrivalOf, candidates, conditionWords, fieldsOf, intentOf, isHazardous, preconditionsOf, readBackOf, readLine, readReleaseAt,
+  stageCells, waitingCommands,
+} from './model';
 import { Commands } from './view';
 
 const set = aDictionary.command('EDL_SET_PARAMETERS');
@@ -53,6 +56,71 @@ describe('stages', () => {
     const row = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok' }), stage({ command: 1n, stage: 'received', status: 'unknown' })]).commands.get(1);
     const looks = Object.fromEntries((row ? stageCells(row) : []).map((cell) => [cell.stage, cell.look]));
     expect(looks).toMatchObject({ queued: 'ok', received: 'unknown', accepted: 'none', verified: 'none' });
+  });
+});
+
+describe('what is asked of the uplink', () => {
+  const whole = fieldsOf(set, readLine('x solution_id=3').given, []);
+  it('is the command with its time, hold and priority, and only what was typed of its arguments', () => {
+    expect(intentOf(set, whole, { service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: '7' }, aStore())).toEqual({
+      command: 'EDL_SET_PARAMETERS', arguments: [{ name: 'solution_id', value: 3 }], fromSolution: false,
+      service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: 7,
+    });
+  });
+  it('names what cannot be read, and then there is nothing to send', () => {
+    expect(intentOf(set, whole, { ...AT_ONCE, releaseAt: 'noon' }, aStore())).toEqual({ problem: expect.stringContaining('“noon” is no time') });
+    expect(intentOf(set, whole, { ...AT_ONCE, priority: '-1' }, aStore())).toEqual({ problem: expect.stringContaining('no priority') });
+    expect(intentOf(set, fieldsOf(set, new Map(), []), AT_ONCE, aStore())).toEqual({ problem: 'solution_id is needed' });
+  });
+  it('takes a time to leave as ERT or by the clock on top', () => {
+    expect(readReleaseAt('', aStore())).toBe('');
+    expect(readReleaseAt('2012-219T05:10:00Z', aStore())).toBe('2012-219T05:10:00');
+    expect(readReleaseAt('E-1:30', aStore())).toBe('2012-219T05:00:10.0'); // it is 05:00:00 at E-1:40
+    expect([readReleaseAt('90', aStore()), readReleaseAt('E-1:30', undefined)]).toEqual([undefined, undefined]);
+  });
+  it('says when it comes, by when it must leave, and what it is too late for', () => {
+    const run = aRun({ lightTimeS: 60 });
+    if (run.clocks) run.clocks = { ...run.clocks, sclk: 160, eS: -840, seenSclk: 100 };
+    // Received now, at 05:00:00: SCLK 100, which was SCET 04:59:00. What leaves now comes at SCLK 220, which is E-780.
+    expect(arrivalOf({ arrives: '2012-219T05:01:00' }, aStore([], run), aPlan)).toEqual({
+      leaves_ert: '2012-219T05:00:00.0', arrives_e_s: -780, tooLateFor: ['coolant_vent'],
+      before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.0', slack_s: 780 },
+    });
+  });
+  it('shows the ground’s word on a precondition with its value apart', () => {
+    expect(conditionWords('parameters_received == 1: is 0')).toEqual({ words: 'parameters_received == 1', value: 'is 0' });
+  });
+});
+
+describe('the queue', () => {
+  const waits = (evidence: string) => stage({ command: 4n, name: 'NO_OP', stage: 'released', status: 'pending', evidence });
+  it('has what has not left, held or waiting for its time, and nothing that left or was cancelled', () => {
+    expect(waitingCommands(aStore([waits('held until a controller releases it; then leaves at once')]))).toMatchObject([{ held: true, row: { command: 4 } }]);
+    expect(waitingCommands(aStore([waits('leaves at 2012-219T05:10:00')]))).toMatchObject([{ held: false }]);
+    expect(waitingCommands(aStore([waits('leaves'), stage({ command: 4n, stage: 'released', status: 'ok' })]))).toEqual([]);
+    expect(waitingCommands(aStore([waits('leaves'), stage({ command: 4n, stage: 'released', status: 'failed' })]))).toEqual([]);
+  });
+});
+
+describe('what the vehicle holds', () => {
+  const sent = stage({ command: 1n, name: 'SET', stage: 'queued', status: 'ok', arguments: 'altitude_m=125.5 speed_mps=0.1' });
+  const radiated = stage({ command: 1n, stage: 'radiated', status: 'ok', at: '2012-219T05:00:00.0' });
+  const compared = (...held: ReturnType<typeof samples>[]) => {
+    const store = aStore([sent, radiated, ...held]);
+    const row = store.commands.get(1);
+    return row && readBackOf(row, aDictionary, store);
+  };
+  it('is compared argument by argument with what was sent', () => {
+    expect(compared(samples(901, { 3: 125.5, 4: 0.2 }))).toEqual({ sclk: 901, lines: [
+      { name: 'altitude_m', sent: '125.5', held: 125.5, equal: true }, { name: 'speed_mps', sent: '0.1', held: 0.2, equal: false }] });
+  });
+  it('is not known before a report that is younger than the command', () => {
+    expect(compared(samples(899, { 3: 125.5, 4: 0.1 }))).toMatchObject({ sclk: undefined, lines: [{ equal: undefined }, { equal: undefined }] });
+  });
+  it('has no word where no packet bears the names', () => {
+    const store = aStore([stage({ command: 1n, name: 'SET', stage: 'queued', status: 'ok', arguments: 'timepoint=3' })]);
+    const row = store.commands.get(1);
+    expect(row && readBackOf(row, aDictionary, store)).toBeUndefined();
   });
 });
 

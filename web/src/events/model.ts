@@ -32,8 +32,8 @@ const MINOR = new Set(['held', 'chosen', 'dropped']);
 
 const SAME_MOMENT_S = 1 / 16; // ours: an explanation and its event leave within a few cycles
 
-/** At most `most` lines. An explanation stands with the event of its moment that it speaks of, else by itself. */
-export function eventLines(store: RunStore, filter: EventFilter, most: number): { lines: EventLine[]; warnings: number } {
+/** At most `most` lines, the newest of the `found`. An explanation stands with the event of its moment that it speaks of, else by itself. */
+export function eventLines(store: RunStore, filter: EventFilter, most: number): { lines: EventLine[]; found: number; warnings: number } {
   const least = LEVELS.indexOf(filter.from);
   const words = filter.search.toLowerCase().split(/\s+/).filter((word) => word !== '');
   const inRange = (sclk: number) => {
@@ -73,7 +73,8 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
     }
   }
   lines.sort((a, b) => b.e_s - a.e_s || b.seq - a.seq);
-  return { lines: lines.filter(matches).slice(0, most), warnings };
+  const found = lines.filter(matches);
+  return { lines: found.slice(0, most), found: found.length, warnings };
 }
 
 export function sourceWords(line: { live: boolean; recorded: boolean }): { shape: string; words: string } {

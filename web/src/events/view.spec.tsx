@@ -18,4 +18,8 @@ describe('events', () => {
     expect(eventLines(store, { ...all, range: { from: -250, to: -100 } }, 10).lines.map((line) => line.name)).toEqual(['EARLY']);
     expect(eventLines(store, { ...all, search: 'TWO' }, 10).lines.map((line) => line.name)).toEqual(['LATE']);
   });
+  it('beyond what is shown are counted', () => {
+    const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));
+    expect(eventLines(store, all, 2)).toMatchObject({ lines: [{ name: 'C' }, { name: 'B' }], found: 3 });
+  });
 });

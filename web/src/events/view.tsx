@@ -9,17 +9,25 @@ const from = signal<(typeof LEVELS)[number]>('ACTIVITY_LO');
 const search = signal('');
 const SHOWN = 250;
 
+/** From the search into what was found, and back out. */
+function onSearchKey(event: KeyboardEvent): void {
+  if (event.key !== 'Enter' && event.key !== 'ArrowDown') return;
+  event.preventDefault();
+  document.querySelector<HTMLElement>('[data-testid="event-list"]')?.focus();
+}
+
 export function Events() {
   const run = runNow();
-  const { lines, warnings } = run
+  const { lines, found, warnings } = run
     ? eventLines(run, { from: from.value, search: search.value, range: pastRange.value }, SHOWN)
-    : { lines: [], warnings: 0 };
+    : { lines: [], found: 0, warnings: 0 };
   return (
     <Panel name="events" title="Events" extra={
       <>
+        {search.value.trim() !== '' && <span role="status" data-testid="events-found">{found} found</span>}
         {warnings > 0 && <b class="warnings">▲ {warnings} {warnings === 1 ? 'warning' : 'warnings'}</b>}
         <input type="search" placeholder="search" aria-label="search events" value={search.value} data-testid="event-search"
-          onInput={(event) => (search.value = event.currentTarget.value)} />
+          onInput={(event) => (search.value = event.currentTarget.value)} onKeyDown={onSearchKey} />
         <select aria-label="least level shown" value={from.value}
           onChange={(event) => (from.value = event.currentTarget.value as (typeof LEVELS)[number])}>
           {LEVELS.map((level) => <option key={level} value={level}>{levelWords(level)} and above</option>)}
@@ -41,6 +49,7 @@ export function Events() {
             </li>
           );
         })}
+        {found > lines.length && <li class="none">{found - lines.length} older ones: search, or ask for a range</li>}
         {lines.length === 0 && <li class="none">no event yet{search.value ? ` with “${search.value}”` : ''}</li>}
       </ol>
     </Panel>

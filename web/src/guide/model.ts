@@ -8,7 +8,7 @@ import { cutoff, dictionary, modeNow, runNow } from '../run/session';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';
-import { stepEvidence } from '../waiting/model';
+import { statusAgainst, stepEvidence } from '../waiting/model';
 
 const KEY = 'aeolis-guide';
 export const guideShown = signal(localStorage.getItem(KEY) !== 'hidden');
@@ -66,6 +66,13 @@ export function guideStep(run: RunStore | undefined, words: Dictionary, mode: Mo
     const sent = [...run.commands.values()].some((row) => row.name === step.command);
     if (sent && at === 'type') {
       return { number: missing + 1, title: 'Sent. Waiting for the vehicle to say so', why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.', press: [], wants: 'nothing' };
+    }
+    const against = missing > 0 && at === 'type' ? statusAgainst(run, words, step) : undefined;
+    if (against) {
+      return {
+        number: missing + 1, title: 'Taken. Waiting for the vehicle’s status to say so', wants: 'nothing', press: [],
+        why: `${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
+      };
     }
     return {
       number: missing + 1, title: missing === 0 ? 'Tell the vehicle where it is' : 'Let it begin', why: `“${step.words}” ${step.why}.`,

@@ -21,6 +21,11 @@ describe('the guide', () => {
     expect(guideStep(second, aDictionary, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 2, wants: 'command' });
     expect(keys(guideStep(second, aDictionary, 'rehearsal', 'armed', Infinity))).toEqual(['EDL_DO_EDL', 'Enter']);
   });
+  it('does not lead to a command that the vehicle’s status still speaks against', () => {
+    const taken = (received: number) => guideStep(aStore([...done(1), samples(899, { 5: received })]), aDictionary, 'rehearsal', 'type', Infinity);
+    expect(taken(0)).toMatchObject({ number: 2, press: [], wants: 'nothing', why: expect.stringContaining('parameters_received is 0') });
+    expect(keys(taken(1))).toEqual(['/', 'do edl', 'Enter']);
+  });
   it('says that a command which was sent is not yet one that was taken', () => {
     const sent = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'radiated', status: 'ok' })]);
     expect(guideStep(sent, aDictionary, 'rehearsal', 'type', Infinity)?.title).toContain('Waiting');

@@ -1,5 +1,6 @@
 // Each link: its state and silences as it told them, what came over it, and how much of it was damaged.
 import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
+import { linkTotals } from '../packets/model';
 import type { RunStore } from '../run/store';
 import { outages } from '../timeline/model';
 import type { Outage } from '../timeline/model';
@@ -28,13 +29,14 @@ export interface LinkView {
 }
 
 export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number): LinkView[] {
+  const totals = new Map(linkTotals(store).map((each) => [each.link, each]));
   const names = new Set([
-    ...store.links.keys(), ...store.unitTotals.keys(), ...(proof?.counters.map((each) => each.link) ?? []), ...(proof?.links.map((each) => each.name) ?? []),
+    ...store.links.keys(), ...totals.keys(), ...(proof?.counters.map((each) => each.link) ?? []), ...(proof?.links.map((each) => each.name) ?? []),
   ]);
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
   return [...names].sort(byImportance).map((link) => {
     const last = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff))?.fact;
-    const totals = store.unitTotals.get(link);
+    const total = totals.get(link);
     const judged = proof?.links.find((row) => row.name === link);
     return {
       link,
@@ -42,7 +44,7 @@ export function linkViews(store: RunStore, proof: ProofReport | undefined, cutof
       reason: last?.reason ?? '',
       since_e_s: last && store.sclkSeenAt(last.ert) - store.entrySclk,
       silences: outages(store, link, now, cutoff),
-      units: totals?.units ?? 0, octets: totals?.octets ?? 0, seenBefore: totals?.duplicates ?? 0,
+      units: total?.units ?? 0, octets: total?.octets ?? 0, seenBefore: total?.duplicates ?? 0,
       counters: proof?.counters.find((each) => each.link === link),
       judged: judged && {
         live: Number(judged.realtime), identical: Number(judged.identical), recorded: Number(judged.recorded), neverLive: Number(judged.neverSeenLive),

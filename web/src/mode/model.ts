@@ -1,6 +1,7 @@
 // Which of the modes the page is in, and what it says of it. Two things are told apart: how the run is looked at (now, a
 // replay, a fixed range, after its end), and where it happens (a rehearsal can never be taken for the real thing).
 import type { RunState } from '../gen/aeolis/v1/run_pb';
+import { fromEntry } from '../run/time';
 
 export type Mode = 'none' | 'live' | 'rehearsal' | 'ended' | 'range' | 'replay';
 
@@ -38,4 +39,14 @@ export function panelMark(mode: Mode, run: RunState | undefined): string {
   const { mark } = MODES[mode];
   if (!run || mode === 'rehearsal' || mode === 'live' || mode === 'none') return mark;
   return isReal(run) ? `${mark}, real venue` : `${mark}, rehearsal`;
+}
+
+/** After a break: since when, what was filled in, and whether the run went on without us. */
+export function resumedWords(break_: { after: number; through: number; attempts: number }, state: string, lost_e_s: number): string {
+  const count = break_.through - break_.after;
+  const filled = count > 0
+    ? `numbers ${break_.after + 1} to ${break_.through}, which came meanwhile, were filled in from the archive, none is missing`
+    : 'nothing had come meanwhile';
+  const begin = `The connection was lost at ${fromEntry(lost_e_s)} and is back at attempt ${break_.attempts}: ${filled}.`;
+  return state === 'interrupted' ? `${begin} The server had stopped and was started again: this run ended at number ${break_.through}; start another under Runs.` : begin;
 }

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { aRun } from '../testing/fixtures';
-import { MODES, isReal, modeOf, panelMark } from './model';
+import { MODES, isReal, modeOf, panelMark, resumedWords } from './model';
 import css from './style.css?raw';
 
 const going = (venue: string) => ({ run: aRun({ venue }), going: true });
@@ -30,5 +30,14 @@ describe('the mode', () => {
     expect(panelMark('replay', aRun())).toBe('replay, rehearsal');
     expect(panelMark('range', aRun({ venue: 'downlink' }))).toBe('past, real venue');
     expect(panelMark('rehearsal', aRun())).toBe('rehearsal');
+  });
+});
+
+describe('a break of the connection', () => {
+  it('says since when, what was filled in, and whether the server went on without us', () => {
+    const break_ = { after: 1200, through: 1612, attempts: 3 };
+    expect(resumedWords(break_, 'running', 80)).toBe('The connection was lost at E+01:20 and is back at attempt 3: numbers 1201 to 1612, which came meanwhile, were filled in from the archive, none is missing.');
+    expect(resumedWords({ ...break_, through: 1200 }, 'running', 80)).toContain('nothing had come meanwhile');
+    expect(resumedWords(break_, 'interrupted', 80)).toContain('this run ended at number 1612');
   });
 });

@@ -1,52 +1,125 @@
-// Units as they arrived, and how fast each link brings them.
-import type { RunStore, Known } from '../run/store';
+// Units as they arrived: how fast each link and each packet comes, and which octets of one are which of its fields.
 import type { Unit } from '../gen/aeolis/v1/items_pb';
+import type { PacketField } from '../gen/aeolis/v1/run_pb';
+import type { Known, RunStore, UnitTotals } from '../run/store';
 import { secondsOfDayOfYear } from '../run/time';
 
-export interface LinkRate {
-  link: string;
+export interface Totals {
   units: number;
   octets: number;
   duplicates: number;
-  /** of the last units that are held, in stream time */
-  octets_per_s: number | undefined;
+}
+export interface Rate {
+  units_per_s: number;
+  octets_per_s: number;
+}
+export interface LinkRow extends Totals {
+  link: string;
+  rate: Rate | undefined;
+}
+export interface PacketStream extends Totals {
+  apid: number;
+  name: string;
+  rate: Rate | undefined;
 }
 
-export function linkRates(store: RunStore): LinkRate[] {
-  return [...store.unitTotals].map(([link, totals]) => {
-    const recent = store.units.filter(({ fact }) => fact.link === link);
-    const first = recent[0];
-    const last = recent[recent.length - 1];
-    const span = first && last ? secondsOfDayOfYear(last.fact.ert) - secondsOfDayOfYear(first.fact.ert) : 0;
-    const octets = recent.slice(1).reduce((sum, { fact }) => sum + fact.octets, 0);
-    return { link, ...totals, octets_per_s: span > 0 ? octets / span : undefined };
-  });
+const WINDOW_S = 10; // ours: of stream time
+
+/** The units of the last ten seconds, or as far back as they are held; undefined once the run is over: then nothing comes, at no rate. */
+function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefined {
+  const now = secondsOfDayOfYear(store.clocks?.ert ?? '');
+  const oldest = store.units[0];
+  if (!store.going || !oldest || !Number.isFinite(now)) return undefined;
+  const from = Math.max(now - WINDOW_S, secondsOfDayOfYear(oldest.fact.ert));
+  if (now <= from) return undefined;
+  const first = store.units.findLastIndex(({ fact }) => secondsOfDayOfYear(fact.ert) < from) + 1;
+  return { units: store.units.slice(first).map(({ fact }) => fact), span_s: now - from };
 }
 
-export function newestUnits(store: RunStore, most: number): Known<Unit>[] {
-  return store.units.slice(-most).reverse();
+function rateOf(recent: ReturnType<typeof recentOf>, belongs: (unit: Unit) => boolean): Rate | undefined {
+  if (!recent) return undefined;
+  const units = recent.units.filter(belongs);
+  return { units_per_s: units.length / recent.span_s, octets_per_s: units.reduce((sum, unit) => sum + unit.octets, 0) / recent.span_s };
+}
+
+function grouped<K>(all: Iterable<UnitTotals>, key: (each: UnitTotals) => K): Map<K, { first: UnitTotals } & Totals> {
+  const groups = new Map<K, { first: UnitTotals } & Totals>();
+  for (const each of all) {
+    const group = groups.get(key(each)) ?? { first: each, units: 0, octets: 0, duplicates: 0 };
+    group.units += each.units;
+    group.octets += each.octets;
+    group.duplicates += each.duplicates;
+    groups.set(key(each), group);
+  }
+  return groups;
+}
+
+export function linkTotals(store: RunStore): (Totals & { link: string })[] {
+  return [...grouped(store.unitTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({ link: first.link, ...totals }));
+}
+
+export function linkRows(store: RunStore): LinkRow[] {
+  const recent = recentOf(store);
+  return linkTotals(store).map((totals) => ({ ...totals, rate: rateOf(recent, (unit) => unit.link === totals.link) }));
+}
+
+/** Each packet of the dictionary that has come, whichever way; several may share an APID. */
+export function packetStreams(store: RunStore): PacketStream[] {
+  const recent = recentOf(store);
+  return [...grouped(store.unitTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
+    .map(({ first, ...totals }) => ({
+      apid: first.apid, name: first.name, ...totals,
+      rate: rateOf(recent, (unit) => unit.apid === first.apid && unit.name === first.name),
+    }))
+    .sort((a, b) => a.apid - b.apid || a.name.localeCompare(b.name));
+}
+
+export function newestUnits(store: RunStore, most: number, packet?: string): Known<Unit>[] {
+  return store.units.filter(({ fact }) => packet === undefined || fact.name === packet).slice(-most).reverse();
 }
 
 export interface HexLine {
   at: string;
-  octets: string;
-  text: string;
+  first: number; // octet
+  octets: string[];
+  text: string[];
 }
 
 /** Sixteen octets a line, with their text beside them. */
 export function hexLines(hex: string): HexLine[] {
+  const all = hex.match(/../g) ?? [];
   const lines: HexLine[] = [];
-  for (let i = 0; i < hex.length; i += 32) {
-    const part = hex.slice(i, i + 32);
-    const octets = part.match(/../g) ?? [];
+  for (let first = 0; first < all.length; first += 16) {
+    const octets = all.slice(first, first + 16);
     lines.push({
-      at: (i / 2).toString(16).padStart(4, '0'),
-      octets: octets.join(' '),
+      at: first.toString(16).padStart(4, '0'), first, octets,
       text: octets.map((octet) => {
         const code = parseInt(octet, 16);
         return code >= 32 && code < 127 ? String.fromCharCode(code) : '·';
-      }).join(''),
+      }),
     });
   }
   return lines;
+}
+
+/** The octets that a field lies in, first and last. */
+export function octetsOf(field: Pick<PacketField, 'positionBits' | 'bits'>): { first: number; last: number } {
+  return { first: Math.floor(field.positionBits / 8), last: Math.floor((field.positionBits + Math.max(1, field.bits) - 1) / 8) };
+}
+
+/** Indices of the fields that lie, if only in part, in an octet. */
+export function fieldsAt(fields: readonly Pick<PacketField, 'positionBits' | 'bits'>[], octet: number): number[] {
+  return fields.flatMap((field, i) => {
+    const { first, last } = octetsOf(field);
+    return octet >= first && octet <= last ? [i] : [];
+  });
+}
+
+/** "octet 14", "octets 14 to 21", "bits 3 to 5 of octet 14". */
+export function placeWords(field: Pick<PacketField, 'positionBits' | 'bits'>): string {
+  const { first, last } = octetsOf(field);
+  const from = field.positionBits % 8;
+  const to = (field.positionBits + field.bits - 1) % 8;
+  if (first === last && (from !== 0 || to !== 7)) return `bit${from === to ? ` ${from}` : `s ${from} to ${to}`} of octet ${first}`;
+  return first === last ? `octet ${first}` : `octets ${first} to ${last}`;
 }

@@ -1,47 +1,222 @@
+// Units as they come: what each link and each packet brings, the newest of them, and one octet by octet beside its fields.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import type { Unit } from '../gen/aeolis/v1/items_pb';
-import type { RunStore } from '../run/store';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
-import { ask, pastRange, notify, replay, runNow, store } from '../run/session';
 import { linkTitle } from '../links/model';
+import { ask, notify, pastRange, replay, runNow, store } from '../run/session';
+import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
-import { hexLines, linkRates, newestUnits } from './model';
+import { Mark } from '../verdicts/mark';
+import { fieldsAt, hexLines, linkRows, newestUnits, octetsOf, packetStreams, placeWords } from './model';
+import type { Rate } from './model';
 import './style.css';
 
 const SHOWN = 100;
-const opened = signal<PacketRow | undefined>(undefined);
 
-async function open(seq: number): Promise<void> {
-  const run = store.value;
-  if (!run) return;
-  try {
-    const list = await ask<PacketList>('packets', `/runs/${run.id}/packets?after=${seq - 1}&limit=1`);
-    opened.value = list.packets[0];
-    if (!opened.value) notify(`item ${seq} is not in the archive`);
-  } catch (error) {
-    notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
-  }
+/** A line of the list. Of what just came the archive is asked when it is opened. */
+interface Line {
+  fact: Unit;
+  seq: number;
+  row?: PacketRow;
 }
 
+const wanted = signal<string | undefined>(undefined); // only this packet
+const opened = signal<PacketRow | undefined>(undefined);
+const current = signal<bigint | undefined>(undefined); // number of the unit that is chosen
+/** While one is open the list stands still, so that what is looked at does not run away. */
+const held = signal<{ run: number; lines: Line[] } | undefined>(undefined);
 /** In a past view the units of that range come from the archive: the page itself holds only the newest. */
 const pastRows = signal<PacketRow[]>([]);
+/** What the mouse or the keys are at: a field, or an octet with all fields in it. */
+const lit = signal<{ field: number } | { octet: number } | undefined>(undefined);
 
-async function askPast(range: { from: number; to: number }): Promise<void> {
+async function askPackets(query: string): Promise<PacketRow[]> {
   const run = store.value;
-  if (!run) return;
+  if (!run) return [];
   try {
-    const path = `/runs/${run.id}/packets?from=${run.entrySclk + range.from}&to=${run.entrySclk + range.to}&limit=${SHOWN}`;
-    const list = await ask<PacketList>('packets', path);
-    pastRows.value = list.packets;
+    return (await ask<PacketList>('packets', `/runs/${run.id}/packets?${query}`)).packets;
   } catch (error) {
     notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
+    return [];
   }
 }
 
-function shownUnits(run: RunStore, past: boolean): { fact: Unit; show: () => void }[] {
-  if (!past) return newestUnits(run, SHOWN).map(({ seq, fact }) => ({ fact, show: () => void open(seq) }));
-  return pastRows.value.flatMap((row) => (row.unit ? [{ fact: row.unit, show: () => (opened.value = row) }] : []));
+async function show(line: Line, lines: Line[]): Promise<void> {
+  const run = store.value;
+  if (!run) return;
+  current.value = line.fact.unit;
+  held.value ??= { run: run.id, lines };
+  const row = line.row ?? (await askPackets(`after=${line.seq - 1}&limit=1`))[0];
+  if (current.value !== line.fact.unit) return;
+  opened.value = row;
+  lit.value = undefined;
+}
+
+function close(): void {
+  opened.value = undefined;
+  held.value = undefined;
+  current.value = undefined;
+  document.querySelector<HTMLElement>('[data-testid="units"]')?.focus();
+}
+
+function linesOf(run: RunStore, past: boolean): Line[] {
+  if (held.value?.run === run.id) return held.value.lines;
+  if (!past) return newestUnits(run, SHOWN, wanted.value);
+  return pastRows.value.flatMap((row) => (row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : []));
+}
+
+function onListKey(event: KeyboardEvent, lines: Line[]): void {
+  const at = lines.findIndex((line) => line.fact.unit === current.value);
+  const to = { ArrowDown: at + 1, ArrowUp: at - 1, Home: 0, End: lines.length - 1, Enter: Math.max(0, at) }[event.key];
+  if (event.key === 'Escape' && opened.value) close();
+  else if (to === undefined) return;
+  else {
+    const line = lines[Math.min(lines.length - 1, Math.max(0, to))];
+    if (line) void show(line, lines);
+    (event.currentTarget as HTMLElement).querySelectorAll('tbody tr')[Math.min(lines.length - 1, Math.max(0, to))]?.scrollIntoView({ block: 'nearest' });
+  }
+  event.preventDefault();
+  event.stopPropagation();
+}
+
+function rateText(rate: Rate | undefined): string {
+  const bits_per_s = (rate?.octets_per_s ?? 0) * 8;
+  return !rate ? '' : bits_per_s >= 1000 ? `${(bits_per_s / 1000).toFixed(1)} kb/s` : `${Math.round(bits_per_s)} b/s`;
+}
+
+function Links({ whole }: { whole: boolean }) {
+  const run = runNow();
+  if (!run) return null;
+  const rows = linkRows(run);
+  return (
+    <div class="table-tools link-rates" data-testid="link-rates">
+      {rows.map((row) => (
+        <span key={row.link}>
+          <b>{linkTitle(row.link)}</b>{whole ? ', whole run:' : ''} {row.units} units, {row.octets} octets
+          {row.rate && `, ${rateText(row.rate)}`}{row.duplicates > 0 && `, ${row.duplicates} seen before`}
+        </span>
+      ))}
+      {rows.length === 0 && <span>no unit yet</span>}
+      {!whole && run.run.relayProgress > 0 && <span>units of the recording: ask for a range <kbd>r</kbd></span>}
+    </div>
+  );
+}
+
+function Streams() {
+  const run = runNow();
+  const choose = (name: string | undefined) => {
+    wanted.value = name;
+    close();
+  };
+  return (
+    <div class="table-scroll streams" tabIndex={0} role="region" aria-label="packets by APID">
+      <table data-testid="packet-streams">
+        <thead><tr><th>APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
+        <tbody>
+          {(run ? packetStreams(run) : []).map((row) => (
+            <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
+              <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
+              <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
+              <td class="number">{row.units}</td>
+              <td class="number">{row.rate?.units_per_s.toFixed(1) ?? ''}</td>
+              <td class="number">{rateText(row.rate)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
+  return (
+    <div class="table-scroll units" tabIndex={0} role="region" aria-label="units, newest first; up and down open them" data-testid="units" onKeyDown={(event) => onListKey(event, lines)}>
+      <table data-testid="unit-table">
+        <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th><th>verdict</th></tr></thead>
+        <tbody>
+          {lines.map((line) => {
+            const { fact } = line;
+            const chosen = fact.unit === current.value;
+            return (
+              <tr key={String(fact.unit)} class={chosen ? 'shown' : ''} aria-current={chosen ? 'true' : undefined} onClick={() => void show(line, lines)}>
+                <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
+                <td><button type="button" class="link-button" tabIndex={-1}>{String(fact.unit)}</button></td>
+                <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
+                <td>{fact.name}</td>
+                <td class="number">{fact.octets}</td>
+                <td>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
+                <td>{line.row ? <Mark verdict={line.row.verdict} /> : <span class="status-dim">open it</span>}</td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+/** Octets and fields side by side; what one is at lights the other. */
+function Contents({ packet }: { packet: PacketRow }) {
+  const at = lit.value;
+  const fields = at === undefined ? [] : 'field' in at ? [at.field] : fieldsAt(packet.fields, at.octet);
+  const octets = new Set<number>(at && 'octet' in at ? [at.octet] : []);
+  for (const index of fields) {
+    const field = packet.fields[index];
+    if (!field) continue;
+    const { first, last } = octetsOf(field);
+    for (let octet = first; octet <= last; ++octet) octets.add(octet);
+  }
+  const place = fields.map((index) => packet.fields[index]).filter((field) => field !== undefined);
+  const light = (octet: number) => ({ class: octets.has(octet) ? 'lit' : undefined, onMouseEnter: () => (lit.value = { octet }) });
+  const onFieldKey = (event: KeyboardEvent) => {
+    const now = at && 'field' in at ? at.field : -1;
+    const to = { ArrowDown: now + 1, ArrowUp: now - 1, Home: 0, End: packet.fields.length - 1 }[event.key];
+    if (event.key === 'Escape') close();
+    else if (to === undefined) return;
+    else {
+      lit.value = { field: Math.min(packet.fields.length - 1, Math.max(0, to)) };
+      (event.currentTarget as HTMLElement).querySelectorAll('tr')[lit.value.field]?.scrollIntoView({ block: 'nearest' });
+    }
+    event.preventDefault();
+    event.stopPropagation();
+  };
+  return (
+    <div class="contents" onMouseLeave={() => (lit.value = undefined)}>
+      <div class="table-scroll octets" tabIndex={0} role="region" aria-label="octets" data-testid="packet-octets">
+        {hexLines(packet.hex).map((line) => (
+          <div key={line.at}>
+            <span class="alias">{line.at}</span>
+            <span class="hex-part">{line.octets.map((octet, i) => <span key={i} data-octet={line.first + i} {...light(line.first + i)}>{octet}</span>)}</span>
+            <span class="text-part">{line.text.map((letter, i) => <span key={i} {...light(line.first + i)}>{letter}</span>)}</span>
+          </div>
+        ))}
+      </div>
+      <div class="table-scroll packet-fields" tabIndex={0} role="region" aria-label="fields; up and down light their octets" data-testid="packet-fields" onKeyDown={onFieldKey}>
+        <table>
+          <tbody>
+            {packet.fields.map((field, index) => (
+              <tr key={index} class={fields.includes(index) ? 'lit' : ''} data-field={field.name} title={placeWords(field)} onMouseEnter={() => (lit.value = { field: index })}>
+                <td>{field.name}</td><td class="number">{field.text}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </div>
+      <p class="place" aria-live="polite" data-testid="packet-place">{place.length === 0 ? 'point at a field or an octet, or go through the fields with ↑ ↓' : place.slice(0, 3).map((field) => `${field.name}: ${placeWords(field)}, ${field.bits} bits`).join(' · ')}</p>
+    </div>
+  );
+}
+
+function Packet({ packet }: { packet: PacketRow }) {
+  return (
+    <div class="packet" data-testid="packet">
+      <p><b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b> over {linkTitle(packet.unit?.link ?? '')}, {packet.hex.length / 2} octets · <Mark verdict={packet.verdict} />
+        {packet.unit?.duplicate ? ', came before over another link' : ''}
+        <button type="button" class="quiet" aria-label="close the packet" onClick={close}>close <kbd>Esc</kbd></button></p>
+      <Contents packet={packet} />
+    </div>
+  );
 }
 
 export function Packets() {
@@ -49,50 +224,37 @@ export function Packets() {
   const past = moving ? undefined : pastRange.value;
   useEffect(() => {
     pastRows.value = [];
-    if (past) void askPast(replay.value ? { from: past.to - 10, to: past.to } : past);
+    held.value = undefined;
+    const run = store.value;
+    if (!past || !run) return;
+    const { from, to } = replay.value ? { from: past.to - 10, to: past.to } : past;
+    void askPackets(`from=${run.entrySclk + from}&to=${run.entrySclk + to}&limit=${SHOWN}`).then((rows) => {
+      if (pastRange.value === past) pastRows.value = rows;
+    });
   }, [past]);
   const run = runNow();
   if (!run) return null;
-  const packet = opened.value;
   if (moving) return <p class="none" data-testid="packets-not-replayed">▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.</p>;
+  const packet = opened.value;
+  const lines = linesOf(run, past !== undefined);
+  const newest = run.units.at(-1)?.fact.unit;
+  const top = held.value?.run === run.id ? lines[0]?.fact.unit : undefined;
   return (
     <div class="table-box">
-      <div class="table-tools" data-testid="link-rates">
-        {linkRates(run).map((rate) => (
-          <span key={rate.link}>
-            <b>{linkTitle(rate.link)}</b>{past ? ', whole run:' : ''} {rate.units} units, {rate.octets} octets
-            {rate.octets_per_s !== undefined && `, ${(rate.octets_per_s * 8 / 1000).toFixed(1)} kb/s`}
-            {rate.duplicates > 0 && `, ${rate.duplicates} seen before`}
-          </span>
-        ))}
-        {run.unitTotals.size === 0 && <span>no unit yet</span>}
-      </div>
-      <div class="packets">
-        <div class="table-scroll" tabIndex={0} aria-label="units">
-          <table data-testid="unit-table">
-            <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th></tr></thead>
-            <tbody>
-              {shownUnits(run, past !== undefined).map(({ fact, show }) => (
-                <tr key={String(fact.unit)}>
-                  <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
-                  <td><button type="button" class="link-button" onClick={show}>{String(fact.unit)}</button></td>
-                  <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
-                  <td>{fact.name}</td>
-                  <td class="number">{fact.octets}</td>
-                  <td>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
-                </tr>
-              ))}
-            </tbody>
-          </table>
+      <Links whole={past !== undefined} />
+      {(wanted.value !== undefined || top !== undefined) && (
+        <div class="table-tools">
+          {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of the {past ? `${SHOWN} listed` : 'newest held'} <button type="button" onClick={() => {
+            wanted.value = undefined;
+            close();
+          }}>show all</button></span>}
+          {top !== undefined && !past && newest !== undefined && newest > top && <span class="status-caution" data-testid="list-held">▲ the list stands still while a packet is open: {String(newest - top)} came since</span>}
         </div>
-        {packet && (
-          <div class="packet table-scroll" data-testid="packet">
-            <b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b> over {linkTitle(packet.unit?.link ?? '')}, {packet.verdict.replaceAll('_', ' ')}{packet.unit?.duplicate ? ', came before over another link' : ''}
-            <button type="button" class="quiet" aria-label="close" onClick={() => (opened.value = undefined)}>×</button>
-            <pre>{hexLines(packet.hex).map((line) => `${line.at}  ${line.octets.padEnd(47)}  ${line.text}`).join('\n')}</pre>
-            <dl>{packet.fields.map((field) => (<><dt>{field.name}</dt><dd>{field.text}</dd></>))}</dl>
-          </div>
-        )}
+      )}
+      <div class={`packets ${packet ? 'with-packet' : ''}`}>
+        <Streams />
+        <Units run={run} lines={lines} />
+        {packet && <Packet packet={packet} />}
       </div>
     </div>
   );

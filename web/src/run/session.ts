@@ -1,9 +1,9 @@
 // The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
 import { computed, effect, signal } from '@preact/signals';
 import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
-import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
+import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
-import { modeOf } from '../mode/model';
+import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { Dictionary } from './dictionary';
 import { RunStore } from './store';
@@ -67,6 +67,8 @@ export function backToLive(): void {
   pastRange.value = undefined;
 }
 
+let lostAt_e_s = NaN; // when the connection broke, as the header showed it
+
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
 
 let worker: Worker | undefined;
@@ -93,14 +95,6 @@ export function control(action: ControlAction): void {
   if (action.action === 'start') watch(0);
 }
 
-export interface CommandIntent {
-  command: string;
-  arguments: { name: string; value: number }[];
-  armed: boolean;
-  confirmation: string;
-  fromSolution: boolean;
-}
-
 /** Sends once. Rejects when nothing was sent, or when the connection was lost before an answer: then it is not known. */
 export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
   if (stream.value.state !== 'live' && stream.value.state !== 'catching_up') {
@@ -109,7 +103,7 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
   const request = ++lastRequest;
   return new Promise((resolve, reject) => {
     requests.set(request, { resolve, reject });
-    post({ type: 'command', request, run: store.value?.id ?? 0, ...intent });
+    post({ type: 'command', request, run: store.value?.id ?? 0, intent });
   });
 }
 
@@ -137,6 +131,7 @@ function onMessage(message: FromWorker): void {
       const before = stream.value.state;
       stream.value = message;
       if (message.state === 'lost' && before !== 'lost') {
+        lostAt_e_s = store.value?.seenE ?? NaN;
         for (const request of requests.values()) {
           request.reject(new Error('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
         }
@@ -146,6 +141,9 @@ function onMessage(message: FromWorker): void {
     }
     case 'run':
       takeRun(message.run);
+      break;
+    case 'resumed':
+      if (store.value?.id === message.run) notify(resumedWords(message, store.value.run.state, lostAt_e_s));
       break;
     case 'batch':
       if (store.value?.id === message.batch.run) store.value.add(message.batch);

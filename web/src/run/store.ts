@@ -37,7 +37,11 @@ export interface CommandRow {
   /** What was said of each stage, oldest first: the last word counts, in a past view the last of then. */
   stages: Map<string, CommandStage[]>;
 }
+/** Of one packet over one link. */
 export interface UnitTotals {
+  link: string;
+  apid: number;
+  name: string;
   units: number;
   octets: number;
   duplicates: number;
@@ -59,6 +63,7 @@ export class RunStore {
   links = new Map<string, Known<LinkChange>[]>();
   alarms = new Map<number, Alarm>();
   units: Known<Unit>[] = [];
+  /** By link and packet. */
   unitTotals = new Map<string, UnitTotals>();
   clocks: Clocks | undefined;
   completeThrough = 0;
@@ -232,11 +237,13 @@ export class RunStore {
   }
 
   private addUnit(item: Known<Unit>): void {
-    const totals = this.unitTotals.get(item.fact.link) ?? { units: 0, octets: 0, duplicates: 0 };
+    const { link, apid, name } = item.fact;
+    const key = `${link} ${apid} ${name}`;
+    const totals = this.unitTotals.get(key) ?? { link, apid, name, units: 0, octets: 0, duplicates: 0 };
     ++totals.units;
     totals.octets += item.fact.octets;
     if (item.fact.duplicate) ++totals.duplicates;
-    this.unitTotals.set(item.fact.link, totals);
+    this.unitTotals.set(key, totals);
     this.units.push(item);
     if (this.units.length > UNIT_LIMIT * 2) this.units.splice(0, UNIT_LIMIT);
   }

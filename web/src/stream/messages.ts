@@ -39,6 +39,7 @@ export type StreamState = 'connecting' | 'catching_up' | 'live' | 'lost';
 export type FromWorker =
   | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
   | { type: 'run'; run: RunState | undefined; fresh: boolean }
+  | { type: 'resumed'; run: number; after: number; through: number; attempts: number }
   | { type: 'batch'; batch: BatchOfFacts }
   | { type: 'history'; run: number; columns: Column[] }
   | { type: 'reply'; reply: CommandReply }
@@ -52,15 +53,29 @@ export type ControlAction =
   | { action: 'pace'; pace: number }
   | { action: 'stop' };
 
-export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof';
+export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof' | 'commands';
+
+/** What a controller wants of the uplink, as CommandRequest has it: a command, or an action on one that waits. What is left out is not asked. */
+export interface CommandIntent {
+  command?: string;
+  arguments?: { name: string; value: number }[];
+  armed?: boolean;
+  confirmation?: string;
+  fromSolution?: boolean;
+  dryRun?: boolean;
+  service?: string;
+  releaseAt?: string;
+  hold?: boolean;
+  priority?: number;
+  action?: QueueAction;
+  number?: bigint;
+}
+export type QueueAction = 'release' | 'hold' | 'cancel';
 
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
   | { type: 'refresh_history'; all: boolean }
-  | {
-      type: 'command'; request: number; run: number; command: string;
-      arguments: { name: string; value: number }[]; armed: boolean; confirmation: string; fromSolution: boolean;
-    }
+  | { type: 'command'; request: number; run: number; intent: CommandIntent }
   | { type: 'control'; control: ControlAction }
   | { type: 'ask'; ask: number; question: Question; path: string };

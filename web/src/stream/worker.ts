@@ -5,15 +5,15 @@
 // Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
 // it is fetched, thinned by the server: no seam, and no million of samples through the socket.
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
-import type { DescMessage } from '@bufbuild/protobuf';
+import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
-  ChannelSeriesListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
+  ChannelSeriesListSchema, CommandListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
   ScenarioListSchema, TimepointListSchema,
 } from '../gen/aeolis/v1/run_pb';
-import { ClientMessageSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
-import type { Batch, ClientMessage } from '../gen/aeolis/v1/stream_pb';
+import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
+import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import { ColumnCollector, splitBySource } from './columns';
-import type { FromWorker, Question, StreamState, ToWorker } from './messages';
+import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
 import { SequenceCheck, backoffSeconds } from './sequence';
 
 const POST_EVERY_MS = 25;
@@ -42,14 +42,19 @@ let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
 let stopAt = 0; // what the run had when the subscription began: from there on it is live
+let lost: { after: number; attempts: number } | undefined; // while a break lasts: what was complete when it began
 let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
 
 function say(next: StreamState): void {
   state = next;
+  if (next === 'live' && lost) {
+    post({ type: 'resumed', run: currentRun, ...lost, through: check.completeThrough });
+    lost = undefined;
+  }
   post({ type: 'stream', state, attempt, gaps: check.gaps, serverVersion });
 }
 
-function send(message: ClientMessage['message']): boolean {
+function send(message: MessageInitShape<typeof ClientMessageSchema>['message']): boolean {
   if (!socket || socket.readyState !== WebSocket.OPEN) return false;
   socket.send(toBinary(ClientMessageSchema, create(ClientMessageSchema, { message })) as Uint8Array<ArrayBuffer>);
   return true;
@@ -59,8 +64,8 @@ function subscribe(): void {
   send({
     case: 'subscribe',
     value: {
-      $typeName: 'aeolis.v1.Subscribe', run: BigInt(exact ? currentRun || wantedRun : wantedRun), afterSeq: BigInt(check.completeThrough),
-      channels: [], allChannels: step === 'samples', maxRateHz: MAX_RATE_HZ,
+      run: BigInt(exact ? currentRun || wantedRun : wantedRun), afterSeq: BigInt(check.completeThrough),
+      allChannels: step === 'samples', maxRateHz: MAX_RATE_HZ,
     },
   });
 }
@@ -82,6 +87,8 @@ function connect(): void {
     if (socket !== mine) return;
     socket = undefined;
     ++attempt;
+    if (state === 'live') lost = { after: check.completeThrough, attempts: 0 };
+    if (lost) lost.attempts = attempt;
     say('lost');
     setTimeout(connect, backoffSeconds(attempt) * 1000);
   };
@@ -90,6 +97,7 @@ function connect(): void {
 /** Forget the run and take up another from its beginning. */
 function restart(run: number): void {
   currentRun = run;
+  lost = undefined;
   check = new SequenceCheck();
   collector = new ColumnCollector(packetOf);
   step = 'facts';
@@ -209,6 +217,7 @@ async function fetchHistory(all = true): Promise<void> {
 const ANSWERS: Record<Question, DescMessage> = {
   runs: RunListSchema, dictionary: DictionaryReplySchema, timepoints: TimepointListSchema, scenarios: ScenarioListSchema,
   series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema,
+  commands: CommandListSchema,
 };
 
 async function askJson(path: string): Promise<unknown> {
@@ -249,19 +258,11 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
     case 'refresh_history':
       void fetchHistory(message.all);
       break;
-    case 'command': {
-      const sent = send({
-        case: 'command',
-        value: {
-          $typeName: 'aeolis.v1.CommandRequest', run: BigInt(message.run), command: message.command,
-          arguments: message.arguments.map((a) => ({ $typeName: 'aeolis.v1.CommandArgument', ...a })),
-          armed: message.armed, confirmation: message.confirmation, request: BigInt(message.request),
-          fromSolution: message.fromSolution, service: '', dryRun: false, releaseAt: '', hold: false, priority: 0, action: '', number: 0n, controller: '',
-        },
-      });
-      if (!sent) post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+    case 'command':
+      if (!send({ case: 'command', value: { ...message.intent, run: BigInt(message.run), request: BigInt(message.request) } })) {
+        post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+      }
       break;
-    }
     case 'control':
       if (!send({ case: 'control', value: control(message.control) })) {
         post({ type: 'refusal', reason: 'not connected: nothing was sent' });
@@ -278,25 +279,15 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
   }
 };
 
-function control(wanted: Extract<ToWorker, { type: 'control' }>['control']) {
-  const $typeName = 'aeolis.v1.RehearsalControl' as const;
+function control(wanted: ControlAction): MessageInitShape<typeof RehearsalControlSchema> {
   switch (wanted.action) {
     case 'start':
-      return {
-        $typeName,
-        action: {
-          case: 'start' as const,
-          value: {
-            $typeName: 'aeolis.v1.StartRehearsal' as const, scenario: wanted.scenario, seed: BigInt(wanted.seed),
-            pace: wanted.pace,
-          },
-        },
-      };
+      return { action: { case: 'start', value: { scenario: wanted.scenario, seed: BigInt(wanted.seed), pace: wanted.pace } } };
     case 'pause':
-      return { $typeName, action: { case: 'pause' as const, value: wanted.pause } };
+      return { action: { case: 'pause', value: wanted.pause } };
     case 'pace':
-      return { $typeName, action: { case: 'pace' as const, value: wanted.pace } };
+      return { action: { case: 'pace', value: wanted.pace } };
     case 'stop':
-      return { $typeName, action: { case: 'stop' as const, value: true } };
+      return { action: { case: 'stop', value: true } };
   }
 }

@@ -2,7 +2,7 @@
 import { create } from '@bufbuild/protobuf';
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import {
-  ClocksSchema, CommandStageSchema, EventSchema, ExplanationSchema, ItemSchema, LinkChangeSchema, TimepointFiringSchema, ToneSchema,
+  ClocksSchema, CommandStageSchema, EventSchema, ExplanationSchema, ItemSchema, LinkChangeSchema, TimepointFiringSchema, ToneSchema, UnitSchema,
 } from '../gen/aeolis/v1/items_pb';
 import type { Item } from '../gen/aeolis/v1/items_pb';
 import { DictionaryReplySchema, RunStateSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
@@ -61,6 +61,7 @@ export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =
 export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) => item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
 export const link = (fields: MessageInitShape<typeof LinkChangeSchema>) => item({ case: 'link', value: create(LinkChangeSchema, fields) });
 export const stage = (fields: MessageInitShape<typeof CommandStageSchema>) => item({ case: 'commandStage', value: create(CommandStageSchema, fields) });
+export const unit = (fields: MessageInitShape<typeof UnitSchema>) => item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) });
 export const samples = (sclk: number, values: Record<number, number>, source = 1) => item({
   case: 'samples',
   value: { $typeName: 'aeolis.v1.Samples', sclk, ids: Object.keys(values).map(Number), values: Object.values(values), source, thinned: false },

@@ -7,6 +7,7 @@ import { linkTitle } from '../links/model';
 import { reportProblem, useReport } from '../proof/report';
 import { ask, pastRange, runNow, store } from '../run/session';
 import { fromEntry } from '../run/time';
+import { Mark } from './mark';
 import { VERDICTS, VERDICT_LOOK, diffLines, rowsOf, sentence, toneSummary, totalOf, trouble } from './model';
 import type { Octet, Row, Verdict } from './model';
 import './style.css';
@@ -29,12 +30,6 @@ async function list(): Promise<void> {
   } catch (error) {
     problem.value = error instanceof Error ? error.message : String(error);
   }
-}
-
-function Mark({ verdict }: { verdict: string }) {
-  const look = VERDICT_LOOK[verdict as Verdict];
-  const status = look ? STATUS[look.status] : STATUS.unknown;
-  return <span class={`status-${status.token}`} title={look?.means}>{status.shape} {look?.words ?? verdict.replaceAll('_', ' ')}</span>;
 }
 
 /** Of what the recording has: how much was seen live, and what disagrees. Widths, so that words stand beside it. */

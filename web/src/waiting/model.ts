@@ -2,6 +2,8 @@
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { outcomeWords } from '../clocks/model';
+import { preconditionsOf } from '../commands/model';
+import type { Precondition } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
@@ -83,17 +85,28 @@ export function stepEvidence(store: RunStore, step: FirstStep | undefined): stri
   return tone && `by tone ${tone.fact.tone}`;
 }
 
+/**
+ * What the vehicle's own status still says against a step that comes next: it would be refused. A status that never came is no
+ * reason to wait, for flight decides by what it knows.
+ */
+export function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep): Precondition | undefined {
+  const command = dictionary.command(step.command);
+  return command && preconditionsOf(command, dictionary, store).find((condition) => condition.holds === false);
+}
+
 function beginning(store: RunStore, dictionary: Dictionary): Waiting {
   const steps = LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
   const missing = steps.find((step) => stepEvidence(store, step) === undefined && sending(store, step) === undefined);
+  const against = missing && steps.indexOf(missing) > 0 && stepEvidence(store, steps[steps.indexOf(missing) - 1]) !== undefined
+    ? statusAgainst(store, dictionary, missing) : undefined;
   return {
     kind: 'begin',
-    title: missing ? `Press / and type “${missing.words}”` : 'Sent. Waiting for the vehicle’s answer',
-    words: missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.',
-    lines: steps.map((step) => {
+    title: against ? 'Waiting for the vehicle’s status' : missing ? `Press / and type “${missing.words}”` : 'Sent. Waiting for the vehicle’s answer',
+    words: against ? `“${missing?.words}” is refused until it says so.` : missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.',
+    lines: [...steps.map((step) => {
       const evidence = stepEvidence(store, step);
       return { words: step.words, value: evidence ?? sending(store, step) ?? failure(store, step) ?? 'to be sent', holds: evidence !== undefined };
-    }),
+    }), ...(against ? [{ words: against.words, value: against.value, holds: against.holds }] : [])],
   };
 }
 

@@ -14,6 +14,12 @@ describe('waiting for', () => {
     expect(waitingFor(aStore(), aDictionary, aPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
     expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
   });
+  it('asks for no command that the vehicle’s status still speaks against', () => {
+    const waiting = waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]), aDictionary, aPlan, Infinity);
+    expect(waiting.title).toBe('Waiting for the vehicle’s status');
+    expect(waiting.lines.at(-1)).toMatchObject({ words: 'parameters received', value: 'parameters_received is 0', holds: false });
+    expect(waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+  });
   it('takes a tone for an answer where no packet comes', () => {
     const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) => stage({ command: BigInt(i + 1), name, stage: 'radiated', status: 'ok' }));
     const waiting = waitingFor(aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]), aDictionary, aPlan, Infinity);

@@ -1,0 +1,73 @@
+// Renews the pictures of README and docs/user-guide.md from the real program: node tests/browser/pictures.mjs
+import path from 'node:path';
+import { browser, focused, open, root, secondsFromEntry, serve, setPace, stageLook, temporaryFolder, waitFor } from './support.mjs';
+
+const pictures = path.join(root, 'docs/pictures');
+const { folder, remove } = await temporaryFolder();
+const chrome = await browser();
+const server = await serve({ archive: path.join(folder, 'pictures.db'), more: ['--scenario', 'nominal'] });
+
+try {
+    const { page, text, shows } = await open(chrome, server.address, { width: 1600, height: 900 });
+    const take = (name, what = page) => what.screenshot({ path: path.join(pictures, name), animations: 'disabled' });
+    const panel = (name) => page.getByTestId(name);
+
+    await shows('guide', /Tell the vehicle where it is/);
+    await shows('waiting', /set edl parameters/);
+    await waitFor(() => text('tone-title'), /Tone \d/, 60_000);
+    await take('tour_begin.png');
+
+    await page.keyboard.press('/');
+    await page.keyboard.type('set edl parameters');
+    await page.keyboard.press('Enter');
+    await shows('dry-run', /✓ It would be sent/);
+    await take('tour_dry_run.png', panel('panel-commands'));
+    await page.keyboard.press('Enter');
+    await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 30_000);
+    await shows('guide', /Let it begin/);
+    await waitFor(() => focused(page), /command-line/);
+    await page.keyboard.type('do edl');
+    await page.keyboard.press('Enter');
+    await shows('dry-run', /✓ It would be sent once it is armed/);
+    await page.keyboard.press('Enter');
+    await shows('command-armed', /ARMED/);
+    await page.keyboard.type('EDL_DO');
+    await take('tour_armed.png', panel('panel-commands'));
+    await page.keyboard.type('_EDL');
+    await page.keyboard.press('Enter');
+    await shows('command-message', /EDL_DO_EDL is #2/);
+    await page.keyboard.press('Escape');
+
+    await setPace(page, 100);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 60_000);
+    await setPace(page, 10);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 60_000);
+    await page.keyboard.press('p');
+    await shows('badge', /paused/);
+    await page.setViewportSize({ width: 1920, height: 1080 });
+    await page.waitForTimeout(500);
+    await take('console_mid_entry.png');
+    await page.setViewportSize({ width: 1600, height: 900 });
+    await page.keyboard.press('p');
+    await setPace(page, 100);
+    await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 60_000);
+    await shows('waiting', /Landed/, 90_000);
+    await page.keyboard.press('v');
+    await shows('verdict-sentence', /bit for bit/, 30_000);
+    await take('tour_landed.png');
+
+    await page.goto(`${server.address}/?panel=packets`);
+    await shows('badge', /ENDED RUN/);
+    await page.setViewportSize({ width: 1600, height: 620 });
+    await page.getByTestId('units').focus();
+    await page.keyboard.press('ArrowDown');
+    await shows('packet', /unit \d/);
+    await page.getByTestId('packet-fields').focus();
+    for (let field = 0; field < 9; ++field) await page.keyboard.press('ArrowDown');
+    await take('tour_packet.png');
+    console.log(`renewed in ${path.relative(root, pictures)}: look at them before you commit them`);
+} finally {
+    await server.stop();
+    await chrome.close();
+    await remove();
+}

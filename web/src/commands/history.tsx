@@ -1,0 +1,133 @@
+// What waits to leave, with what can be done about it; and every command of the run, each stage with all that was said of it.
+import { signal } from '@preact/signals';
+import type { CommandList } from '../gen/aeolis/v1/run_pb';
+import { ask, cutoff, dictionary, runNow, store, takesCommands } from '../run/session';
+import type { CommandRow, RunStore } from '../run/store';
+import { fromEntry } from '../run/time';
+import { act } from './line';
+import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
+import type { StageCell } from './model';
+
+const HISTORY_SHOWN = 12;
+const STAGE_SHAPES = { ok: '✓', failed: '✖', unknown: '?', pending: '…', none: '' } as const;
+const STAGE_WORDS = { ok: 'seen', failed: 'failed', unknown: 'not known', pending: 'due', none: 'nothing known' } as const;
+
+export function Queue() {
+  const run = runNow();
+  if (!run || !takesCommands()) return null;
+  const waiting = waitingCommands(run);
+  if (waiting.length === 0) return null;
+  return (
+    <section class="queue" data-testid="command-queue" aria-label="commands that wait">
+      <h3>{waiting.length === 1 ? 'One command waits' : `${waiting.length} commands wait`} on the ground</h3>
+      <ol>
+        {waiting.map(({ row, evidence, held }) => (
+          <li key={row.command} data-waiting={row.command}>
+            <div><b>{row.name} #{row.command}</b> <small>{evidence}</small></div>
+            <button type="button" onClick={() => void act(row.command, held ? 'release' : 'hold')}>{held ? 'release' : 'hold'}</button>
+            <button type="button" onClick={() => void act(row.command, 'cancel')}>cancel</button>
+          </li>
+        ))}
+      </ol>
+    </section>
+  );
+}
+
+const opened = signal<number | undefined>(undefined);
+/** Octets are not on the stream. */
+const octets = signal<{ run: number; of: Map<number, string> } | undefined>(undefined);
+
+async function toggle(command: number): Promise<void> {
+  opened.value = opened.value === command ? undefined : command;
+  const run = store.value;
+  if (opened.value === undefined || !run) return;
+  try {
+    const list = await ask<CommandList>('commands', `/runs/${run.id}/commands`);
+    octets.value = { run: run.id, of: new Map(list.commands.map((each) => [Number(each.command), each.octets])) };
+  } catch {
+    // The line of octets says that they are not known.
+  }
+}
+
+function ReadBack({ row }: { row: CommandRow }) {
+  const run = runNow();
+  const words = dictionary.value;
+  const back = run && words && readBackOf(row, words, run, cutoff.value);
+  if (!back) return null;
+  const differ = back.lines.filter((line) => line.equal === false).length;
+  return (
+    <section data-testid="read-back">
+      <h3>{back.sclk === undefined ? '? The vehicle has not reported yet what it holds' : <>
+        {differ > 0 ? <span class="status-alarm">✖ {differ} of {back.lines.length} differ</span> : <span class="status-good">✓ {back.lines.length} of {back.lines.length} are held as sent</span>}
+        {' '}by its report of {fromEntry(back.sclk - run.entrySclk, { tenths: true })}</>}</h3>
+      <table>
+        <thead><tr><th>argument</th><th class="number">sent</th><th class="number">held</th><th>equal</th></tr></thead>
+        <tbody>
+          {back.lines.map((line) => (
+            <tr key={line.name} class={line.equal === false ? 'status-alarm' : ''}>
+              <td>{line.name}</td><td class="number">{line.sent}</td>
+              <td class="number">{line.held === undefined ? '—' : line.equal ? line.sent : Number.isNaN(line.held) ? 'undefined' : String(line.held)}</td>
+              <td>{line.equal === undefined ? '? not known' : line.equal ? <span class="status-good">✓</span> : '✖'}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+    </section>
+  );
+}
+
+function Details({ row, cells, run, known }: { row: CommandRow; cells: StageCell[]; run: RunStore; known: (at: string) => boolean }) {
+  const raw = octets.value?.run === run.id ? octets.value.of.get(row.command) : undefined;
+  return (
+    <div class="details" data-testid="command-details">
+      <table>
+        <thead><tr><th>stage</th><th>on Earth (ERT)</th><th>evidence</th></tr></thead>
+        <tbody>
+          {cells.flatMap((cell) => {
+            const words = (row.stages.get(cell.stage) ?? []).filter((word) => known(word.at));
+            if (words.length === 0) return [<tr key={cell.stage} class="status-dim"><td>? {cell.stage}</td><td>—</td><td class="evidence">nothing is known</td></tr>];
+            return words.map((word, i) => {
+              const look = word.status as keyof typeof STAGE_SHAPES;
+              return <tr key={`${cell.stage} ${i}`} class={look === 'failed' ? 'status-alarm' : ''}><td>{STAGE_SHAPES[look]} {cell.stage}{look === 'ok' ? '' : `, ${STAGE_WORDS[look]}`}</td><td>{word.at}</td><td class="evidence">{word.evidence}</td></tr>;
+            });
+          })}
+        </tbody>
+      </table>
+      <ReadBack row={row} />
+      {row.arguments && <p class="encoded" tabIndex={0} aria-label="arguments as sent">{row.arguments}</p>}
+      <p class="encoded" tabIndex={0} aria-label="octets as sent">{raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}</p>
+    </div>
+  );
+}
+
+export function History() {
+  const run = runNow();
+  if (!run) return null;
+  const known = (at: string) => !(run.sclkSeenAt(at) > cutoff.value);
+  const rows = [...run.commands.values()].sort((a, b) => b.command - a.command)
+    .map((row) => ({ row, cells: stageCells(row, known) }))
+    .filter(({ cells }) => cells.some((cell) => cell.look !== 'none'));
+  return (
+    <ol class="history" data-testid="command-history">
+      {rows.slice(0, HISTORY_SHOWN).map(({ row, cells }) => (
+        <li key={row.command} data-command={row.name}>
+          <div>
+            <button type="button" class="link-button" aria-expanded={opened.value === row.command} onClick={() => void toggle(row.command)}>{row.name} #{row.command}</button>
+            {' '}<small>{newestEvidence(cells)}</small>
+          </div>
+          <ol class="stages">
+            {cells.map((cell) => (
+              <li key={cell.stage} class={`stage stage-${cell.look}`} data-stage={cell.stage} data-look={cell.look}
+                title={`${cell.stage}: ${STAGE_WORDS[cell.look]}. ${cell.evidence} ${cell.at}`}>
+                <i>{STAGE_SHAPES[cell.look]}</i><span>{cell.stage}</span>
+              </li>
+            ))}
+          </ol>
+          {opened.value === row.command && <Details row={row} cells={cells} run={run} known={known} />}
+        </li>
+      ))}
+      {rows.length > HISTORY_SHOWN && <li class="none">{rows.length - HISTORY_SHOWN} older ones are in the archive</li>}
+      {rows.length === 0 && <li class="none">no command in this run yet</li>}
+    </ol>
+  );
+}

@@ -1,0 +1,158 @@
+// What would be sent, before it is: a form from the dictionary, the server's dry run of it, and the arming of a hazardous one, in place.
+import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
+import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
+import { inWords } from '../run/dictionary';
+import { runNow, store, timepoints } from '../run/session';
+import { duration, fromEntry } from '../run/time';
+import { confirmation, fields, formText, intentKey, openCommandLine, previewNow, problemNow, step, tryOut, typed, uplink } from './line';
+import { arrivalOf, conditionWords, isHazardous, rangeText } from './model';
+import type { UplinkText } from './model';
+
+const TYPED_MS = 150; // ours: after the last key
+const AGAIN_MS = 1000; // ours: as often as the vehicle reports its status
+
+interface Properties {
+  command: DictionaryCommand;
+  onKey: (event: KeyboardEvent) => void;
+}
+
+function Fields({ onKey }: Pick<Properties, 'onKey'>) {
+  const filled = fields.value.filter((field) => field.from === 'solution').length;
+  if (fields.value.length === 0) return null;
+  return (
+    <>
+      {filled > 0 && <p>{filled} of {fields.value.length} filled from ground’s navigation solution; type to change one.</p>}
+      <div class="fields">
+        {fields.value.map((field) => (
+          <label key={field.argument.name} class={field.problem !== undefined ? 'bad' : ''} title={field.argument.text}>
+            <span>{field.argument.name}</span>
+            <input value={field.text} placeholder={field.value === undefined ? 'needed' : String(field.value)}
+              aria-invalid={field.problem !== undefined} disabled={typed.value.given.has(field.argument.name) || step.value !== 'review'}
+              onKeyDown={onKey}
+              onInput={(event) => (formText.value = new Map([...formText.value, [field.argument.name, event.currentTarget.value]]))} />
+            <small>{field.argument.unit} {field.problem ?? rangeText(field.argument)}</small>
+          </label>
+        ))}
+      </div>
+    </>
+  );
+}
+
+function Uplink({ onKey }: Pick<Properties, 'onKey'>) {
+  const now = uplink.value;
+  const fixed = step.value !== 'review';
+  const set = (change: Partial<UplinkText>) => (uplink.value = { ...uplink.value, ...change });
+  return (
+    <div class="uplink" role="group" aria-label="how it leaves">
+      <label>leaves <input data-testid="release-at" placeholder="at once" title="ERT as 2012-219T05:00:00, or E-15:00 by the clock on top" spellcheck={false}
+        value={now.releaseAt} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ releaseAt: event.currentTarget.value })} /></label>
+      <label>priority <input class="narrow" data-testid="priority" inputMode="numeric" placeholder="0" title="of those that are due the largest leaves first"
+        value={now.priority} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ priority: event.currentTarget.value })} /></label>
+      <label>by <select data-testid="service" value={now.service} disabled={fixed} onKeyDown={onKey}
+        title="AD: repeated until the vehicle reports its frame. BD: sent once, taken by a vehicle that is not heard."
+        onChange={(event) => set({ service: event.currentTarget.value as UplinkText['service'] })}>
+        <option value="">what suits</option><option value="AD">AD</option><option value="BD">BD</option>
+      </select></label>
+      <label><input type="checkbox" data-testid="hold" checked={now.hold} disabled={fixed} onKeyDown={onKey} onChange={(event) => set({ hold: event.currentTarget.checked })} /> hold</label>
+    </div>
+  );
+}
+
+const CONDITION = { holds: ['holds', '✓'], fails: ['missing', '✖'], unknown: ['unknown', '?'] } as const;
+
+function Told({ reply }: { reply: CommandReply }) {
+  const run = runNow();
+  if (!run) return null;
+  const arrival = reply.arrives ? arrivalOf(reply, run, timepoints.value) : undefined;
+  const octets = reply.octets.length / 2;
+  return (
+    <>
+      {reply.preconditions.length > 0 && (
+        <ul class="preconditions" aria-label="preconditions">
+          {reply.preconditions.map((condition) => {
+            const [look, shape] = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
+            const { words, value } = conditionWords(condition.text);
+            return <li key={words} class={look}>{shape} {words} <output>{value}{look === 'unknown' && '; flight decides'}</output></li>;
+          })}
+        </ul>
+      )}
+      {arrival && (
+        <dl class="told">
+          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{arrival.leaves_ert}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}</dd>
+          <dt>at Mars</dt><dd data-testid="arrives"><output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>{uplink.value.hold && ' or later'}</dd>
+          <dt>effect seen</dt><dd data-testid="effect-seen">from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it leaves</dd>
+          <dt>at the latest</dt>
+          <dd data-testid="send-by">
+            {arrival.before ? <>leave by <output>{arrival.before.leave_ert}</output> ERT to be there before {inWords(arrival.before.name)}: <output>{duration(arrival.before.slack_s)}</output> to spare</>
+              : 'nothing that is planned by the clock comes after it'}
+            {arrival.tooLateFor.length > 0 && <b class="caution"> ▲ Too late for {arrival.tooLateFor.slice(0, 3).map(inWords).join(', ')}{arrival.tooLateFor.length > 3 && ` and ${arrival.tooLateFor.length - 3} more`}.</b>}
+          </dd>
+          {reply.arguments && <><dt>as encoded</dt><dd class="encoded" tabIndex={0} aria-label="arguments as encoded">{reply.arguments}</dd></>}
+          <dt>{octets} octets</dt><dd class="encoded" tabIndex={0} aria-label="octets">{reply.octets.replace(/../g, '$& ')}</dd>
+        </dl>
+      )}
+    </>
+  );
+}
+
+/** Asks again while it is looked at, for conditions change. */
+function DryRun({ command }: { command: DictionaryCommand }) {
+  const key = intentKey.value;
+  useEffect(() => {
+    const soon = setTimeout(() => void tryOut(), TYPED_MS);
+    const again = setInterval(() => void tryOut(), AGAIN_MS);
+    return () => {
+      clearTimeout(soon);
+      clearInterval(again);
+    };
+  }, [key, store.value?.id]);
+  const reply = previewNow.value;
+  const problem = problemNow.value;
+  return (
+    <div class="dry-run" data-testid="dry-run" aria-live="polite">
+      {problem !== undefined ? <p class="verdict unknown">○ {problem}</p>
+        : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
+          : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
+            : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
+      {step.value === 'review' && (
+        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
+      )}
+      {reply && <Told reply={reply} />}
+    </div>
+  );
+}
+
+export function Review({ command, onKey }: Properties) {
+  return (
+    <div class="review" data-testid="command-review">
+      <p><b>{command.name}</b> {command.text}</p>
+      {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+      <DryRun command={command} />
+      <Fields onKey={onKey} />
+      <Uplink onKey={onKey} />
+    </div>
+  );
+}
+
+export function Armed({ command, onKey }: { command: DictionaryCommand; onKey: (event: KeyboardEvent) => void }) {
+  const input = useRef<HTMLInputElement>(null);
+  useLayoutEffect(() => {
+    input.current?.focus(); // before the next key can be typed
+    input.current?.scrollIntoView?.({ block: 'nearest' });
+  }, []);
+  return (
+    <div class="armed" data-testid="command-armed">
+      <b>▲ ARMED: {command.name}</b>
+      <label>
+        <span> Type <b>{command.name}</b> and press Enter to send. Esc disarms.</span>
+        <input ref={input} data-testid="command-confirmation" autocomplete="off" spellcheck={false} value={confirmation.value}
+          onInput={(event) => (confirmation.value = event.currentTarget.value)}
+          onKeyDown={(event) => {
+            const escaped = event.key === 'Escape';
+            onKey(event);
+            if (escaped) openCommandLine();
+          }} />
+      </label>
+    </div>
+  );
+}
