@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/archive/column_codec.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
@@ -81,6 +82,8 @@ struct Reader::State {
     const telemetry::OtherMission* other; ///< none: our own
     std::optional<telemetry::Decommutator> decommutator;
     telemetry::Decoded decoded;
+    ColumnCodec codec;
+    std::vector<double> segment_sclk_s, segment_values; ///< of the segment that is being read
     std::map<const char*, sqlite::Statement> statements;
 };
 
