@@ -224,8 +224,12 @@ CREATE TEMP TABLE pruned_runs (
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 constexpr char by_run[] = "run = ?1";
+// Before version 4 segments had numbers that did not tell their run.
+constexpr char by_segment[] =
+    "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF OR key IN (SELECT c.key FROM segments s JOIN segment_columns c"
+    " ON c.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535 WHERE s.run = ?1)";
 constexpr RunTable tables_of_runs[] = {
-    {"segment_columns", "key / 65536 IN (SELECT segment FROM segments WHERE run = ?1)", true},
+    {"segment_columns", by_segment, true},
     {"segments", by_run, true},
     {"pyramid_columns", by_run, true},
     {"pyramid", by_run, true},

@@ -57,7 +57,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
         {"timeline analyse /nope", "/nope"},
-        {"archive --help", "comes with a later issue"},
+        {"archive frob", "there is no command 'archive frob'"},
         {"tones", "subcommand"},
         {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
         {"rehearse", "--scenario"},

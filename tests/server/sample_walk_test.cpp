@@ -114,7 +114,7 @@ TEST_CASE("a segment or block that is damaged is named, not plotted", "[archive]
     };
     CHECK(refusal({}) == "answered");
     SECTION("a value's octet") {
-        spoil("UPDATE segment_columns SET value = substr(value, 1, 40) || x'00FF' || substr(value, 43) WHERE key = 8388609 * 65536");
+        spoil("UPDATE segment_columns SET value = CAST(substr(value, 1, 40) || x'00FF' || substr(value, 43) AS BLOB) WHERE key = 8388609 * 65536");
         CHECK(refusal({}).find("a.db: segment 8388609, channel 0 is damaged: ") != std::string::npos);
     }
     SECTION("times that are cut off") {
