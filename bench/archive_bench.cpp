@@ -203,13 +203,16 @@ void store_long(const std::filesystem::path& file, const dictionary::Dictionary&
     const archive::PacketColumns columns(dictionary);
     pipeline::SegmentBuilder builder(columns);
     std::mt19937 random(1);
-    std::array<double, 2> values{};
+    std::vector<float> noisy(1U << 20U), smooth(noisy.size());
+    for (std::size_t i = 0; i < noisy.size(); ++i) {
+        const double t_s = static_cast<double>(i) / 64.0;
+        noisy[i] = static_cast<float>(3000.0 + 500.0 * std::sin(t_s * 0.01) + static_cast<double>(random() % 1024) * 1e-3);
+        smooth[i] = static_cast<float>(2.0 + std::cos(t_s * 0.1));
+    }
     archive::Batch batch;
     for (std::size_t i = 0; i < long_samples; ++i) {
-        const double t_s = static_cast<double>(i) / 64.0;
-        values[0] = static_cast<float>(3000.0 + 500.0 * std::sin(t_s * 0.01) + static_cast<double>(random() % 1024) * 1e-3);
-        values[1] = static_cast<float>(std::cos(t_s * 0.1));
-        builder.add(0, archive::Source::realtime, i + 1, Sclk{t_s}, values, batch);
+        const std::array<double, 2> values{noisy[i % noisy.size()], smooth[i % smooth.size()]};
+        builder.add(0, archive::Source::realtime, i + 1, Sclk{static_cast<double>(i) / 64.0}, values, batch);
         if (batch.segments.size() < 64) continue;
         must(opened->append(*run, batch).ok(), "append");
         batch.clear();

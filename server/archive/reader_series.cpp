@@ -34,7 +34,7 @@ Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::
     return channels;
 }
 
-void write(v1::ChannelSeries& series, const std::vector<Sample>& samples) {
+void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
     const auto count = static_cast<int>(samples.size());
     series.mutable_sclk()->Reserve(count);
     series.mutable_value()->Reserve(count);
@@ -73,7 +73,7 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     return series;
 }
 
-Result<std::vector<Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
+Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
     const auto coverage = cover(reader, run, channel, range);
     if (!coverage) return coverage.error();
     return exact_samples(reader, *coverage);

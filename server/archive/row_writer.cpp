@@ -4,22 +4,11 @@
 #include "server/archive/schema.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 namespace aeolis::archive {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers of blocks are stored as they stand in memory");
-
-std::vector<std::uint8_t> octets_of_spans(std::span<const double> first_s, std::span<const double> last_s) {
-    std::vector<std::uint8_t> octets(first_s.size_bytes() + last_s.size_bytes());
-    std::memcpy(octets.data(), first_s.data(), first_s.size_bytes());
-    std::memcpy(octets.data() + first_s.size_bytes(), last_s.data(), last_s.size_bytes());
-    return octets;
-}
 
 /// NaN has no place in SQL: it becomes NULL.
 void bind_number(sqlite::Statement& statement, int parameter, double value) {
@@ -60,8 +49,9 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
         {&RowWriter::segment_, "INSERT INTO segments (segment, run, packet, source, position, first_unit, last_unit,"
                                " samples, first_sclk, last_sclk, sclk, packed) VALUES (?,?,?,?,?,?,?,?,?,?,?,1)"},
-        {&RowWriter::block_, "INSERT INTO pyramid VALUES (?,?,?,?,?,?,?,?,?)"},
-        {&RowWriter::block_column_, "INSERT INTO pyramid_columns VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::block_number_, "SELECT max(key) / 65536 FROM pyramid_columns WHERE key BETWEEN ?1 * 65536 AND ?2 * 65536 + 65535"},
+        {&RowWriter::block_, "INSERT INTO pyramid VALUES (?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::block_column_, "INSERT INTO pyramid_columns VALUES (?,?)"},
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
@@ -86,12 +76,15 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
     if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
     if (!batch.segments.empty()) {
-        auto first = segment_number(run);
-        if (!first) return first.error();
-        std::int64_t next = *first;
-        if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r, next++); }); !done) return done;
+        auto next = next_number(run, segment_number_);
+        if (!next) return next.error();
+        if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r, (*next)++); }); !done) return done;
     }
-    if (auto done = each(batch.pyramid, [&](const auto& r) { return block(run, r); }); !done) return done;
+    if (!batch.pyramid.empty()) {
+        auto next = next_number(run, block_number_);
+        if (!next) return next.error();
+        if (auto done = each(batch.pyramid, [&](const auto& r) { return block(run, r, (*next)++); }); !done) return done;
+    }
     if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
     if (batch.totals) return totals(run, *batch.totals);
     return {};
@@ -260,19 +253,18 @@ Result<void> RowWriter::alarm(RunId run, const AlarmRecord& record) {
     return alarm_.run();
 }
 
-Result<std::int64_t> RowWriter::segment_number(RunId run) {
-    segment_number_.bind(1, segment_key(run, 0)).bind(2, segment_key(run, segments_max - 1));
-    auto found = segment_number_.step();
+Result<std::int64_t> RowWriter::next_number(RunId run, sqlite::Statement& largest) {
+    largest.bind(1, segment_key(run, 0)).bind(2, segment_key(run, segments_max - 1));
+    auto found = largest.step();
     if (!found) return found.error();
-    const std::int64_t next = segment_number_.is_null(0) ? segment_key(run, 0) : segment_number_.integer(0) + 1;
-    segment_number_.reset();
-    return next;
+    const std::int64_t next = largest.is_null(0) ? segment_key(run, 0) : largest.integer(0) + 1;
+    largest.reset();
+    if (next < segment_key(run, segments_max)) return next;
+    return Error{"run " + std::to_string(run.value) + " has " + std::to_string(segments_max) + " segments, no more can be numbered"};
 }
 
 Result<void> RowWriter::segment(RunId run, const SegmentRecord& record, std::int64_t number_of_segment) {
     AEOLIS_CHECK(!record.sclk_s.empty() && record.values.size() == record.channels.size() * record.sclk_s.size());
-    if (number_of_segment >= segment_key(run, segments_max))
-        return Error{"run " + std::to_string(run.value) + " has " + std::to_string(segments_max) + " segments, no more can be numbered"};
     const auto [first, last] = std::ranges::minmax(record.sclk_s);
     segment_.bind(1, number_of_segment)
         .bind(2, std::int64_t{run.value})
@@ -291,26 +283,24 @@ Result<void> RowWriter::segment(RunId run, const SegmentRecord& record, std::int
     return {};
 }
 
-Result<void> RowWriter::block(RunId run, const PyramidRecord& record) {
-    const auto spans = octets_of_spans(record.first_sclk_s, record.last_sclk_s);
+Result<void> RowWriter::block(RunId run, const PyramidRecord& record, std::int64_t number_of_block) {
     const std::size_t nodes = record.first_sclk_s.size();
-    const auto bind_place = [&](sqlite::Statement& statement) {
-        statement.bind(1, std::int64_t{run.value})
-            .bind(2, std::int64_t{record.packet})
-            .bind(3, static_cast<std::int64_t>(record.source))
-            .bind(4, std::int64_t{record.level});
-    };
-    bind_place(block_);
-    block_.bind(5, number(record.position))
-        .bind(6, number(nodes))
-        .bind(7, std::ranges::min(record.first_sclk_s))
-        .bind(8, std::ranges::max(record.last_sclk_s))
-        .bind_octets(9, spans);
+    auto spans = record.first_sclk_s;
+    spans.insert(spans.end(), record.last_sclk_s.begin(), record.last_sclk_s.end());
+    block_.bind(1, std::int64_t{run.value})
+        .bind(2, std::int64_t{record.packet})
+        .bind(3, static_cast<std::int64_t>(record.source))
+        .bind(4, std::int64_t{record.level})
+        .bind(5, number(record.position))
+        .bind(6, number_of_block)
+        .bind(7, number(nodes))
+        .bind(8, std::ranges::min(record.first_sclk_s))
+        .bind(9, std::ranges::max(record.last_sclk_s))
+        .bind_octets(10, codec_.pack(spans));
     if (auto done = block_.run(); !done) return done;
     for (std::size_t c = 0; c < record.channels.size(); ++c) {
         const auto octets = pyramid::octets_of_nodes(std::span(record.nodes).subspan(c * nodes, nodes));
-        bind_place(block_column_);
-        block_column_.bind(5, std::int64_t{record.channels[c].value}).bind(6, number(record.position)).bind_octets(7, octets);
+        block_column_.bind(1, column_key(number_of_block, record.channels[c])).bind_octets(2, octets);
         if (auto done = block_column_.run(); !done) return done;
     }
     return {};

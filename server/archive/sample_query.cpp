@@ -14,8 +14,9 @@ constexpr char columns_sql[] =
     "SELECT s.segment, s.position, s.samples, s.packed, s.sclk, v.value FROM segments s LEFT JOIN segment_columns v"
     " ON v.key = s.segment * 65536 + ?6 WHERE s.run = ?1 AND s.packet = ?2 AND s.source = ?3"
     " AND s.position BETWEEN ?4 AND ?5 ORDER BY s.position";
-constexpr char nodes_sql[] = "SELECT position, nodes FROM pyramid_columns WHERE run = ?1 AND packet = ?2 AND source = ?3"
-                             " AND level = ?4 AND channel = ?5 AND position BETWEEN ?6 AND ?7";
+constexpr char nodes_sql[] = "SELECT p.position, c.nodes FROM pyramid p JOIN pyramid_columns c ON c.key = p.block * 65536 + ?5"
+                             " WHERE run = ?1 AND packet = ?2 AND source = ?3 AND level = ?4 AND position BETWEEN ?6 AND ?7"
+                             " ORDER BY position";
 // Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
 // SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
 constexpr char tail_by_time_sql[] =
@@ -143,15 +144,14 @@ bool earlier(const Sample& a, const Sample& b) {
 }
 
 /// Each source comes nearly in order; together they interleave.
-std::vector<Sample> merged(std::vector<Sample> realtime, std::vector<Sample> recorded) {
-    for (auto* samples : {&realtime, &recorded})
-        if (!std::is_sorted(samples->begin(), samples->end(), earlier))
-            std::sort(samples->begin(), samples->end(), earlier);
-    if (realtime.empty()) return recorded;
-    if (recorded.empty()) return realtime;
-    std::vector<Sample> all(realtime.size() + recorded.size());
-    std::merge(realtime.begin(), realtime.end(), recorded.begin(), recorded.end(), all.begin(), earlier);
-    return all;
+std::span<const Sample> merged(Reader::State& reader) {
+    for (auto* samples : {&reader.realtime, &reader.recorded})
+        if (!std::is_sorted(samples->begin(), samples->end(), earlier)) std::sort(samples->begin(), samples->end(), earlier);
+    if (reader.realtime.empty()) return reader.recorded;
+    if (reader.recorded.empty()) return reader.realtime;
+    reader.both.resize(reader.realtime.size() + reader.recorded.size());
+    std::merge(reader.realtime.begin(), reader.realtime.end(), reader.recorded.begin(), reader.recorded.end(), reader.both.begin(), earlier);
+    return reader.both;
 }
 
 /// Equal intervals of a range, each with its least and its largest sample.
@@ -224,12 +224,12 @@ Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId chan
     return coverage;
 }
 
-Result<std::vector<Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
-    std::vector<Sample> realtime, recorded;
+Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
+    reader.realtime.clear();
+    reader.recorded.clear();
     const auto take = [&](const Sample& sample) {
-        (sample.source == Source::realtime ? realtime : recorded).push_back(sample);
+        (sample.source == Source::realtime ? reader.realtime : reader.recorded).push_back(sample);
     };
-    realtime.reserve(coverage.samples_at_most);
     for (const auto& [series, parts] : coverage.parts) {
         for (std::size_t i = 0; i < parts.size();) {
             // Neighbours of any level in one go, so that no segment is unpacked twice.
@@ -242,14 +242,16 @@ Result<std::vector<Sample>> exact_samples(Reader::State& reader, const Coverage&
     }
     for (const Sample& sample : coverage.tail)
         take(sample);
-    return merged(std::move(realtime), std::move(recorded));
+    return merged(reader);
 }
 
 Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points) {
     const std::size_t count = std::max<std::size_t>(1, points / 2);
     const unsigned wanted = level_for(coverage.samples_at_most, count);
     Thinned thinned;
-    std::vector<Sample> found = coverage.tail;
+    std::vector<Sample> found;
+    found.reserve(coverage.tail.size() + 2 * coverage.samples_at_most / pyramid::samples_of_node(wanted) + segment_samples);
+    found.assign(coverage.tail.begin(), coverage.tail.end());
     thinned.samples = found.size();
     for (const auto& [series, parts] : coverage.parts) {
         for (const Stretch& each : parts) {

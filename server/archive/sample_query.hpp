@@ -3,15 +3,10 @@
 #include "server/archive/reader_state.hpp"
 #include "server/archive/sample_walk.hpp"
 
+#include <span>
 #include <vector>
 
 namespace aeolis::archive {
-
-struct Sample {
-    double sclk_s = 0.0;
-    double value = 0.0;
-    Source source{};
-};
 
 /// What a question about one channel and range of time has to read.
 struct Coverage {
@@ -29,8 +24,9 @@ struct Coverage {
 /// everything durable without the writer's help. Call within a read transaction, and use it within the same.
 Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range);
 
-/// The samples of one channel in a range, defined ones only, in order of SCLK, live and recorded as one series.
-Result<std::vector<Sample>> exact_samples(Reader::State& reader, const Coverage& coverage);
+/// The samples of one channel in a range, defined ones only, in order of SCLK, live and recorded as one series. Valid
+/// until the next question: they stand in the reader's memory, which is not asked of the kernel anew for each.
+Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage);
 
 struct Thinned {
     std::vector<Sample> points;

@@ -1,7 +1,6 @@
 #include "server/archive/sample_walk.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace aeolis::archive {
 
@@ -19,12 +18,6 @@ constexpr char segments_sql[] = "SELECT position, samples FROM segments WHERE ru
 std::uint64_t count(const sqlite::Statement& row, int column) {
     return static_cast<std::uint64_t>(row.integer(column));
 }
-double time_at(std::span<const std::uint8_t> octets, std::uint64_t index) {
-    double time_s;
-    std::memcpy(&time_s, octets.data() + index * sizeof time_s, sizeof time_s);
-    return time_s;
-}
-
 class Walk {
   public:
     Walk(Reader::State& reader, const SealedSeries& series, const ClosedRange& range)
@@ -90,19 +83,19 @@ class Walk {
             if (!found) return found.error();
             if (!*found) return {};
             const auto& row = **rows;
-            const std::uint64_t base = count(row, 0) * pyramid::block_nodes, nodes = count(row, 1);
+            const std::uint64_t base = count(row, 0) * pyramid::block_nodes, nodes = std::min(count(row, 1), pyramid::block_nodes);
             const std::uint64_t from = std::max(first, base), to = std::min(last, base + nodes);
             if (row.real(2) > range_.to_s || row.real(3) < range_.from_s) continue;
             if (range_.holds(row.real(2)) && range_.holds(row.real(3))) {
                 take(level, from, to);
                 continue;
             }
-            const auto spans = row.octets(4);
-            if (spans.size() != 2 * nodes * sizeof(double))
-                return Error{reader_.database.file() + ": block " + std::to_string(row.integer(0)) + " of level " +
-                             std::to_string(level) + " of the pyramid is damaged: rebuild the archive"};
+            spans_s_.resize(static_cast<std::size_t>(2 * nodes));
+            if (auto done = reader_.codec.unpack(row.octets(4), spans_s_); !done)
+                return Error{reader_.database.file() + ": block " + std::to_string(row.integer(0)) + " of level " + std::to_string(level) +
+                             " of the pyramid is damaged: " + done.error().message + " (aeolis archive verify names all that is)"};
             for (std::uint64_t node = from; node < to; ++node) {
-                const double from_s = time_at(spans, node - base), to_s = time_at(spans, nodes + node - base);
+                const double from_s = spans_s_[node - base], to_s = spans_s_[nodes + node - base];
                 if (from_s > range_.to_s || to_s < range_.from_s) continue;
                 if (range_.holds(from_s) && range_.holds(to_s))
                     take(level, node, node + 1);
@@ -116,6 +109,7 @@ class Walk {
     const SealedSeries& series_;
     const ClosedRange& range_;
     std::vector<Stretch> stretches_;
+    std::vector<double> spans_s_;
 };
 
 } // namespace

@@ -190,12 +190,10 @@ DROP INDEX segments_by_packet;
 CREATE INDEX segments_by_position ON segments (run, packet, source, position);
 CREATE TABLE pyramid (
     run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL, level INTEGER NOT NULL,
-    position INTEGER NOT NULL, nodes INTEGER NOT NULL, first_sclk REAL NOT NULL, last_sclk REAL NOT NULL,
-    spans BLOB NOT NULL, PRIMARY KEY (run, packet, source, level, position)) STRICT, WITHOUT ROWID;
-CREATE TABLE pyramid_columns (
-    run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL, level INTEGER NOT NULL,
-    channel INTEGER NOT NULL, position INTEGER NOT NULL, nodes BLOB NOT NULL,
-    PRIMARY KEY (run, packet, source, level, channel, position)) STRICT, WITHOUT ROWID;
+    position INTEGER NOT NULL, block INTEGER NOT NULL, nodes INTEGER NOT NULL, first_sclk REAL NOT NULL,
+    last_sclk REAL NOT NULL, spans BLOB NOT NULL,
+    PRIMARY KEY (run, packet, source, level, position)) STRICT, WITHOUT ROWID;
+CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRICT;
 CREATE TABLE pruned_runs (
     run INTEGER PRIMARY KEY, scenario TEXT NOT NULL, seed INTEGER NOT NULL, case_number INTEGER NOT NULL,
     outcome TEXT NOT NULL, started TEXT NOT NULL, pruned TEXT NOT NULL) STRICT;
@@ -213,10 +211,9 @@ CREATE TEMP VIEW segments AS
     SELECT *, row_number() OVER (PARTITION BY run, packet, source ORDER BY segment) - 1 AS position, 0 AS packed
     FROM main.segments;
 CREATE TEMP TABLE pyramid (
-    run INTEGER, packet INTEGER, source INTEGER, level INTEGER, position INTEGER, nodes INTEGER, first_sclk REAL,
-    last_sclk REAL, spans BLOB);
-CREATE TEMP TABLE pyramid_columns (
-    run INTEGER, packet INTEGER, source INTEGER, level INTEGER, channel INTEGER, position INTEGER, nodes BLOB);
+    run INTEGER, packet INTEGER, source INTEGER, level INTEGER, position INTEGER, block INTEGER, nodes INTEGER,
+    first_sclk REAL, last_sclk REAL, spans BLOB);
+CREATE TEMP TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB);
 CREATE TEMP TABLE pruned_runs (
     run INTEGER, scenario TEXT, seed INTEGER, case_number INTEGER, outcome TEXT, started TEXT, pruned TEXT);
 )sql"},
@@ -228,10 +225,11 @@ constexpr char by_run[] = "run = ?1";
 constexpr char by_segment[] =
     "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF OR key IN (SELECT c.key FROM segments s JOIN segment_columns c"
     " ON c.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535 WHERE s.run = ?1)";
+constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF";
 constexpr RunTable tables_of_runs[] = {
     {"segment_columns", by_segment, true},
     {"segments", by_run, true},
-    {"pyramid_columns", by_run, true},
+    {"pyramid_columns", by_block, true},
     {"pyramid", by_run, true},
     {"events", by_key, true},
     {"timepoint_firings", by_key, true},

@@ -24,13 +24,14 @@ constexpr Sequence sequence_of(std::int64_t key) {
     return static_cast<Sequence>(key) & sequence_max;
 }
 
-/// Number of a segment: run and number within it, so that what is made again has the number that it had.
+/// Number of a segment, or of a block of the pyramid: run and number within it, so that what is made again has the
+/// number that it had.
 inline constexpr std::int64_t segments_max = std::int64_t{1} << 23;
 constexpr std::int64_t segment_key(RunId run, std::int64_t number) {
     return std::int64_t{run.value} * segments_max + number;
 }
 
-/// Key of a segment's column.
+/// Key of a column of a segment or block.
 constexpr std::int64_t column_key(std::int64_t segment, ChannelId channel) {
     return segment * 65'536 + channel.value;
 }

@@ -200,12 +200,12 @@ class Comparison {
     }
     std::string named(std::string_view table, const sqlite::Statement& row) const {
         if (table == "segments") return "segment " + std::to_string(row.integer(0));
-        if (table == "segment_columns") {
+        if (table == "segment_columns" || table == "pyramid_columns") {
             const auto channel = static_cast<std::size_t>(row.integer(0) % 65536);
-            return "segment " + std::to_string(row.integer(0) / 65536) + ", channel " +
+            return (table == "segment_columns" ? "segment " : "block ") + std::to_string(row.integer(0) / 65536) + ", channel " +
                    (channel < dictionary_.channels.size() ? dictionary_.channels[channel].name : std::to_string(channel));
         }
-        if (table == "pyramid" || table == "pyramid_columns") return "block " + std::string(row.text(0));
+        if (table == "pyramid") return "block " + std::to_string(row.integer(0));
         if (table == "recordings") return "the row";
         return "item " + std::to_string(archive::sequence_of(row.integer(0)));
     }
@@ -234,15 +234,19 @@ Result<void> compare(sqlite::Database& database, const RunToDerive& run, const d
         if (!table.derived || (of_segments && *plain > 0)) continue;
         const std::string key = name == "segments"          ? "segment"
                                 : name == "recordings"      ? "run"
-                                : name == "pyramid"         ? "position || ' of level ' || level || ' of packet ' || packet"
-                                : name == "pyramid_columns" ? "position || ' of level ' || level || ' of channel ' || channel"
+                                : name == "pyramid"         ? "block"
                                                             : "key";
-        const std::string packed = name == "segments" ? "sclk" : name == "segment_columns" ? "value" : "";
+        const std::string packed = name == "segments" ? "sclk" : name == "segment_columns" ? "value" : name == "pyramid" ? "spans" : "";
         if (auto done = comparison.rows(table, key, packed); !done) return done;
     }
     if (*plain > 0) return {};
     if (auto done = comparison.packed("segments", "SELECT a.segment, b.samples, a.sclk, b.sclk FROM archive.segments a JOIN main.segments b"
                                                   " USING (segment) WHERE a.run = ?1 AND a.sclk <> b.sclk");
+        !done)
+        return done;
+    if (auto done = comparison.packed("pyramid", "SELECT b.block, 2 * b.nodes, a.spans, b.spans"
+                                                 " FROM archive.pyramid a JOIN main.pyramid b USING (run, packet, source, level, position)"
+                                                 " WHERE run = ?1 AND a.spans <> b.spans");
         !done)
         return done;
     return comparison.packed("segment_columns",

@@ -133,8 +133,8 @@ TEST_CASE("verify names what is wrong, and finds nothing in a good archive", "[a
                   .find("run 1: segment_columns: segment 8388608, channel altitude_m its samples are not those of its units") == 0);
     }
     SECTION("a node of the pyramid") {
-        CHECK(only("UPDATE pyramid_columns SET nodes = zeroblob(length(nodes)) WHERE run = 1 AND level = 1 AND channel = 1 AND source = 1")
-                  .find("run 1: pyramid_columns: block 0 of level 1 of channel 1 is not what its unit says") == 0);
+        CHECK(only("UPDATE pyramid_columns SET nodes = zeroblob(length(nodes)) WHERE key = 8388608 * 65536 + 1")
+                  .find("run 1: pyramid_columns: block 8388608, channel speed_mps is not what its unit says") == 0);
     }
     SECTION("a raw unit") {
         recorded.spoil("UPDATE units SET octets = CAST(substr(octets, 1, 20) || x'FF' || substr(octets, 22) AS BLOB) WHERE key = (1 << 40) + 40");

@@ -130,7 +130,7 @@ TEST_CASE("a segment or block that is damaged is named, not plotted", "[archive]
         CHECK(refusal({}).find("its number of samples is damaged") != std::string::npos);
     }
     SECTION("a block of the pyramid") {
-        spoil("UPDATE pyramid_columns SET nodes = substr(nodes, 1, 720) WHERE channel = 0 AND level = 1 AND position = 0");
+        spoil("UPDATE pyramid_columns SET nodes = substr(nodes, 1, 720) WHERE key = 8388608 * 65536");
         CHECK(refusal(100).find("the pyramid is damaged: level 1 of channel 0 ends at node") != std::string::npos);
         spoil("UPDATE pyramid SET spans = x'00'");
         CHECK(refusal(100).find("of the pyramid is damaged") != std::string::npos);
