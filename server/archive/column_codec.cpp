@@ -159,14 +159,13 @@ Result<void> ColumnCodec::unpack(std::span<const std::uint8_t> packed, std::span
                                                      state_->planes.size(), frame.data(), frame.size());
         if (ZSTD_isError(size) != 0) return Error{std::string("zstd: ") + ZSTD_getErrorName(size)};
         if (size != state_->planes.size()) return Error{"it holds another number of samples"};
-        for (std::size_t plane = 0; plane < planes; ++plane) {
-            const std::uint8_t* const octets = state_->planes.data() + plane * count;
-            std::uint64_t* const into = words.data() + order;
-            for (std::size_t i = 0; i < count; ++i)
-                into[i] |= std::uint64_t{octets[i]} << (8U * plane);
+        const std::uint8_t* const octets = state_->planes.data();
+        for (std::size_t i = 0; i < count; ++i) {
+            std::uint64_t word = 0;
+            for (std::size_t plane = 0; plane < planes; ++plane)
+                word |= std::uint64_t{octets[plane * count + i]} << (8U * plane);
+            words[order + i] = unzigzag(word) << shift;
         }
-        for (std::size_t i = order; i < words.size(); ++i)
-            words[i] = unzigzag(words[i]) << shift;
     }
     for (std::size_t summed = order; summed > 0; --summed)
         for (std::size_t i = summed; i < words.size(); ++i)

@@ -36,13 +36,16 @@ Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::
 
 void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
     const auto count = static_cast<int>(samples.size());
-    series.mutable_sclk()->Reserve(count);
-    series.mutable_value()->Reserve(count);
-    series.mutable_source()->Reserve(count);
-    for (const auto& sample : samples) {
-        series.add_sclk(sample.sclk_s);
-        series.add_value(sample.value);
-        series.add_source(static_cast<v1::Source>(sample.source));
+    series.mutable_sclk()->Resize(count, 0.0);
+    series.mutable_value()->Resize(count, 0.0);
+    series.mutable_source()->Resize(count, 0);
+    double* sclk_s = series.mutable_sclk()->mutable_data();
+    double* value = series.mutable_value()->mutable_data();
+    int* source = series.mutable_source()->mutable_data();
+    for (const Sample& sample : samples) {
+        *sclk_s++ = sample.sclk_s;
+        *value++ = sample.value;
+        *source++ = static_cast<int>(sample.source);
     }
 }
 

@@ -45,10 +45,9 @@ Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, in
     return {};
 }
 
-/// Samples first … last - 1 of a series, those that are defined and in the range.
-template <typename Take>
+/// Samples first … last - 1 of a series, those that are defined and in the range, to the end of `into`.
 Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage, std::uint64_t first,
-                          std::uint64_t last, Take take) {
+                          std::uint64_t last, std::vector<Sample>& into) {
     auto rows = reader.query(columns_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -72,9 +71,12 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         const std::uint64_t base = static_cast<std::uint64_t>(row.integer(1)) * segment_samples;
         const auto from = static_cast<std::size_t>(std::max(first, base) - base);
         const std::size_t to = std::min<std::size_t>(reader.segment_values.size(), last - base);
+        std::size_t end = into.size();
+        into.resize(end + (to > from ? to - from : 0));
         for (std::size_t i = from; i < to; ++i)
             if (const double sclk_s = reader.segment_sclk_s[i]; !std::isnan(reader.segment_values[i]) && coverage.range.holds(sclk_s))
-                take(Sample{sclk_s, reader.segment_values[i], series.source});
+                into[end++] = {sclk_s, reader.segment_values[i], series.source};
+        into.resize(end);
     }
 }
 
@@ -227,9 +229,7 @@ Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId chan
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
     reader.realtime.clear();
     reader.recorded.clear();
-    const auto take = [&](const Sample& sample) {
-        (sample.source == Source::realtime ? reader.realtime : reader.recorded).push_back(sample);
-    };
+    const auto of = [&](Source source) -> std::vector<Sample>& { return source == Source::realtime ? reader.realtime : reader.recorded; };
     for (const auto& [series, parts] : coverage.parts) {
         for (std::size_t i = 0; i < parts.size();) {
             // Neighbours of any level in one go, so that no segment is unpacked twice.
@@ -237,11 +237,11 @@ Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Cover
             std::uint64_t last = first;
             for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
                 last = parts[i].last * pyramid::samples_of_node(parts[i].level);
-            if (auto done = read_samples(reader, series, coverage, first, last, take); !done) return done.error();
+            if (auto done = read_samples(reader, series, coverage, first, last, of(series.source)); !done) return done.error();
         }
     }
     for (const Sample& sample : coverage.tail)
-        take(sample);
+        of(sample.source).push_back(sample);
     return merged(reader);
 }
 
@@ -258,17 +258,18 @@ Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage,
             const unsigned level = std::min(wanted, each.level);
             const std::uint64_t share = pyramid::samples_of_node(each.level) / pyramid::samples_of_node(level);
             const std::uint64_t first = each.first * share, last = std::min(each.last * share, series.nodes[level]);
-            auto done = level == 0 ? read_samples(reader, series, coverage, first, last,
-                                                  [&](const Sample& sample) {
-                                                      found.push_back(sample);
-                                                      ++thinned.samples;
-                                                  })
-                                   : read_nodes(reader, series, coverage.channel, level, first, last, [&](const Extremes& node) {
-                                         if (node.defined == 0) return;
-                                         found.push_back({node.least_sclk_s, node.least, series.source});
-                                         found.push_back({node.largest_sclk_s, node.largest, series.source});
-                                         thinned.samples += node.defined;
-                                     });
+            if (level == 0) {
+                const std::size_t before = found.size();
+                if (auto done = read_samples(reader, series, coverage, first, last, found); !done) return done.error();
+                thinned.samples += found.size() - before;
+                continue;
+            }
+            auto done = read_nodes(reader, series, coverage.channel, level, first, last, [&](const Extremes& node) {
+                if (node.defined == 0) return;
+                found.push_back({node.least_sclk_s, node.least, series.source});
+                found.push_back({node.largest_sclk_s, node.largest, series.source});
+                thinned.samples += node.defined;
+            });
             if (!done) return done.error();
         }
     }
