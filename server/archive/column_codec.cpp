@@ -17,7 +17,7 @@ using Words = std::vector<std::uint64_t>;
 constexpr std::size_t order_max = 2; ///< 0: the patterns, 1: their differences, 2: the differences of those
 constexpr std::size_t head_octets = 3;
 constexpr std::size_t crc_octets = 2;
-constexpr int compression_level = 1; ///< ours, by measurement: level 3 saves 2 % of a landing for half as much time again
+constexpr int compression_level = 1; ///< ours, by measurement: level 3 saves 0.6 % of a landing for 1.6 times the time
 
 static_assert(std::endian::native == std::endian::little, "words are stored as they stand in memory");
 

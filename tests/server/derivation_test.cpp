@@ -81,7 +81,7 @@ struct Recorded {
 
 } // namespace
 
-TEST_CASE("everything derived is made again from the raw units, identical", "[archive][rebuild]") {
+TEST_CASE("everything derived is made again from the raw units, identical", "[archive][rebuild][R43]") {
     const Recorded recorded;
     const auto before = recorded.derived_rows();
     REQUIRE(before.size() > 100'000);
