@@ -155,7 +155,8 @@ Result<void> Archive::State::add_dictionary(const dictionary::Dictionary& dictio
 }
 
 Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::Dictionary& dictionary) {
-    auto next = database.integer_of("SELECT coalesce(max(run), 0) + 1 FROM runs");
+    auto next = database.integer_of("SELECT max(coalesce((SELECT max(run) FROM runs), 0),"
+                                    " coalesce((SELECT max(run) FROM pruned_runs), 0)) + 1");
     if (!next) return next.error();
     const RunId run{static_cast<std::uint32_t>(*next)};
     auto row = database.prepare(

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -114,6 +115,10 @@ class Reader {
 
     /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
+    /// All samples of the channels in a range, in order of SCLK, some thousands at a time; takes the same memory for a
+    /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
+    using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
+    Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range, const TakeSamples& take);
     /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 

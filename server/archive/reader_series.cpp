@@ -1,5 +1,6 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_query.hpp"
+#include "server/archive/schema.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,10 @@ namespace aeolis::archive {
 
 namespace {
 
+constexpr std::size_t window_samples = 100'000; ///< ours: that each_sample has in hand; at most four times as many
+
+constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
+constexpr char unit_span_sql[] = "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
 constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 // Of another mission's packets, whose container may come with any APID.
@@ -29,15 +34,18 @@ Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::
     return channels;
 }
 
-void write(v1::ChannelSeries& series, const std::vector<Sample>& samples) {
+void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
     const auto count = static_cast<int>(samples.size());
-    series.mutable_sclk()->Reserve(count);
-    series.mutable_value()->Reserve(count);
-    series.mutable_source()->Reserve(count);
-    for (const auto& sample : samples) {
-        series.add_sclk(sample.sclk_s);
-        series.add_value(sample.value);
-        series.add_source(static_cast<v1::Source>(sample.source));
+    series.mutable_sclk()->Resize(count, 0.0);
+    series.mutable_value()->Resize(count, 0.0);
+    series.mutable_source()->Resize(count, 0);
+    double* sclk_s = series.mutable_sclk()->mutable_data();
+    double* value = series.mutable_value()->mutable_data();
+    int* source = series.mutable_source()->mutable_data();
+    for (const Sample& sample : samples) {
+        *sclk_s++ = sample.sclk_s;
+        *value++ = sample.value;
+        *source++ = static_cast<int>(sample.source);
     }
 }
 
@@ -47,24 +55,59 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     series.set_id(channel.id.value);
     series.set_name(channel.name);
     series.set_unit(channel.type.unit);
-    const auto count = samples_at_most(reader, run, channel.id, range);
-    if (!count) return count.error();
-    if (points && *count > *points) {
-        const auto thinned = thinned_samples(reader, run, channel.id, range, *points);
+    const auto coverage = cover(reader, run, channel.id, range);
+    if (!coverage) return coverage.error();
+    const std::size_t count = coverage->samples_at_most;
+    if (points && count > *points) {
+        const auto thinned = thinned_samples(reader, *coverage, *points);
         if (!thinned) return thinned.error();
         series.set_samples(thinned->samples);
         series.set_thinned(thinned->points.size() < thinned->samples);
         write(series, thinned->points);
         return series;
     }
-    if (*count > exact_samples_max)
-        return Error{"the range holds some " + std::to_string(*count) + " samples of '" + channel.name + "'; at most " +
+    if (count > exact_samples_max)
+        return Error{"the range holds some " + std::to_string(count) + " samples of '" + channel.name + "'; at most " +
                      std::to_string(exact_samples_max) + " are given exactly: ask for points, or less"};
-    const auto samples = exact_samples(reader, run, channel.id, range);
+    const auto samples = exact_samples(reader, *coverage);
     if (!samples) return samples.error();
     series.set_samples(samples->size());
     write(series, *samples);
     return series;
+}
+
+Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
+    const auto coverage = cover(reader, run, channel, range);
+    if (!coverage) return coverage.error();
+    return exact_samples(reader, *coverage);
+}
+
+/// From the first to the last sample of a run, and how many packets had samples. Upside down: none had.
+struct SampleSpan {
+    ClosedRange range{1.0, 0.0};
+    std::uint64_t samples = 0;
+};
+Result<SampleSpan> sample_span(Reader::State& reader, const RunInfo& run) {
+    SampleSpan span;
+    const auto add = [&](const sqlite::Statement& row) {
+        if (row.is_null(0)) return;
+        const bool first = span.samples == 0;
+        span.range.from_s = first ? row.real(0) : std::min(span.range.from_s, row.real(0));
+        span.range.to_s = first ? row.real(1) : std::max(span.range.to_s, row.real(1));
+        span.samples += static_cast<std::uint64_t>(row.integer(2));
+    };
+    auto sealed = reader.query(sealed_span_sql);
+    if (!sealed) return sealed.error();
+    (*sealed)->bind(1, std::int64_t{run.run.value});
+    if (auto found = (*sealed)->step(); !found) return found.error();
+    add(**sealed);
+    if (run.finished) return span;
+    auto units = reader.query(unit_span_sql);
+    if (!units) return units.error();
+    (*units)->bind(1, item_key(run.run, 0)).bind(2, item_key(run.run, sequence_max));
+    if (auto found = (*units)->step(); !found) return found.error();
+    add(**units);
+    return span;
 }
 
 /// What the newest unit of a packet and source says, where it is newer than what is known.
@@ -114,6 +157,57 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
         *list.add_channels() = std::move(series).value();
     }
     return list;
+}
+
+Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {
+    const auto range = closed(asked);
+    if (!range) return range.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    std::vector<const dictionary::Channel*> wanted;
+    if (channels.empty()) {
+        for (const auto& channel : state_->dictionary.channels)
+            if (!state_->columns.places(channel.id).empty()) wanted.push_back(&channel);
+    } else {
+        auto found = find_channels(state_->dictionary, channels);
+        if (!found) return found.error();
+        wanted = std::move(found).value();
+    }
+    const auto span = sample_span(*state_, *info);
+    if (!span) return span.error();
+    double from_s = std::max(range->from_s, span->range.from_s);
+    const double to_s = std::min(range->to_s, span->range.to_s);
+    // Windows of time that hold about window_samples: a first guess, then by what was found.
+    double width_s = (span->range.to_s - span->range.from_s) * window_samples /
+                     static_cast<double>(std::max<std::uint64_t>(1, span->samples * wanted.size()));
+    std::vector<ChannelValue> samples;
+    while (from_s <= to_s) {
+        const double next_s = std::max(from_s + width_s, std::nextafter(from_s, to_s + 1.0));
+        const ClosedRange window{from_s, std::min(to_s, std::nextafter(next_s, from_s))};
+        samples.clear();
+        bool whole = true;
+        for (const auto* channel : wanted) {
+            auto found = samples_of(*state_, *info, channel->id, window);
+            if (!found) return found.error();
+            for (const Sample& sample : *found)
+                samples.push_back({channel->id, sample.value, Sclk{sample.sclk_s}, sample.source});
+            whole = samples.size() <= 4 * window_samples || window.from_s == window.to_s;
+            if (!whole) break;
+        }
+        if (!whole) {
+            width_s /= 2.0;
+            continue;
+        }
+        std::ranges::stable_sort(samples, {}, [](const ChannelValue& sample) { return sample.sclk.seconds; });
+        if (!samples.empty())
+            if (auto done = take(samples); !done) return done;
+        if (samples.size() < window_samples / 4) width_s = std::max(2.0 * width_s, std::nextafter(0.0, 1.0));
+        from_s = next_s;
+    }
+    return {};
 }
 
 Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> at) {

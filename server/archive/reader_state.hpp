@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/archive/column_codec.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
@@ -43,6 +44,12 @@ Result<ClosedRange> closed(const SclkRange& range);
 /// 1 … `most`, or an Error that says so.
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
+struct Sample {
+    double sclk_s = 0.0;
+    double value = 0.0;
+    Source source{};
+};
+
 struct Reader::State {
     State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
         : database(std::move(database_in)), dictionary(dictionary_in), columns(dictionary_in), other(other_in) {
@@ -81,6 +88,9 @@ struct Reader::State {
     const telemetry::OtherMission* other; ///< none: our own
     std::optional<telemetry::Decommutator> decommutator;
     telemetry::Decoded decoded;
+    ColumnCodec codec;
+    std::vector<Sample> realtime, recorded, both; ///< samples of the last exact question
+    std::vector<double> segment_sclk_s, segment_values; ///< of the segment that is being read
     std::map<const char*, sqlite::Statement> statements;
 };
 

@@ -2,6 +2,19 @@
 
 namespace aeolis::archive {
 
+void Extremes::add(const Extremes& later) {
+    if (later.defined == 0) return;
+    if (defined == 0 || later.least < least) {
+        least = later.least;
+        least_sclk_s = later.least_sclk_s;
+    }
+    if (defined == 0 || later.largest > largest) {
+        largest = later.largest;
+        largest_sclk_s = later.largest_sclk_s;
+    }
+    defined += later.defined;
+}
+
 void Batch::clear() {
     first_seq = last_seq = 0;
     octets.clear();
@@ -17,6 +30,7 @@ void Batch::clear() {
     alarms.clear();
     segments.clear();
     requests.clear();
+    pyramid.clear();
     totals.reset();
     link_totals.clear();
     end.reset();

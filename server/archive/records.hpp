@@ -137,14 +137,39 @@ struct AlarmRecord {
     std::string limit;
 };
 
-/// Samples of one packet and source, column by column. Written once, when full or when the run ends.
+inline constexpr std::size_t segment_samples = 1024; ///< of a full segment; limits.md
+
+/// Samples of one packet and source, column by column. Written once, when full or when the run ends: only the last of a
+/// series may hold less than segment_samples.
 struct SegmentRecord {
     std::uint16_t packet = 0;
     Source source{};
+    std::uint64_t position = 0; ///< in its series, from 0
     Sequence first_unit = 0, last_unit = 0; ///< the units between them, of this packet and source, that are sampled
     std::vector<double> sclk_s;             ///< in the order of receipt
     std::vector<ChannelId> channels;
     std::vector<double> values; ///< channel by channel, sclk_s.size() each; NaN: undefined
+};
+
+/// What a stretch of samples of one channel comes to: all that a plot can show of it.
+struct Extremes {
+    double least = 0.0, least_sclk_s = 0.0, largest = 0.0, largest_sclk_s = 0.0;
+    std::uint32_t defined = 0; ///< samples that are not NaN; with none the rest is 0
+
+    void add(const Extremes& later);
+    /// Not NaN.
+    void add(double value, double sclk_s) { add({value, sclk_s, value, sclk_s, 1}); }
+};
+
+/// A block of nodes of one level of a series' pyramid (pyramid.hpp).
+struct PyramidRecord {
+    std::uint16_t packet = 0;
+    Source source{};
+    std::uint8_t level = 0;     ///< from 1
+    std::uint64_t position = 0; ///< in its level, from 0
+    std::vector<double> first_sclk_s, last_sclk_s; ///< least and largest time, a node
+    std::vector<ChannelId> channels;
+    std::vector<Extremes> nodes; ///< channel by channel, first_sclk_s.size() each
 };
 
 /// Real time against the recording, and how much of the recording has come down.
@@ -214,6 +239,7 @@ struct Batch {
     std::vector<AlarmRecord> alarms;
     std::vector<SegmentRecord> segments;
     std::vector<RequestRecord> requests;
+    std::vector<PyramidRecord> pyramid;
     std::optional<RecordingTotals> totals;
     std::vector<LinkTotals> link_totals; ///< those that changed
     std::optional<RunEnd> end;

@@ -1,20 +1,14 @@
 #include "server/archive/row_writer.hpp"
 
+#include "server/archive/pyramid.hpp"
 #include "server/archive/schema.hpp"
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
-#include <sqlite3.h>
 
 namespace aeolis::archive {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers of segments are stored as they stand in memory");
-
-std::span<const std::uint8_t> octets_of(std::span<const double> values) {
-    return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()};
-}
 
 /// NaN has no place in SQL: it becomes NULL.
 void bind_number(sqlite::Statement& statement, int parameter, double value) {
@@ -39,7 +33,6 @@ std::int64_t number(std::uint64_t value) {
 
 Result<RowWriter> RowWriter::open(sqlite::Database& database) {
     RowWriter writer;
-    writer.database_ = &database;
     const std::pair<sqlite::Statement RowWriter::*, const char*> statements[] = {
         {&RowWriter::unit_, "INSERT INTO units VALUES (?,?,?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::event_, "INSERT INTO events VALUES (?,?,?,?,?,?,?,?,?,?)"},
@@ -53,7 +46,12 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::condition_, "INSERT INTO explanation_conditions VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::link_, "INSERT INTO link_changes VALUES (?,?,?,?,?)"},
         {&RowWriter::alarm_, "INSERT INTO alarms VALUES (?,?,?,?,?,?,?)"},
-        {&RowWriter::segment_, "INSERT INTO segments VALUES (NULL,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
+        {&RowWriter::segment_, "INSERT INTO segments (segment, run, packet, source, position, first_unit, last_unit,"
+                               " samples, first_sclk, last_sclk, sclk, packed) VALUES (?,?,?,?,?,?,?,?,?,?,?,1)"},
+        {&RowWriter::block_number_, "SELECT max(key) / 65536 FROM pyramid_columns WHERE key BETWEEN ?1 * 65536 AND ?2 * 65536 + 65535"},
+        {&RowWriter::block_, "INSERT INTO pyramid VALUES (?,?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::block_column_, "INSERT INTO pyramid_columns VALUES (?,?)"},
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
@@ -78,7 +76,16 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.explanations, [&](const auto& r) { return explanation(run, r); }); !done) return done;
     if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
     if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
-    if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r); }); !done) return done;
+    if (!batch.segments.empty()) {
+        auto next = next_number(run, segment_number_);
+        if (!next) return next.error();
+        if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r, (*next)++); }); !done) return done;
+    }
+    if (!batch.pyramid.empty()) {
+        auto next = next_number(run, block_number_);
+        if (!next) return next.error();
+        if (auto done = each(batch.pyramid, [&](const auto& r) { return block(run, r, (*next)++); }); !done) return done;
+    }
     if (auto done = each(batch.requests, [&](const auto& r) { return request(run, r); }); !done) return done;
     if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
     if (batch.totals) return totals(run, *batch.totals);
@@ -248,27 +255,56 @@ Result<void> RowWriter::alarm(RunId run, const AlarmRecord& record) {
     return alarm_.run();
 }
 
-Result<void> RowWriter::segment(RunId run, const SegmentRecord& record) {
+Result<std::int64_t> RowWriter::next_number(RunId run, sqlite::Statement& largest) {
+    largest.bind(1, segment_key(run, 0)).bind(2, segment_key(run, segments_max - 1));
+    auto found = largest.step();
+    if (!found) return found.error();
+    const std::int64_t next = largest.is_null(0) ? segment_key(run, 0) : largest.integer(0) + 1;
+    largest.reset();
+    if (next < segment_key(run, segments_max)) return next;
+    return Error{"run " + std::to_string(run.value) + " has " + std::to_string(segments_max) + " segments, no more can be numbered"};
+}
+
+Result<void> RowWriter::segment(RunId run, const SegmentRecord& record, std::int64_t number_of_segment) {
     AEOLIS_CHECK(!record.sclk_s.empty() && record.values.size() == record.channels.size() * record.sclk_s.size());
-    double first_s = record.sclk_s.front();
-    double last_s = first_s;
-    for (const double sclk_s : record.sclk_s) {
-        first_s = std::min(first_s, sclk_s);
-        last_s = std::max(last_s, sclk_s);
-    }
-    segment_.bind(1, std::int64_t{run.value})
+    const auto [first, last] = std::ranges::minmax(record.sclk_s);
+    segment_.bind(1, number_of_segment)
+        .bind(2, std::int64_t{run.value})
+        .bind(3, std::int64_t{record.packet})
+        .bind(4, static_cast<std::int64_t>(record.source))
+        .bind(5, number(record.position))
+        .bind(6, number(record.first_unit))
+        .bind(7, number(record.last_unit))
+        .bind(8, number(record.sclk_s.size()))
+        .bind(9, first)
+        .bind(10, last)
+        .bind_octets(11, codec_.pack(record.sclk_s));
+    if (auto done = segment_.run(); !done) return done;
+    for (std::size_t c = 0; c < record.channels.size(); ++c)
+        if (auto done = column(column_key(number_of_segment, record.channels[c]), record, c); !done) return done;
+    return {};
+}
+
+Result<void> RowWriter::block(RunId run, const PyramidRecord& record, std::int64_t number_of_block) {
+    const std::size_t nodes = record.first_sclk_s.size();
+    auto spans = record.first_sclk_s;
+    spans.insert(spans.end(), record.last_sclk_s.begin(), record.last_sclk_s.end());
+    block_.bind(1, std::int64_t{run.value})
         .bind(2, std::int64_t{record.packet})
         .bind(3, static_cast<std::int64_t>(record.source))
-        .bind(4, number(record.first_unit))
-        .bind(5, number(record.last_unit))
-        .bind(6, number(record.sclk_s.size()))
-        .bind(7, first_s)
-        .bind(8, last_s)
-        .bind_octets(9, octets_of(record.sclk_s));
-    if (auto done = segment_.run(); !done) return done;
-    const std::int64_t segment = sqlite3_last_insert_rowid(database_->handle());
-    for (std::size_t c = 0; c < record.channels.size(); ++c)
-        if (auto done = column(column_key(segment, record.channels[c]), record, c); !done) return done;
+        .bind(4, std::int64_t{record.level})
+        .bind(5, number(record.position))
+        .bind(6, number_of_block)
+        .bind(7, number(nodes))
+        .bind(8, std::ranges::min(record.first_sclk_s))
+        .bind(9, std::ranges::max(record.last_sclk_s))
+        .bind_octets(10, codec_.pack(spans));
+    if (auto done = block_.run(); !done) return done;
+    for (std::size_t c = 0; c < record.channels.size(); ++c) {
+        const auto octets = pyramid::octets_of_nodes(std::span(record.nodes).subspan(c * nodes, nodes));
+        block_column_.bind(1, column_key(number_of_block, record.channels[c])).bind_octets(2, octets);
+        if (auto done = block_column_.run(); !done) return done;
+    }
     return {};
 }
 
@@ -294,7 +330,7 @@ Result<void> RowWriter::column(std::int64_t key, const SegmentRecord& record, st
         column_.bind(5, values[*largest]).bind(6, record.sclk_s[*largest]);
         column_.bind(7, values[*first]).bind(8, values[*last]);
     }
-    column_.bind_octets(9, octets_of(values));
+    column_.bind_octets(9, codec_.pack(values));
     return column_.run();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "server/archive/column_codec.hpp"
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
@@ -25,15 +26,19 @@ class RowWriter {
     Result<void> explanation(RunId run, const ExplanationRecord& record);
     Result<void> link(RunId run, const LinkRecord& record);
     Result<void> alarm(RunId run, const AlarmRecord& record);
-    Result<void> segment(RunId run, const SegmentRecord& record);
+    /// Of a run's next segment or block, by the question for the largest so far.
+    static Result<std::int64_t> next_number(RunId run, sqlite::Statement& largest);
+    Result<void> segment(RunId run, const SegmentRecord& record, std::int64_t number);
     Result<void> column(std::int64_t key, const SegmentRecord& record, std::size_t column);
     Result<void> request(RunId run, const RequestRecord& record);
+    Result<void> block(RunId run, const PyramidRecord& record, std::int64_t number);
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
-    sqlite::Database* database_ = nullptr;
     sqlite::Statement unit_, event_, tone_, command_, stage_, firing_, explanation_, condition_, link_, alarm_,
-        segment_, column_, link_number_, link_word_, totals_, link_totals_, request_, tone_evidence_, tone_likelihood_;
+        segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_, link_word_, totals_, link_totals_,
+        request_, tone_evidence_, tone_likelihood_;
+    ColumnCodec codec_;
 };
 
 } // namespace aeolis::archive

@@ -10,17 +10,13 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr char segments_sql[] =
-    "SELECT segment, source, samples, first_sclk, last_sclk FROM segments"
-    " WHERE run = ?1 AND packet = ?2 AND last_sclk >= ?3 AND first_sclk <= ?4 ORDER BY segment";
-constexpr char count_sql[] = "SELECT coalesce(sum(samples), 0) FROM segments"
-                             " WHERE run = ?1 AND packet = ?2 AND last_sclk >= ?3 AND first_sclk <= ?4";
-constexpr char sealed_sql[] = "SELECT coalesce(max(last_unit), 0), coalesce(sum(samples), 0) FROM segments"
-                              " WHERE run = ?1 AND packet = ?2 AND source = ?3";
-constexpr char times_sql[] = "SELECT sclk FROM segments WHERE segment = ?1";
-constexpr char values_sql[] = "SELECT value FROM segment_columns WHERE key = ?1";
-constexpr char extremes_sql[] =
-    "SELECT defined, least, least_sclk, largest, largest_sclk FROM segment_columns WHERE key = ?1";
+constexpr char columns_sql[] =
+    "SELECT s.segment, s.position, s.samples, s.packed, s.sclk, v.value FROM segments s LEFT JOIN segment_columns v"
+    " ON v.key = s.segment * 65536 + ?6 WHERE s.run = ?1 AND s.packet = ?2 AND s.source = ?3"
+    " AND s.position BETWEEN ?4 AND ?5 ORDER BY s.position";
+constexpr char nodes_sql[] = "SELECT p.position, c.nodes FROM pyramid p JOIN pyramid_columns c ON c.key = p.block * 65536 + ?5"
+                             " WHERE run = ?1 AND packet = ?2 AND source = ?3 AND level = ?4 AND position BETWEEN ?6 AND ?7"
+                             " ORDER BY position";
 // Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
 // SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
 constexpr char tail_by_time_sql[] =
@@ -34,109 +30,115 @@ constexpr char tail_of_any_apid_sql[] =
     "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
-struct Segment {
-    std::int64_t number = 0;
-    Source source{};
-    std::size_t samples = 0;
-    ClosedRange span;
-};
 
-/// Octets of a column need not be aligned for doubles.
-double number_at(std::span<const std::uint8_t> octets, std::size_t index) {
-    double value;
-    std::memcpy(&value, octets.data() + index * sizeof value, sizeof value);
-    return value;
+Error damaged(const Reader::State& reader, const std::string& what, const std::string& why) {
+    return {reader.database.file() + ": " + what + " is damaged: " + why + " (aeolis archive verify names all that is)"};
 }
 
-Result<std::vector<Segment>> segments_of(Reader::State& reader, RunId run, std::uint16_t packet,
-                                         const ClosedRange& range) {
-    auto rows = reader.query(segments_sql);
-    if (!rows) return rows.error();
-    (*rows)->bind(1, std::int64_t{run.value}).bind(2, std::int64_t{packet}).bind(3, range.from_s).bind(4, range.to_s);
-    std::vector<Segment> segments;
-    for (;;) {
-        auto found = (*rows)->step();
-        if (!found) return found.error();
-        if (!*found) return segments;
-        segments.push_back({(*rows)->integer(0),
-                            static_cast<Source>((*rows)->integer(1)),
-                            static_cast<std::size_t>((*rows)->integer(2)),
-                            {(*rows)->real(3), (*rows)->real(4)}});
-    }
-}
-
-template <typename Take>
-Result<void> read_segment(Reader::State& reader, const Segment& segment, ChannelId channel, const ClosedRange& range,
-                          Take take) {
-    auto times = reader.query(times_sql);
-    auto values = reader.query(values_sql);
-    if (!times) return times.error();
-    if (!values) return values.error();
-    (*times)->bind(1, segment.number);
-    (*values)->bind(1, column_key(segment.number, channel));
-    auto found_times = (*times)->step();
-    if (!found_times) return found_times.error();
-    auto found_values = (*values)->step();
-    if (!found_values) return found_values.error();
-    const std::size_t octets = segment.samples * sizeof(double);
-    if (!*found_times || !*found_values || (*times)->octets(0).size() != octets ||
-        (*values)->octets(0).size() != octets)
-        return Error{reader.database.file() + ": segment " + std::to_string(segment.number) + " is damaged"};
-    const auto sclk = (*times)->octets(0);
-    const auto value = (*values)->octets(0);
-    for (std::size_t i = 0; i < segment.samples; ++i) {
-        const Sample sample{number_at(sclk, i), number_at(value, i), segment.source};
-        if (!std::isnan(sample.value) && range.holds(sample.sclk_s)) take(sample);
-    }
+/// A column of `samples` doubles: packed, or as archives of schema 3 have it.
+Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, int column, std::vector<double>& into) {
+    const auto octets = row.octets(column);
+    into.resize(static_cast<std::size_t>(row.integer(2)));
+    if (row.integer(3) != 0) return reader.codec.unpack(octets, into);
+    if (octets.size() != into.size() * sizeof(double)) return Error{"it holds another number of samples"};
+    std::memcpy(into.data(), octets.data(), octets.size());
     return {};
 }
 
+/// Samples first … last - 1 of a series, those that are defined and in the range, to the end of `into`.
+Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage, std::uint64_t first,
+                          std::uint64_t last, std::vector<Sample>& into) {
+    auto rows = reader.query(columns_sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    series.bind(row);
+    row.bind(4, static_cast<std::int64_t>(first / segment_samples))
+        .bind(5, static_cast<std::int64_t>((last - 1) / segment_samples))
+        .bind(6, std::int64_t{coverage.channel.value});
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) return {};
+        const auto wrong = [&](const std::string& of, const std::string& why) {
+            return damaged(reader, "segment " + std::to_string(row.integer(0)) + ", " + of, why);
+        };
+        if (row.integer(2) < 1 || row.integer(2) > static_cast<std::int64_t>(segment_samples))
+            return wrong("its number of samples", std::to_string(row.integer(2)));
+        if (auto done = read_column(reader, row, 4, reader.segment_sclk_s); !done) return wrong("its times", done.error().message);
+        if (row.is_null(5)) return wrong("channel " + std::to_string(coverage.channel.value), "it is missing");
+        if (auto done = read_column(reader, row, 5, reader.segment_values); !done)
+            return wrong("channel " + std::to_string(coverage.channel.value), done.error().message);
+        const std::uint64_t base = static_cast<std::uint64_t>(row.integer(1)) * segment_samples;
+        const auto from = static_cast<std::size_t>(std::max(first, base) - base);
+        const std::size_t to = std::min<std::size_t>(reader.segment_values.size(), last - base);
+        std::size_t end = into.size();
+        into.resize(end + (to > from ? to - from : 0));
+        for (std::size_t i = from; i < to; ++i)
+            if (const double sclk_s = reader.segment_sclk_s[i]; !std::isnan(reader.segment_values[i]) && coverage.range.holds(sclk_s))
+                into[end++] = {sclk_s, reader.segment_values[i], series.source};
+        into.resize(end);
+    }
+}
+
+/// Nodes first … last - 1 of a level.
 template <typename Take>
-Result<void> read_tail(Reader::State& reader, RunId run, PacketColumns::Place place, Source source,
-                       const ClosedRange& range, Take take) {
-    auto sealed = reader.query(sealed_sql);
-    if (!sealed) return sealed.error();
-    (*sealed)->bind(1, std::int64_t{run.value}).bind(2, std::int64_t{place.packet});
-    (*sealed)->bind(3, static_cast<std::int64_t>(source));
-    if (auto found = (*sealed)->step(); !found) return found.error();
-    const auto last_unit = static_cast<Sequence>((*sealed)->integer(0));
-    const auto sealed_samples = static_cast<Sequence>((*sealed)->integer(1));
-    const auto last = reader.last_seq(run);
+Result<void> read_nodes(Reader::State& reader, const SealedSeries& series, ChannelId channel, unsigned level,
+                        std::uint64_t first, std::uint64_t last, Take take) {
+    if (first >= last) return {};
+    auto rows = reader.query(nodes_sql);
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    series.bind(row);
+    row.bind(4, std::int64_t{level})
+        .bind(5, std::int64_t{channel.value})
+        .bind(6, static_cast<std::int64_t>(first / pyramid::block_nodes))
+        .bind(7, static_cast<std::int64_t>((last - 1) / pyramid::block_nodes));
+    std::uint64_t next = first;
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) break;
+        const std::uint64_t base = static_cast<std::uint64_t>(row.integer(0)) * pyramid::block_nodes;
+        const auto octets = row.octets(1);
+        const std::size_t nodes = octets.size() / pyramid::node_octets;
+        const std::uint64_t to = std::min(last, base + nodes);
+        for (; next >= base && next < to; ++next)
+            take(pyramid::node_of(octets, nodes, static_cast<std::size_t>(next - base)));
+    }
+    if (next == last) return {};
+    return damaged(reader, "the pyramid", "level " + std::to_string(level) + " of channel " + std::to_string(channel.value) +
+                                              " ends at node " + std::to_string(next));
+}
+
+template <typename Take>
+Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::size_t column, const ClosedRange& range,
+                       Take take) {
+    const auto last = reader.last_seq(series.run);
     if (!last) return last.error();
 
-    const Apid apid = reader.dictionary.packets[place.packet].apid;
+    const Apid apid = reader.dictionary.packets[series.packet].apid;
     const char* const sql = apid == telemetry::OtherMission::any_apid      ? tail_of_any_apid_sql
-                            : sealed_samples < *last - last_unit ? tail_by_time_sql
+                            : series.nodes[0] < *last - series.last_unit ? tail_by_time_sql
                                                                  : tail_by_key_sql;
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     (*rows)
-        ->bind(1, std::int64_t{run.value})
+        ->bind(1, std::int64_t{series.run.value})
         .bind(2, std::int64_t{apid.value})
         .bind(3, range.from_s)
         .bind(4, range.to_s)
-        .bind(5, item_key(run, last_unit))
-        .bind(6, static_cast<std::int64_t>(source))
-        .bind(7, std::int64_t{place.packet})
-        .bind(8, item_key(run, *last));
+        .bind(5, item_key(series.run, series.last_unit))
+        .bind(6, static_cast<std::int64_t>(series.source))
+        .bind(7, std::int64_t{series.packet})
+        .bind(8, item_key(series.run, *last));
     for (;;) {
         auto found = (*rows)->step();
         if (!found) return found.error();
         if (!*found) return {};
         if (!reader.decode((*rows)->octets(0))) continue;
-        const double value = reader.columns.value(reader.decoded, place.column);
-        if (!std::isnan(value)) take(Sample{(*rows)->real(1), value, source});
+        const double value = reader.columns.value(reader.decoded, column);
+        if (!std::isnan(value)) take(Sample{(*rows)->real(1), value, series.source});
     }
-}
-
-template <typename Take>
-Result<void> read_tails(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
-                        Take take) {
-    if (run.finished) return {};
-    for (const auto place : reader.columns.places(channel))
-        for (const Source source : {Source::realtime, Source::recorded})
-            if (auto done = read_tail(reader, run.run, place, source, range, take); !done) return done;
-    return {};
 }
 
 bool earlier(const Sample& a, const Sample& b) {
@@ -144,15 +146,14 @@ bool earlier(const Sample& a, const Sample& b) {
 }
 
 /// Each source comes nearly in order; together they interleave.
-std::vector<Sample> merged(std::vector<Sample> realtime, std::vector<Sample> recorded) {
-    for (auto* samples : {&realtime, &recorded})
-        if (!std::is_sorted(samples->begin(), samples->end(), earlier))
-            std::sort(samples->begin(), samples->end(), earlier);
-    if (realtime.empty()) return recorded;
-    if (recorded.empty()) return realtime;
-    std::vector<Sample> all(realtime.size() + recorded.size());
-    std::merge(realtime.begin(), realtime.end(), recorded.begin(), recorded.end(), all.begin(), earlier);
-    return all;
+std::span<const Sample> merged(Reader::State& reader) {
+    for (auto* samples : {&reader.realtime, &reader.recorded})
+        if (!std::is_sorted(samples->begin(), samples->end(), earlier)) std::sort(samples->begin(), samples->end(), earlier);
+    if (reader.realtime.empty()) return reader.recorded;
+    if (reader.recorded.empty()) return reader.realtime;
+    reader.both.resize(reader.realtime.size() + reader.recorded.size());
+    std::merge(reader.realtime.begin(), reader.realtime.end(), reader.recorded.begin(), reader.recorded.end(), reader.both.begin(), earlier);
+    return reader.both;
 }
 
 /// Equal intervals of a range, each with its least and its largest sample.
@@ -166,124 +167,120 @@ class Intervals {
         const auto index = static_cast<std::size_t>(std::max(0.0, (sclk_s - range_.from_s) / width_s_));
         return std::min(index, intervals_.size() - 1);
     }
-    void add(const Sample& sample) { add(sample, sample, 1); }
-    void add(const Sample& least, const Sample& largest, std::uint64_t count) {
-        auto& interval = intervals_[index(least.sclk_s)];
-        if (interval.count == 0 || least.value < interval.least.value) interval.least = least;
-        if (interval.count == 0 || largest.value > interval.largest.value) interval.largest = largest;
-        interval.count += count;
+    void add(const Sample& sample) {
+        auto& interval = intervals_[index(sample.sclk_s)];
+        if (!interval.filled || sample.value < interval.least.value) interval.least = sample;
+        if (!interval.filled || sample.value > interval.largest.value) interval.largest = sample;
+        interval.filled = true;
     }
-    Thinned result() const {
-        Thinned thinned;
-        thinned.points.reserve(2 * intervals_.size());
+    std::vector<Sample> points() const {
+        std::vector<Sample> points;
+        points.reserve(2 * intervals_.size());
         for (const auto& interval : intervals_) {
-            if (interval.count == 0) continue;
-            thinned.samples += interval.count;
+            if (!interval.filled) continue;
             const bool falls = earlier(interval.largest, interval.least);
-            thinned.points.push_back(falls ? interval.largest : interval.least);
-            if (interval.least.sclk_s != interval.largest.sclk_s)
-                thinned.points.push_back(falls ? interval.least : interval.largest);
+            points.push_back(falls ? interval.largest : interval.least);
+            if (interval.least.sclk_s != interval.largest.sclk_s) points.push_back(falls ? interval.least : interval.largest);
         }
-        return thinned;
+        return points;
     }
 
   private:
     struct Interval {
         Sample least, largest;
-        std::uint64_t count = 0;
+        bool filled = false;
     };
     ClosedRange range_;
     double width_s_;
     std::vector<Interval> intervals_;
 };
 
-/// False: the segment has to be read.
-Result<bool> add_extremes(Reader::State& reader, const Segment& segment, ChannelId channel, const ClosedRange& range,
-                          Intervals& intervals) {
-    if (!range.holds(segment.span.from_s) || !range.holds(segment.span.to_s)) return false;
-    if (intervals.index(segment.span.from_s) != intervals.index(segment.span.to_s)) return false;
-    auto rows = reader.query(extremes_sql);
-    if (!rows) return rows.error();
-    auto& row = **rows;
-    row.bind(1, column_key(segment.number, channel));
-    auto found = row.step();
-    if (!found) return found.error();
-    if (!*found) return false;
-    if (const auto defined = static_cast<std::uint64_t>(row.integer(0)); defined > 0)
-        intervals.add({row.real(2), row.real(1), segment.source}, {row.real(4), row.real(3), segment.source}, defined);
-    return true;
+/// The coarsest level that has at least half as many nodes as there are intervals.
+unsigned level_for(std::size_t samples, std::size_t intervals) {
+    unsigned level = pyramid::levels;
+    while (level > 0 && samples / pyramid::samples_of_node(level) < (intervals + 1) / 2)
+        --level;
+    return level;
 }
 
 } // namespace
 
-Result<std::size_t> samples_at_most(Reader::State& reader, const RunInfo& run, ChannelId channel,
-                                    const ClosedRange& range) {
-    std::size_t samples = 0;
+Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
+    Coverage coverage{channel, range, {}, {}, 0};
     for (const auto place : reader.columns.places(channel)) {
-        auto rows = reader.query(count_sql);
-        if (!rows) return rows.error();
-        auto& row = **rows;
-        row.bind(1, std::int64_t{run.run.value}).bind(2, std::int64_t{place.packet});
-        row.bind(3, range.from_s).bind(4, range.to_s);
-        if (auto found = row.step(); !found) return found.error();
-        samples += static_cast<std::size_t>(row.integer(0));
+        for (const Source source : {Source::realtime, Source::recorded}) {
+            const auto series = sealed_series(reader, run.run, place.packet, source);
+            if (!series) return series.error();
+            auto found = stretches(reader, *series, range);
+            if (!found) return found.error();
+            for (const Stretch& each : *found)
+                coverage.samples_at_most += static_cast<std::size_t>((each.last - each.first) * pyramid::samples_of_node(each.level));
+            if (!found->empty()) coverage.parts.push_back({*series, std::move(found).value()});
+            if (run.finished) continue;
+            auto done = read_tail(reader, *series, place.column, range,
+                                  [&](const Sample& sample) { coverage.tail.push_back(sample); });
+            if (!done) return done.error();
+        }
     }
-    auto tails = read_tails(reader, run, channel, range, [&](const Sample&) { ++samples; });
-    if (!tails) return tails.error();
-    return samples;
+    coverage.samples_at_most += coverage.tail.size();
+    return coverage;
 }
 
-Result<std::vector<Sample>> exact_samples(Reader::State& reader, const RunInfo& run, ChannelId channel,
-                                          const ClosedRange& range) {
-    std::vector<Sample> realtime, recorded;
-    const auto take = [&](const Sample& sample) {
-        (sample.source == Source::realtime ? realtime : recorded).push_back(sample);
-    };
-    for (const auto place : reader.columns.places(channel)) {
-        const auto segments = segments_of(reader, run.run, place.packet, range);
-        if (!segments) return segments.error();
-        for (const auto& segment : *segments)
-            if (auto done = read_segment(reader, segment, channel, range, take); !done) return done.error();
+Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
+    reader.realtime.clear();
+    reader.recorded.clear();
+    const auto of = [&](Source source) -> std::vector<Sample>& { return source == Source::realtime ? reader.realtime : reader.recorded; };
+    for (const auto& [series, parts] : coverage.parts) {
+        for (std::size_t i = 0; i < parts.size();) {
+            // Neighbours of any level in one go, so that no segment is unpacked twice.
+            const std::uint64_t first = parts[i].first * pyramid::samples_of_node(parts[i].level);
+            std::uint64_t last = first;
+            for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
+                last = parts[i].last * pyramid::samples_of_node(parts[i].level);
+            if (auto done = read_samples(reader, series, coverage, first, last, of(series.source)); !done) return done.error();
+        }
     }
-    if (auto done = read_tails(reader, run, channel, range, take); !done) return done.error();
-    return merged(std::move(realtime), std::move(recorded));
+    for (const Sample& sample : coverage.tail)
+        of(sample.source).push_back(sample);
+    return merged(reader);
 }
 
-Result<Thinned> thinned_samples(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
-                                std::size_t points) {
-    std::vector<Sample> tail;
-    if (auto done = read_tails(reader, run, channel, range, [&](const Sample& sample) { tail.push_back(sample); });
-        !done)
-        return done.error();
-    std::vector<Segment> all;
-    for (const auto place : reader.columns.places(channel)) {
-        auto segments = segments_of(reader, run.run, place.packet, range);
-        if (!segments) return segments.error();
-        all.insert(all.end(), segments->begin(), segments->end());
+Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points) {
+    const std::size_t count = std::max<std::size_t>(1, points / 2);
+    const unsigned wanted = level_for(coverage.samples_at_most, count);
+    Thinned thinned;
+    std::vector<Sample> found;
+    found.reserve(coverage.tail.size() + 2 * coverage.samples_at_most / pyramid::samples_of_node(wanted) + segment_samples);
+    found.assign(coverage.tail.begin(), coverage.tail.end());
+    thinned.samples = found.size();
+    for (const auto& [series, parts] : coverage.parts) {
+        for (const Stretch& each : parts) {
+            const unsigned level = std::min(wanted, each.level);
+            const std::uint64_t share = pyramid::samples_of_node(each.level) / pyramid::samples_of_node(level);
+            const std::uint64_t first = each.first * share, last = std::min(each.last * share, series.nodes[level]);
+            if (level == 0) {
+                const std::size_t before = found.size();
+                if (auto done = read_samples(reader, series, coverage, first, last, found); !done) return done.error();
+                thinned.samples += found.size() - before;
+                continue;
+            }
+            auto done = read_nodes(reader, series, coverage.channel, level, first, last, [&](const Extremes& node) {
+                if (node.defined == 0) return;
+                found.push_back({node.least_sclk_s, node.least, series.source});
+                found.push_back({node.largest_sclk_s, node.largest, series.source});
+                thinned.samples += node.defined;
+            });
+            if (!done) return done.error();
+        }
     }
+    if (found.empty()) return thinned;
     // An open end of the range is where the samples end.
-    ClosedRange filled{range.to_s, range.from_s};
-    for (const auto& segment : all) {
-        filled.from_s = std::min(filled.from_s, segment.span.from_s);
-        filled.to_s = std::max(filled.to_s, segment.span.to_s);
-    }
-    for (const auto& sample : tail) {
-        filled.from_s = std::min(filled.from_s, sample.sclk_s);
-        filled.to_s = std::max(filled.to_s, sample.sclk_s);
-    }
-    filled.from_s = std::max(filled.from_s, range.from_s);
-    filled.to_s = std::min(filled.to_s, range.to_s);
-    Intervals intervals(filled, std::max<std::size_t>(1, points / 2));
-    for (const auto& segment : all) {
-        const auto known = add_extremes(reader, segment, channel, range, intervals);
-        if (!known) return known.error();
-        if (*known) continue;
-        auto done = read_segment(reader, segment, channel, range, [&](const Sample& sample) { intervals.add(sample); });
-        if (!done) return done.error();
-    }
-    for (const auto& sample : tail)
+    const auto [first, last] = std::ranges::minmax_element(found, {}, &Sample::sclk_s);
+    Intervals intervals({first->sclk_s, last->sclk_s}, count);
+    for (const Sample& sample : found)
         intervals.add(sample);
-    return intervals.result();
+    thinned.points = intervals.points();
+    return thinned;
 }
 
 } // namespace aeolis::archive

@@ -154,7 +154,8 @@ CREATE VIEW channel_segments AS
 /// What a version of the schema added to the one before.
 struct Addition {
     std::int32_t version;
-    const char* sql; ///< CREATE TABLE and CREATE VIEW only
+    const char* sql;     ///< CREATE TABLE and CREATE VIEW only, or there is `reading`
+    const char* reading; ///< the same for a connection that must not write; null: the same with TEMP
 };
 const Addition additions[] = {
     {2, R"sql(
@@ -169,16 +170,88 @@ CREATE VIEW tone_evidence_log AS
            (SELECT group_concat(tone || ': ' || round(likelihood, 6), ', ')
             FROM (SELECT tone, likelihood FROM tone_likelihoods WHERE key = t.key ORDER BY position)) AS best
     FROM tones t JOIN tone_evidence e ON e.key = t.key;
-)sql"},
+)sql",
+     nullptr},
     {3, R"sql(
 CREATE TABLE link_totals (
     run INTEGER NOT NULL, link TEXT NOT NULL, octets INTEGER NOT NULL, frames INTEGER NOT NULL, bad_crc INTEGER NOT NULL,
     bad_header INTEGER NOT NULL, skipped_octets INTEGER NOT NULL, gaps INTEGER NOT NULL, missing_frames INTEGER NOT NULL,
     repeated_frames INTEGER NOT NULL, octets_per_s REAL NOT NULL, PRIMARY KEY (run, link)) STRICT, WITHOUT ROWID;
+)sql",
+     nullptr},
+    // Segments of before keep their plain doubles (packed = 0) and have no pyramid, until the archive is rebuilt.
+    {4, R"sql(
+ALTER TABLE segments ADD COLUMN position INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE segments ADD COLUMN packed INTEGER NOT NULL DEFAULT 0;
+UPDATE segments SET position = p.position FROM (
+    SELECT segment, row_number() OVER (PARTITION BY run, packet, source ORDER BY segment) - 1 AS position
+    FROM segments) AS p WHERE p.segment = segments.segment;
+DROP INDEX segments_by_packet;
+CREATE INDEX segments_by_position ON segments (run, packet, source, position);
+CREATE TABLE pyramid (
+    run INTEGER NOT NULL, packet INTEGER NOT NULL, source INTEGER NOT NULL, level INTEGER NOT NULL,
+    position INTEGER NOT NULL, block INTEGER NOT NULL, nodes INTEGER NOT NULL, first_sclk REAL NOT NULL,
+    last_sclk REAL NOT NULL, spans BLOB NOT NULL,
+    PRIMARY KEY (run, packet, source, level, position)) STRICT, WITHOUT ROWID;
+CREATE TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB NOT NULL) STRICT;
 CREATE TABLE requests (
     run INTEGER NOT NULL, position INTEGER NOT NULL, cycle INTEGER NOT NULL, request TEXT NOT NULL,
     PRIMARY KEY (run, position)) STRICT, WITHOUT ROWID;
+CREATE TABLE pruned_runs (
+    run INTEGER PRIMARY KEY, scenario TEXT NOT NULL, seed INTEGER NOT NULL, case_number INTEGER NOT NULL,
+    outcome TEXT NOT NULL, started TEXT NOT NULL, pruned TEXT NOT NULL) STRICT;
+DROP VIEW channel_segments;
+CREATE VIEW channel_segments AS
+    SELECT g.run, c.name AS channel, c.unit, s.word AS source, g.position, g.samples, g.first_sclk, g.last_sclk,
+           v.defined, v.least, v.least_sclk, v.largest, v.largest_sclk, v.first, v.last, g.packed, g.sclk AS sclk_blob,
+           v.value AS value_blob
+    FROM segment_columns v JOIN segments g ON g.segment = v.key / 65536 JOIN runs r ON r.run = g.run
+    JOIN dictionary_channels c ON c.dictionary = r.dictionary AND c.channel = v.key % 65536
+    JOIN words s ON s.kind = 'source' AND s.number = g.source;
+)sql",
+     R"sql(
+CREATE TEMP VIEW segments AS
+    SELECT *, row_number() OVER (PARTITION BY run, packet, source ORDER BY segment) - 1 AS position, 0 AS packed
+    FROM main.segments;
+CREATE TEMP TABLE pyramid (
+    run INTEGER, packet INTEGER, source INTEGER, level INTEGER, position INTEGER, block INTEGER, nodes INTEGER,
+    first_sclk REAL, last_sclk REAL, spans BLOB);
+CREATE TEMP TABLE pyramid_columns (key INTEGER PRIMARY KEY, nodes BLOB);
+CREATE TEMP TABLE requests (run INTEGER, position INTEGER, cycle INTEGER, request TEXT);
+CREATE TEMP TABLE pruned_runs (
+    run INTEGER, scenario TEXT, seed INTEGER, case_number INTEGER, outcome TEXT, started TEXT, pruned TEXT);
 )sql"},
+};
+
+constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
+constexpr char by_run[] = "run = ?1";
+// Before version 4 segments had numbers that did not tell their run.
+constexpr char by_segment[] =
+    "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF OR key IN (SELECT c.key FROM segments s JOIN segment_columns c"
+    " ON c.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535 WHERE s.run = ?1)";
+constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF";
+constexpr RunTable tables_of_runs[] = {
+    {"segment_columns", by_segment, true},
+    {"segments", by_run, true},
+    {"pyramid_columns", by_block, true},
+    {"pyramid", by_run, true},
+    {"events", by_key, true},
+    {"timepoint_firings", by_key, true},
+    {"explanation_conditions", by_key, true},
+    {"explanations", by_key, true},
+    {"alarms", by_key, true},
+    {"recordings", by_run, true},
+    {"units", by_key, true},
+    {"tone_likelihoods", by_key, false},
+    {"tone_evidence", by_key, false},
+    {"tones", by_key, false},
+    {"command_stages", by_key, false},
+    {"commands", by_run, false},
+    {"link_changes", by_key, false},
+    {"link_totals", by_run, false},
+    {"requests", by_run, false},
+    {"run_solution", by_run, false},
+    {"runs", by_run, false},
 };
 
 Error not_ours(const sqlite::Database& database) {
@@ -218,6 +291,8 @@ std::string temporary(std::string_view sql) {
 
 } // namespace
 
+const std::span<const RunTable> run_tables = tables_of_runs;
+
 Result<void> prepare_for_writing(sqlite::Database& database) {
     auto version = version_of(database);
     if (!version) return version.error();
@@ -241,9 +316,11 @@ Result<void> check_for_reading(sqlite::Database& database) {
     auto version = version_of(database);
     if (!version) return version.error();
     if (*version == 0) return not_ours(database);
-    for (const Addition& addition : additions)
-        if (addition.version > *version)
-            if (auto done = database.execute(temporary(addition.sql).c_str()); !done) return done;
+    for (const Addition& addition : additions) {
+        if (addition.version <= *version) continue;
+        const std::string sql = addition.reading != nullptr ? addition.reading : temporary(addition.sql);
+        if (auto done = database.execute(sql.c_str()); !done) return done;
+    }
     return {};
 }
 

@@ -3,11 +3,13 @@
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 
+#include <span>
+
 namespace aeolis::archive {
 
 /// Makes tables, indices and views of schema_version in an empty database, or checks that it is one of ours. A later
-/// version only ever adds tables and views to an earlier one: an older file gets them when it is opened for writing, and
-/// is read as if it had them, empty.
+/// version only ever adds tables, columns and views to an earlier one: an older file gets them when it is opened for
+/// writing, and is read as if it had them, empty.
 /// Fails with "FILE is not an Aeolis archive", or "… was written by a newer Aeolis …".
 Result<void> prepare_for_writing(sqlite::Database& database);
 Result<void> check_for_reading(sqlite::Database& database);
@@ -22,10 +24,26 @@ constexpr Sequence sequence_of(std::int64_t key) {
     return static_cast<Sequence>(key) & sequence_max;
 }
 
-/// Key of a segment's column.
+/// Number of a segment, or of a block of the pyramid: run and number within it, so that what is made again has the
+/// number that it had.
+inline constexpr std::int64_t segments_max = std::int64_t{1} << 23;
+constexpr std::int64_t segment_key(RunId run, std::int64_t number) {
+    return std::int64_t{run.value} * segments_max + number;
+}
+
+/// Key of a column of a segment or block.
 constexpr std::int64_t column_key(std::int64_t segment, ChannelId channel) {
     return segment * 65'536 + channel.value;
 }
+
+/// A table whose rows of a run follow from its units, and which of them are the run's: SQL over ?1 = run.
+struct RunTable {
+    const char* name;
+    const char* rows;
+    bool derived; ///< from the units, all of it; else it holds what only was received or decided once
+};
+/// In an order in which they can be emptied. All tables but those of dictionaries and words.
+extern const std::span<const RunTable> run_tables;
 
 /// The last sequence number of each of the tables, as SQL over ?1 = item_key(run, 0), ?2 = item_key(run, max).
 extern const char* const last_key_sql;

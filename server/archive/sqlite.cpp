@@ -2,6 +2,7 @@
 
 #include "common/check.hpp"
 
+#include <cctype>
 #include <sqlite3.h>
 
 namespace aeolis::archive::sqlite {
@@ -98,8 +99,8 @@ bool Statement::is_null(int column) const {
 Result<Database> Database::open(const std::string& file, Mode mode) {
     Database database;
     database.file_ = file;
-    // NOMUTEX: each connection has one owner.
-    const int flags = SQLITE_OPEN_NOMUTEX |
+    // NOMUTEX: each connection has one owner. URI: for attach_read_only.
+    const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI |
                       (mode == Mode::read_only ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     sqlite3* handle = nullptr;
     const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
@@ -130,6 +131,35 @@ Result<std::int64_t> Database::integer_of(const char* sql) {
     auto row = statement->step();
     if (!row) return row.error();
     return *row ? statement->integer(0) : 0;
+}
+
+Result<void> Database::attach_read_only(const std::filesystem::path& file, const char* name) {
+    std::string uri = "file:";
+    for (const char c : std::filesystem::absolute(file).string()) {
+        constexpr std::string_view plain = "/-_.~";
+        constexpr std::string_view digits = "0123456789ABCDEF";
+        const auto octet = static_cast<unsigned char>(c);
+        if ((octet < 128 && std::isalnum(octet) != 0) || plain.find(c) != std::string_view::npos)
+            uri += c;
+        else
+            uri.append({'%', digits[octet >> 4U], digits[octet & 15U]});
+    }
+    auto statement = prepare("ATTACH ?1 AS ?2");
+    if (!statement) return statement.error();
+    uri += "?mode=ro";
+    statement->bind(1, std::string_view(uri)).bind(2, std::string_view(name));
+    if (statement->run()) return {};
+    return Error{file.string() + ": " + sqlite3_errmsg(database_.get())};
+}
+
+Result<void> Database::copy_to(Database& empty) const {
+    sqlite3_backup* const backup = sqlite3_backup_init(empty.handle(), "main", database_.get(), "main");
+    if (backup == nullptr) return empty.error("");
+    // In one step: one state of the file. A writer in WAL mode goes on; only its checkpoints wait.
+    const int stepped = sqlite3_backup_step(backup, -1);
+    const int finished = sqlite3_backup_finish(backup);
+    if (stepped == SQLITE_DONE && finished == SQLITE_OK) return {};
+    return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped)};
 }
 
 bool Database::autocommit() const {

@@ -3,6 +3,7 @@
 #include "common/result.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -59,6 +60,11 @@ class Database {
     Result<Statement> prepare(const char* sql);
     /// The first column of the first row; 0 when there is none.
     Result<std::int64_t> integer_of(const char* sql);
+
+    /// The file stands beside this one's tables under `name`, for reading.
+    Result<void> attach_read_only(const std::filesystem::path& file, const char* name);
+    /// All of this database, as it is now, into an empty one. Writers of this one go on meanwhile.
+    Result<void> copy_to(Database& empty) const;
 
     /// False while a transaction is open.
     bool autocommit() const;

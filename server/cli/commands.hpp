@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 // The subcommands of `aeolis`: each takes what was given and returns the exit code: 0 done, 1 failed or found
 // something, 2 bad use.
@@ -38,6 +39,40 @@ struct RehearseOptions {
     bool json = false;
 };
 int rehearse(const RehearseOptions& options);
+
+/// Of every question to an archive's runs.
+struct ArchiveOptions {
+    SharedOptions shared;
+    std::filesystem::path archive;
+    std::filesystem::path xtce; ///< of the mission that was followed; empty: our own
+    std::optional<std::uint32_t> run;
+};
+struct ExportOptions {
+    ArchiveOptions of;
+    std::vector<std::string> channels; ///< empty: all
+    std::optional<double> from_s, to_s; ///< SCLK, both included
+    std::string format = "csv";        ///< csv, jsonl
+    std::filesystem::path out;         ///< empty: the standard output
+};
+/// Writes a row a sample.
+int export_samples(const ExportOptions& options);
+/// The same rows as a table of an SQLite file `out`.
+int archive_samples(const ExportOptions& options);
+
+/// 0 when nothing is wrong.
+int archive_verify(const ArchiveOptions& options);
+/// 0 when every run was made again.
+int archive_rebuild(const ArchiveOptions& options);
+
+struct PruneOptions {
+    std::filesystem::path archive;
+    std::vector<std::uint32_t> runs;
+    std::optional<std::size_t> keep; ///< the newest so many stay
+    bool yes = false;                ///< else it only says what it would do
+};
+int archive_prune(const PruneOptions& options);
+int archive_vacuum(const std::filesystem::path& archive);
+int archive_backup(const std::filesystem::path& archive, const std::filesystem::path& copy);
 
 struct CampaignOptions {
     SharedOptions shared;

@@ -12,15 +12,6 @@ namespace {
 
 using namespace aeolis::server;
 
-struct Later {
-    const char* name;
-    const char* text;
-};
-constexpr std::array later_commands{
-    Later{"export", "recorded data out"},
-    Later{"archive", "verify, rebuild, prune, vacuum, backup"},
-};
-
 constexpr std::uint64_t campaign_cases_max = 10'000'000; // ours: a month on many processors
 constexpr std::size_t decode_skip_max = 65536;           // ours
 constexpr unsigned campaign_jobs_max = 256;              // ours: each holds a landing
@@ -266,14 +257,64 @@ int main(int argc, char** argv) {
     add_shared(*measured, measuring.shared);
     measured->callback([&] { exit_code = tones_bench(measuring); });
 
-    for (const auto& later : later_commands) {
-        auto* command = app.add_subcommand(later.name, fmt::format("(comes with a later issue) {}", later.text));
-        command->set_help_flag(); // there is nothing yet that it could explain
-        command->allow_extras();
-        command->callback([&exit_code, name = later.name] {
-            exit_code = failed(fmt::format("{} comes with a later issue", name), 2);
-        });
-    }
+    ExportOptions exporting;
+    exporting.of.shared = serving.shared;
+    exporting.of.archive = serving.archive;
+    const auto add_archive = [](CLI::App& command, std::filesystem::path& archive) {
+        command.add_option("--archive", archive, "the SQLite file that serve or rehearse wrote")->capture_default_str();
+    };
+    const auto add_archive_words = [&](CLI::App& command, ArchiveOptions& options) {
+        add_archive(command, options.archive);
+        command.add_option("--dictionary", options.shared.dictionary, "the mission's words")->capture_default_str();
+        command.add_option("--xtce", options.xtce, "the XTCE file of the mission that was followed, where it was not ours");
+    };
+    const auto add_selection = [&](CLI::App& command, ExportOptions& options) {
+        add_archive_words(command, options.of);
+        command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());
+        command.add_option("--channels", options.channels, "names or aliases, with commas between; left out: all")->delimiter(',');
+        command.add_option("--from", options.from_s, "first SCLK [s]; left out: all");
+        command.add_option("--to", options.to_s, "last SCLK [s]; left out: all");
+    };
+    auto* export_command = app.add_subcommand("export", "a run's samples in order of SCLK, live and recorded as one series: a row a "
+                                                        "sample, in the same memory however many");
+    add_selection(*export_command, exporting);
+    export_command->add_option("--format", exporting.format, "csv or jsonl")->check(CLI::IsMember({"csv", "jsonl"}))->capture_default_str();
+    export_command->add_option("--out", exporting.out, "a new file; left out: standard output");
+    export_command->callback([&] { exit_code = export_samples(exporting); });
+
+    auto* archive_command = app.add_subcommand("archive", "what is done to an archive now and then")->require_subcommand(1);
+    ArchiveOptions kept = exporting.of;
+    auto* verify = archive_command->add_subcommand(
+        "verify", "the file's structure, sequence numbers, and every derived row against the raw units, a line a fault; 1 when there is one");
+    add_archive_words(*verify, kept);
+    verify->add_option("--run", kept.run, "only this one")->check(whole_number());
+    verify->callback([&] { exit_code = archive_verify(kept); });
+    auto* rebuild = archive_command->add_subcommand(
+        "rebuild", "makes everything that follows from the raw units again and puts it in place of what is there; no writer may go on");
+    add_archive_words(*rebuild, kept);
+    rebuild->add_option("--run", kept.run, "only this one")->check(whole_number());
+    rebuild->callback([&] { exit_code = archive_rebuild(kept); });
+    ExportOptions tabulating = exporting;
+    auto* samples = archive_command->add_subcommand("samples", "a run's samples as rows of an SQLite file, for questions in plain SQL");
+    add_selection(*samples, tabulating);
+    samples->add_option("--out", tabulating.out, "the new file")->required();
+    samples->callback([&] { exit_code = archive_samples(tabulating); });
+    PruneOptions pruning;
+    pruning.archive = serving.archive;
+    auto* prune = archive_command->add_subcommand("prune", "takes runs away; without --yes it says which");
+    add_archive(*prune, pruning.archive);
+    auto* gone = prune->add_option("--run", pruning.runs, "numbers, with commas between")->delimiter(',')->check(whole_number());
+    prune->add_option("--keep", pruning.keep, "so many of the newest runs stay, all others go")->check(whole_number())->excludes(gone);
+    prune->add_flag("--yes", pruning.yes, "do it");
+    prune->callback([&] { exit_code = archive_prune(pruning); });
+    auto* vacuum = archive_command->add_subcommand("vacuum", "gives the room of pruned runs back to the disk; needs as much again meanwhile");
+    add_archive(*vacuum, pruning.archive);
+    vacuum->callback([&] { exit_code = archive_vacuum(pruning.archive); });
+    std::filesystem::path backup_to;
+    auto* backup = archive_command->add_subcommand("backup", "the whole archive, as it is now, into a new file; a writer goes on meanwhile");
+    add_archive(*backup, pruning.archive);
+    backup->add_option("--out", backup_to, "the new file")->required();
+    backup->callback([&] { exit_code = archive_backup(pruning.archive, backup_to); });
 
     try {
         app.parse(argc, argv);

@@ -18,7 +18,7 @@ using telemetry::Standing;
 PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                            const telemetry::OtherMission* other)
     : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other), alarms_(dictionary),
-      segments_(columns, segment_samples), latest_(dictionary.channels.size()) {
+      segments_(columns), latest_(dictionary.channels.size()) {
     if (other_ == nullptr) decommutator_.emplace(dictionary);
 }
 
@@ -99,7 +99,7 @@ void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& b
     const auto values = std::span<const double>(batch.values).subspan(first);
     batch.samples.push_back(
         {numbering.next(batch), *unit.packet, unit.sclk, unit.source, {first, batch.values.size() - first}});
-    segments_.add(*unit.packet, unit.source, unit.seq, unit.sclk, values, batch.segments);
+    segments_.add(*unit.packet, unit.source, unit.seq, unit.sclk, values, batch);
     if (unit.source == Source::realtime) judge(unit, values, numbering, batch);
 }
 

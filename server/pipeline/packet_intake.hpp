@@ -18,6 +18,8 @@ namespace aeolis::pipeline {
 /// Hands out sequence numbers, and notes them in the batch that will make them durable.
 class Numbering {
   public:
+    explicit Numbering(Sequence first = 1) : next_(first) {}
+
     Sequence next(archive::Batch& batch) {
         batch.last_seq = next_++;
         if (batch.first_seq == 0) batch.first_seq = batch.last_seq;
@@ -26,7 +28,7 @@ class Numbering {
     Sequence last() const { return next_ - 1; }
 
   private:
-    Sequence next_ = 1;
+    Sequence next_;
 };
 
 /// One run's packets as they come, on either path: what each is, whether it was seen before, and all that it says.
@@ -43,7 +45,7 @@ class PacketIntake {
 
     void take(const simulation::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
               const Observer& observer);
-    void seal(archive::Batch& batch) { segments_.seal(batch.segments); }
+    void seal(archive::Batch& batch) { segments_.seal(batch); }
 
     /// Of another mission: packets in real time only, each for itself.
     void take(const DownlinkPacket& packet, Numbering& numbering, archive::Batch& batch);

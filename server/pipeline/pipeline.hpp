@@ -40,7 +40,6 @@ using Compare = std::function<Result<void>(const PublishedBatch& again)>;
 inline constexpr std::chrono::milliseconds commit_interval{10}; ///< design.md: group commits at most every 10 ms
 inline constexpr std::size_t commit_items = 8192;               ///< or when so many wait: some 4096 units
 inline constexpr std::size_t pending_octets_max = 32U << 20;    ///< held while the disk fails; then the run must wait
-inline constexpr std::size_t segment_samples = 1024;            ///< limits.md
 
 /// What has come of a channel.
 struct LatestValue {

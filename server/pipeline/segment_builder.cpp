@@ -6,6 +6,7 @@
 
 namespace aeolis::pipeline {
 
+using archive::segment_samples;
 using archive::Source;
 
 namespace {
@@ -14,37 +15,37 @@ std::size_t index_of(Source source) {
 }
 } // namespace
 
-SegmentBuilder::SegmentBuilder(const archive::PacketColumns& columns, std::size_t samples_max)
-    : columns_(columns), samples_max_(samples_max), open_(columns.packets()) {}
+SegmentBuilder::SegmentBuilder(const archive::PacketColumns& columns) : columns_(columns), open_(columns.packets()) {}
 
 void SegmentBuilder::add(std::uint16_t packet, Source source, archive::Sequence unit, Sclk sclk,
-                         std::span<const double> values, std::vector<archive::SegmentRecord>& full) {
+                         std::span<const double> values, archive::Batch& batch) {
     AEOLIS_CHECK(source != Source::ground && values.size() == columns_.channels(packet).size());
     auto& open = open_[packet][index_of(source)];
     if (open.values.empty()) {
-        open.values.resize(values.size() * samples_max_);
-        open.sclk_s.reserve(samples_max_);
+        open.values.resize(values.size() * segment_samples);
+        open.sclk_s.reserve(segment_samples);
     }
     if (open.sclk_s.empty()) open.first_unit = unit;
     open.last_unit = unit;
     const std::size_t row = open.sclk_s.size();
     for (std::size_t c = 0; c < values.size(); ++c)
-        open.values[c * samples_max_ + row] = values[c];
+        open.values[c * segment_samples + row] = values[c];
     open.sclk_s.push_back(sclk.seconds);
-    if (open.sclk_s.size() == samples_max_) full.push_back(take(packet, source, open));
+    if (open.sclk_s.size() == segment_samples) close(packet, source, open, batch);
 }
 
-void SegmentBuilder::seal(std::vector<archive::SegmentRecord>& out) {
+void SegmentBuilder::seal(archive::Batch& batch) {
     for (std::size_t packet = 0; packet < open_.size(); ++packet)
         for (const Source source : {Source::realtime, Source::recorded})
-            if (auto& open = open_[packet][index_of(source)]; !open.sclk_s.empty())
-                out.push_back(take(packet, source, open));
+            if (auto& open = open_[packet][index_of(source)]; !open.sclk_s.empty()) close(packet, source, open, batch);
+    pyramid_.seal(batch.pyramid);
 }
 
-archive::SegmentRecord SegmentBuilder::take(std::size_t packet, Source source, Open& open) const {
-    archive::SegmentRecord segment;
+void SegmentBuilder::close(std::size_t packet, Source source, Open& open, archive::Batch& batch) {
+    auto& segment = batch.segments.emplace_back();
     segment.packet = static_cast<std::uint16_t>(packet);
     segment.source = source;
+    segment.position = open.position++;
     segment.first_unit = open.first_unit;
     segment.last_unit = open.last_unit;
     segment.sclk_s = open.sclk_s;
@@ -52,10 +53,10 @@ archive::SegmentRecord SegmentBuilder::take(std::size_t packet, Source source, O
     const std::size_t samples = open.sclk_s.size();
     segment.values.resize(segment.channels.size() * samples);
     for (std::size_t c = 0; c < segment.channels.size(); ++c)
-        std::copy_n(open.values.begin() + static_cast<std::ptrdiff_t>(c * samples_max_), samples,
+        std::copy_n(open.values.begin() + static_cast<std::ptrdiff_t>(c * segment_samples), samples,
                     segment.values.begin() + static_cast<std::ptrdiff_t>(c * samples));
     open.sclk_s.clear();
-    return segment;
+    pyramid_.add(segment, batch.pyramid);
 }
 
 } // namespace aeolis::pipeline

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "server/archive/packet_columns.hpp"
+#include "server/archive/pyramid.hpp"
 #include "server/archive/records.hpp"
 
 #include <array>
@@ -9,32 +10,36 @@
 
 namespace aeolis::pipeline {
 
-/// Collects the samples of one run, packet by packet and source by source, into segments of `samples_max`.
+/// Collects the samples of one run, packet by packet and source by source, into segments of archive::segment_samples,
+/// and the pyramid over them.
 ///
 /// In       sampled units in the order of their sequence numbers
-/// Out      a segment whenever one is full; the rest at seal()
-/// Memory   8 octets a value, at most samples_max samples a packet and source: some 2 MB for the mission's dictionary
+/// Out      a segment whenever one is full, with the blocks of the pyramid that it fills; the rest at seal()
+/// Memory   8 octets a value, at most segment_samples a packet and source: some 2 MB for the mission's dictionary; and
+///          the pyramid's open blocks
 class SegmentBuilder {
   public:
-    SegmentBuilder(const archive::PacketColumns& columns, std::size_t samples_max);
+    explicit SegmentBuilder(const archive::PacketColumns& columns);
 
+    /// Into the batch's `segments` and `pyramid`.
     void add(std::uint16_t packet, archive::Source source, archive::Sequence unit, Sclk sclk,
-             std::span<const double> values, std::vector<archive::SegmentRecord>& full);
+             std::span<const double> values, archive::Batch& batch);
     /// Everything that is not yet in a segment.
-    void seal(std::vector<archive::SegmentRecord>& out);
+    void seal(archive::Batch& batch);
 
   private:
     struct Open {
         archive::Sequence first_unit = 0, last_unit = 0;
+        std::uint64_t position = 0;
         std::vector<double> sclk_s;
-        std::vector<double> values; ///< samples_max to a channel
+        std::vector<double> values; ///< segment_samples to a channel
     };
-    archive::SegmentRecord take(std::size_t packet, archive::Source source, Open& open) const;
+    void close(std::size_t packet, archive::Source source, Open& open, archive::Batch& batch);
 
     static constexpr std::size_t sources = 2; ///< realtime, recorded
     const archive::PacketColumns& columns_;
-    std::size_t samples_max_;
     std::vector<std::array<Open, sources>> open_; ///< by packet
+    archive::pyramid::Builder pyramid_;
 };
 
 } // namespace aeolis::pipeline

@@ -52,12 +52,16 @@ const char* program() {
 
 TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
     if (program() == nullptr) return;
-    const std::array<std::pair<const char*, const char*>, 16> table{{
+    const std::array<std::pair<const char*, const char*>, 20> table{{
         {"frob", "there is no command 'frob'"},
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
         {"timeline analyse /nope", "/nope"},
-        {"archive --help", "comes with a later issue"},
+        {"archive frob", "there is no command 'archive frob'"},
+        {"archive prune --archive /nope", "either --run or --keep says which runs go"},
+        {"archive samples --run 1", "--out is required"},
+        {"export --archive /nope", "--run is required"},
+        {"export --run 1 --format xml", "xml not in {csv,jsonl}"},
         {"tones", "subcommand"},
         {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
         {"rehearse", "--scenario"},
@@ -100,6 +104,35 @@ TEST_CASE("the entry reference is a table of falling speed, with every row a num
         farthest_m = range_m;
     }
     CHECK(rows == static_cast<int>(aeolis::flight::EntryReference{}.rows.size()));
+}
+
+TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and pruned by the program", "[cli][archive][R43]") {
+    if (program() == nullptr) return;
+    const auto folder = std::filesystem::temp_directory_path() / ("aeolis-archive-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    const auto in = [&](const char* name) { return (folder / name).string(); };
+    const auto says = [&](const std::string& arguments, const char* text) {
+        const auto ended = run(program(), arguments);
+        INFO(arguments << " -> " << ended.code << ": " << ended.text.substr(0, 2000));
+        CHECK(ended.code == 0);
+        CHECK_THAT(ended.text, Catch::Contains(text));
+        return ended.text;
+    };
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
+    says("archive backup --archive " + in("a.db") + " --out " + in("b.db"), "all of ");
+    says("archive verify --archive " + in("b.db"), "nothing wrong");
+    const auto rows = says("export --run 1 --channels altitude_m,speed_mps --archive " + in("b.db"), "sclk,e_s,channel,value,unit,source\n");
+    const auto objects = says("export --run 1 --channels altitude_m,speed_mps --format jsonl --archive " + in("b.db"), R"("channel":"altitude_m")");
+    CHECK(std::count(rows.begin(), rows.end(), '\n') == std::count(objects.begin(), objects.end(), '\n') + 1);
+    says("archive samples --run 1 --channels altitude_m,speed_mps --archive " + in("b.db") + " --out " + in("samples.db"),
+         (std::to_string(std::count(objects.begin(), objects.end(), '\n')) + " samples of run 1").c_str());
+    says("archive rebuild --archive " + in("b.db"), "run 1: made again from its units");
+    CHECK(run(program(), "export --run 1 --channels altitude_m,speed_mps --archive " + in("b.db")).text == rows);
+    says("archive prune --keep 0 --archive " + in("b.db"), "1 of 1 runs would go; --yes takes them away");
+    says("archive prune --keep 0 --yes --archive " + in("b.db"), "1 of 1 runs are gone");
+    says("archive vacuum --archive " + in("b.db"), "octets, before");
+    CHECK(run(program(), "export --run 1 --archive " + in("b.db")).code == 1);
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("the truth of a landing is written in even rows to where it stands", "[cli]") {

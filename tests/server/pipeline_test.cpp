@@ -1,6 +1,7 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
+#include "tests/server/schema_three.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -267,6 +268,7 @@ TEST_CASE("an archive of the first schema is read as it is, and is brought up to
     const auto database = [&](archive::sqlite::Mode mode) {
         return std::move(archive::sqlite::Database::open(ground.file.string(), mode)).value();
     };
+    test::make_schema_three(ground.file);
     REQUIRE(database(archive::sqlite::Mode::read_write_create)
                 .execute("DROP VIEW tone_evidence_log; DROP TABLE tone_evidence; DROP TABLE tone_likelihoods; DROP TABLE link_totals;"
                          "PRAGMA user_version = 1")

@@ -78,6 +78,31 @@ TEST_CASE("a series is exact, with undefined values left out, whether sealed or 
     }
 }
 
+TEST_CASE("all samples of a run come in order of time, whole, whatever is asked for", "[reader][export]") {
+    const bool finished = GENERATE(false, true);
+    Recorded run(finished);
+    std::vector<archive::ChannelValue> all;
+    const auto take = [&](std::span<const archive::ChannelValue> some) -> Result<void> {
+        all.insert(all.end(), some.begin(), some.end());
+        return {};
+    };
+    REQUIRE(run.reader.each_sample(RunId{1}, {}, {}, take).ok());
+    CHECK(all.size() == samples * 9 / 10 + samples + 79);
+    CHECK(std::ranges::is_sorted(all, {}, [](const auto& sample) { return sample.sclk.seconds; }));
+    all.clear();
+    REQUIRE(run.reader.each_sample(RunId{1}, {"speed_mps"}, {1001.0, 1002.0}, take).ok());
+    REQUIRE(all.size() == 65);
+    CHECK(all.front().sclk == Sclk{1001.0});
+    CHECK(all.back().sclk == Sclk{1002.0});
+    CHECK(all.back().channel == speed);
+    all.clear();
+    REQUIRE(run.reader.each_sample(RunId{1}, {"speed_mps"}, {2000.0, {}}, take).ok());
+    CHECK(all.empty());
+    CHECK(run.reader.each_sample(RunId{1}, {"altitud"}, {}, take).error().message == "no channel 'altitud'");
+    const auto full = run.reader.each_sample(RunId{1}, {}, {}, [](auto) -> Result<void> { return Error{"full"}; });
+    CHECK(full.error().message == "full");
+}
+
 TEST_CASE("a range includes both its ends", "[reader]") {
     const bool finished = GENERATE(false, true);
     Recorded run(finished);

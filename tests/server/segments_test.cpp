@@ -21,12 +21,12 @@ constexpr std::uint16_t navigation = 0, status = 1; // packets of the small miss
 struct Fixture {
     dictionary::Dictionary dictionary = test::small_dictionary();
     PacketColumns columns{dictionary};
-    SegmentBuilder builder{columns, 4};
-    std::vector<SegmentRecord> full;
+    SegmentBuilder builder{columns};
+    Batch batch;
 
     void add(Sequence unit, Source source, double altitude_m, double speed_mps) {
         const std::array values{altitude_m, speed_mps};
-        builder.add(navigation, source, unit, Sclk{static_cast<double>(unit)}, values, full);
+        builder.add(navigation, source, unit, Sclk{static_cast<double>(unit)}, values, batch);
     }
 };
 
@@ -42,33 +42,43 @@ TEST_CASE("a packet's channels are its columns, and a channel knows its packets"
 
 TEST_CASE("a segment is handed over when full, column by column, and the next one begins empty", "[segments]") {
     Fixture fixture;
-    for (Sequence unit = 10; unit < 15; ++unit)
+    for (Sequence unit = 10; unit < 11 + segment_samples; ++unit)
         fixture.add(unit, Source::realtime, 100.0 * static_cast<double>(unit), static_cast<double>(unit));
-    REQUIRE(fixture.full.size() == 1);
-    const auto& segment = fixture.full.front();
+    REQUIRE(fixture.batch.segments.size() == 1);
+    const auto& segment = fixture.batch.segments.front();
+    CHECK(segment.position == 0);
     CHECK(segment.first_unit == 10);
-    CHECK(segment.last_unit == 13);
-    CHECK(segment.sclk_s == std::vector<double>{10, 11, 12, 13});
-    CHECK(segment.values == std::vector<double>{1000, 1100, 1200, 1300, 10, 11, 12, 13});
+    CHECK(segment.last_unit == 9 + segment_samples);
+    REQUIRE(segment.sclk_s.size() == segment_samples);
+    REQUIRE(segment.values.size() == 2 * segment_samples);
+    bool in_place = true;
+    for (std::size_t i = 0; i < segment_samples; ++i)
+        in_place = in_place && segment.sclk_s[i] == static_cast<double>(10 + i) && segment.values[i] == 100.0 * segment.sclk_s[i] &&
+                   segment.values[segment_samples + i] == segment.sclk_s[i];
+    CHECK(in_place);
 
-    std::vector<SegmentRecord> rest;
+    Batch rest;
     fixture.builder.seal(rest);
-    REQUIRE(rest.size() == 1);
-    CHECK(rest.front().first_unit == 14);
-    CHECK(rest.front().values == std::vector<double>{1400, 14});
+    REQUIRE(rest.segments.size() == 1);
+    CHECK(rest.segments.front().position == 1);
+    CHECK(rest.segments.front().first_unit == 10 + segment_samples);
+    CHECK(rest.segments.front().values == std::vector<double>{100.0 * (10 + segment_samples), 10 + segment_samples});
     rest.clear();
     fixture.builder.seal(rest);
-    CHECK(rest.empty());
+    CHECK(rest.segments.empty());
 }
 
 TEST_CASE("real time and recording fill segments of their own", "[segments]") {
     Fixture fixture;
-    for (Sequence unit = 1; unit <= 8; ++unit)
+    for (Sequence unit = 1; unit <= 2 * segment_samples; ++unit)
         fixture.add(unit, unit % 2 == 0 ? Source::realtime : Source::recorded, 1.0, 2.0);
-    REQUIRE(fixture.full.size() == 2);
-    CHECK(fixture.full[0].source == Source::recorded);
-    CHECK(fixture.full[0].sclk_s == std::vector<double>{1, 3, 5, 7});
-    CHECK(fixture.full[1].source == Source::realtime);
+    const auto& segments = fixture.batch.segments;
+    REQUIRE(segments.size() == 2);
+    CHECK(segments[0].source == Source::recorded);
+    CHECK(segments[0].sclk_s.front() == 1.0);
+    CHECK(segments[0].sclk_s.back() == 2.0 * segment_samples - 1.0);
+    CHECK(segments[1].source == Source::realtime);
+    CHECK(segments[1].position == 0);
 }
 
 TEST_CASE("a stored column tells its least, largest, first and last defined value", "[segments][R43]") {
@@ -82,9 +92,8 @@ TEST_CASE("a stored column tells its least, largest, first and last defined valu
     auto archive = Archive::open(file);
     REQUIRE(archive.ok());
     const auto run = archive->begin_run({}, fixture.dictionary);
-    Batch batch;
-    batch.segments = fixture.full;
-    REQUIRE(archive->append(*run, batch).ok());
+    fixture.builder.seal(fixture.batch);
+    REQUIRE(archive->append(*run, fixture.batch).ok());
 
     auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
     auto rows = database->prepare("SELECT defined, least, least_sclk, largest, largest_sclk, first, last FROM "

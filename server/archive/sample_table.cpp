@@ -1,0 +1,53 @@
+#include "server/archive/sample_table.hpp"
+
+namespace aeolis::archive {
+
+SampleTable::SampleTable(std::filesystem::path file, sqlite::Database database, sqlite::Statement insert)
+    : file_(std::move(file)), database_(std::move(database)), insert_(std::move(insert)) {}
+SampleTable::SampleTable(SampleTable&& other) noexcept
+    : file_(std::exchange(other.file_, {})), database_(std::move(other.database_)), insert_(std::move(other.insert_)) {}
+
+SampleTable::~SampleTable() {
+    if (file_.empty()) return;
+    std::error_code ignored;
+    std::filesystem::remove(file_, ignored);
+}
+
+Result<SampleTable> SampleTable::create(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored)) return Error{file.string() + " is there already: nothing is overwritten"};
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+    if (!database) return database.error();
+    // A file that can be made again: it is all there when finish() is done, or it is not there.
+    constexpr char begin[] = "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
+                             "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"
+                             " e_s REAL NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL, source TEXT NOT NULL) STRICT;"
+                             "BEGIN";
+    if (auto done = database->execute(begin); !done) return done.error();
+    auto insert = database->prepare("INSERT INTO samples VALUES (?,?,?,?,?,?,?)");
+    if (!insert) return insert.error();
+    return SampleTable(file, std::move(*database), std::move(*insert));
+}
+
+Result<void> SampleTable::add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary, std::span<const ChannelValue> samples) {
+    for (const ChannelValue& sample : samples) {
+        const auto& channel = dictionary.channels[sample.channel.value];
+        insert_.bind(1, std::int64_t{run.value})
+            .bind(2, std::string_view(channel.name))
+            .bind(3, sample.sclk.seconds)
+            .bind(4, sample.sclk.seconds - entry.seconds)
+            .bind(5, sample.value)
+            .bind(6, std::string_view(channel.type.unit))
+            .bind(7, std::string_view(sample.source == Source::realtime ? "realtime" : "recorded"));
+        if (auto done = insert_.run(); !done) return done;
+    }
+    return {};
+}
+
+Result<void> SampleTable::finish() {
+    auto done = database_.execute("COMMIT; CREATE INDEX samples_by_channel ON samples (run, channel, sclk)");
+    if (done) file_.clear();
+    return done;
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,166 @@
+#include "server/archive/upkeep.hpp"
+
+#include "server/archive/archive.hpp"
+#include "server/archive/schema.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace aeolis::archive {
+
+namespace {
+
+/// Every number that an item of the run has.
+std::string item_keys_sql(const std::string& schema) {
+    std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " + schema +
+                      "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+    for (const char* table : {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes", "alarms"})
+        sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
+    return sql;
+}
+
+/// The file and its folder: what has been written, and the name it has.
+Result<void> make_durable(const std::filesystem::path& file) {
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    for (const auto& each : {file, folder}) {
+        const int descriptor = ::open(each.c_str(), O_RDONLY | O_CLOEXEC);
+        const bool done = descriptor >= 0 && ::fsync(descriptor) == 0;
+        const int why = errno;
+        if (descriptor >= 0) ::close(descriptor);
+        if (!done) return Error{each.string() + ": " + std::strerror(why)};
+    }
+    return {};
+}
+
+} // namespace
+
+Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return Error{file.string() + ": there is no such file"};
+    // The writer's own way in: it refuses what is not ours, brings the schema up to date and marks what was cut off.
+    if (auto opened = Archive::open(file); !opened) return opened.error();
+    auto lock = WriterLock::take(file);
+    if (!lock) return lock.error();
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+    if (!database) return database.error();
+    if (auto done = database->execute("PRAGMA synchronous = FULL"); !done) return done.error();
+    return Maintenance(std::move(lock).value(), std::move(database).value());
+}
+
+Result<std::vector<RunLine>> run_lines(sqlite::Database& database) {
+    auto rows = database.prepare("SELECT run, scenario, state, outcome, started, (SELECT count(*) FROM units u"
+                                 " WHERE u.key BETWEEN r.run << 40 AND r.run << 40 | 0xFFFFFFFFFF) FROM runs r ORDER BY run");
+    if (!rows) return rows.error();
+    std::vector<RunLine> lines;
+    for (;;) {
+        auto found = rows->step();
+        if (!found) return found.error();
+        if (!*found) return lines;
+        lines.push_back({RunId{static_cast<std::uint32_t>(rows->integer(0))}, std::string(rows->text(1)), std::string(rows->text(2)),
+                         std::string(rows->text(3)), std::string(rows->text(4)), static_cast<std::uint64_t>(rows->integer(5))});
+    }
+}
+
+Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs) {
+    auto& database = archive.database();
+    auto transaction = sqlite::Transaction::begin_write(database);
+    if (!transaction) return transaction.error();
+    auto note = database.prepare("INSERT INTO pruned_runs SELECT run, scenario, seed, case_number, outcome, started,"
+                                 " strftime('%Y-%m-%dT%H:%M:%SZ') FROM runs WHERE run = ?1 RETURNING run");
+    if (!note) return note.error();
+    for (const RunId run : runs) {
+        note->bind(1, std::int64_t{run.value});
+        auto found = note->step();
+        if (!found) return found.error();
+        if (!*found) return Error{"no run " + std::to_string(run.value) + " in " + database.file()};
+        note->reset();
+        for (const RunTable& table : run_tables) {
+            auto taken = database.prepare((std::string("DELETE FROM ") + table.name + " WHERE " + table.rows).c_str());
+            if (!taken) return taken.error();
+            taken->bind(1, std::int64_t{run.value});
+            if (auto done = taken->run(); !done) return done;
+        }
+    }
+    return transaction->commit();
+}
+
+Result<void> vacuum(Maintenance& archive) {
+    if (auto done = archive.database().execute("VACUUM"); !done) return done;
+    return archive.database().execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+Result<void> backup(const std::filesystem::path& file, const std::filesystem::path& copy) {
+    std::error_code ignored;
+    if (std::filesystem::exists(copy, ignored)) return Error{copy.string() + " is there already: nothing is overwritten"};
+    auto source = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
+    if (!source) return source.error();
+    if (auto ours = check_for_reading(*source); !ours) return ours;
+    auto partial = copy;
+    partial += "-partial";
+    std::filesystem::remove(partial, ignored);
+    const auto copied = [&]() -> Result<void> {
+        auto target = sqlite::Database::open(partial.string(), sqlite::Mode::read_write_create);
+        if (!target) return target.error();
+        if (auto done = source->copy_to(*target); !done) return done;
+        // One file, without a log beside it: a copy is carried about.
+        return target->execute("PRAGMA journal_mode = DELETE");
+    }();
+    auto done = copied ? make_durable(partial) : copied;
+    if (done) {
+        std::error_code why;
+        std::filesystem::rename(partial, copy, why);
+        done = why ? Result<void>(Error{copy.string() + ": " + why.message()}) : make_durable(copy);
+    }
+    if (!done) std::filesystem::remove(partial, ignored);
+    return done;
+}
+
+Result<std::vector<std::string>> integrity_faults(sqlite::Database& database) {
+    auto rows = database.prepare("PRAGMA integrity_check(20)");
+    if (!rows) return rows.error();
+    std::vector<std::string> faults;
+    for (;;) {
+        auto found = rows->step();
+        if (!found) return found.error();
+        if (!*found) return faults;
+        if (rows->text(0) != "ok") faults.emplace_back(rows->text(0));
+    }
+}
+
+Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema, std::size_t most) {
+    const std::string sql = "SELECT before, key FROM (SELECT lag(key, 1, ?1) OVER (ORDER BY key) AS before, key FROM (" +
+                            item_keys_sql(schema) + ")) WHERE key <> before + 1 LIMIT ?3";
+    auto rows = database.prepare(sql.c_str());
+    if (!rows) return rows.error();
+    rows->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, static_cast<std::int64_t>(most));
+    std::vector<std::string> faults;
+    const auto of_run = "run " + std::to_string(run.value) + ": ";
+    for (;;) {
+        auto found = rows->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        const Sequence before = sequence_of(rows->integer(0)), next = sequence_of(rows->integer(1));
+        if (before == next)
+            faults.push_back(of_run + "two items have the number " + std::to_string(next));
+        else
+            faults.push_back(of_run + "no item has the number" + (next == before + 2 ? " " : "s ") + std::to_string(before + 1) +
+                             (next == before + 2 ? "" : " to " + std::to_string(next - 1)));
+    }
+    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema) + ")) FROM " + schema +
+                                  "runs WHERE run = ?3 AND last_seq IS NOT NULL")
+                                     .c_str());
+    if (!last) return last.error();
+    last->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{run.value});
+    auto found = last->step();
+    if (!found) return found.error();
+    if (*found) {
+        const auto noted = static_cast<Sequence>(last->integer(0)), stored = last->is_null(1) ? 0 : sequence_of(last->integer(1));
+        if (noted != stored)
+            faults.push_back(of_run + "its last item should be " + std::to_string(noted) + ", and is " + std::to_string(stored));
+    }
+    return faults;
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,107 @@
+#include "server/archive/upkeep.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/recorded_words.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/pipeline/derivation.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+int failed_at(const char* command, const Error& error) {
+    return failed(fmt::format("archive {}: {}", command, error.message));
+}
+
+std::optional<archive::RunId> asked(const ArchiveOptions& options) {
+    return options.run ? std::optional(archive::RunId{*options.run}) : std::nullopt;
+}
+
+/// Runs to take away, or what is wrong with the question.
+Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const std::vector<archive::RunLine>& all) {
+    std::vector<archive::RunLine> runs;
+    if (options.keep) {
+        const std::size_t kept = std::min(*options.keep, all.size());
+        runs.assign(all.begin(), all.end() - static_cast<std::ptrdiff_t>(kept));
+        return runs;
+    }
+    for (const std::uint32_t number : options.runs) {
+        const auto found = std::ranges::find(all, archive::RunId{number}, &archive::RunLine::run);
+        if (found == all.end()) return Error{fmt::format("no run {} in {}", number, options.archive.string())};
+        runs.push_back(*found);
+    }
+    return runs;
+}
+
+} // namespace
+
+int archive_verify(const ArchiveOptions& options) {
+    int exit_code = 0;
+    const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
+    if (!words) return exit_code;
+    const auto found =
+        pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(), std::filesystem::temp_directory_path());
+    if (!found) return failed_at("verify", found.error());
+    for (const auto& fault : found->faults)
+        fmt::print("{}\n", fault);
+    for (const auto& note : found->notes)
+        fmt::print("note: {}\n", note);
+    fmt::print("{}: {} runs, {} units told again, {}\n", options.archive.string(), found->runs, found->units,
+               found->faults.empty() ? "nothing wrong" : fmt::format("{} faults", found->faults.size()));
+    return found->faults.empty() ? 0 : 1;
+}
+
+int archive_rebuild(const ArchiveOptions& options) {
+    int exit_code = 0;
+    const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
+    if (!words) return exit_code;
+    const auto rebuilt = pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get());
+    if (!rebuilt) return failed_at("rebuild", rebuilt.error());
+    for (const auto& run : rebuilt->runs)
+        fmt::print("run {}: made again from its units\n", run.value);
+    for (const auto& left : rebuilt->left)
+        fmt::print("left as it is: {}\n", left);
+    return rebuilt->left.empty() ? 0 : 1;
+}
+
+int archive_prune(const PruneOptions& options) {
+    if (options.runs.empty() == !options.keep) return failed("archive prune: either --run or --keep says which runs go", 2);
+    auto archive = archive::Maintenance::open(options.archive);
+    if (!archive) return failed_at("prune", archive.error());
+    const auto all = archive::run_lines(archive->database());
+    if (!all) return failed_at("prune", all.error());
+    const auto runs = chosen(options, *all);
+    if (!runs) return failed_at("prune", runs.error());
+    std::vector<archive::RunId> numbers;
+    for (const auto& run : *runs) {
+        numbers.push_back(run.run);
+        fmt::print("run {:>4}  {}  {}  {} ({}), {} units\n", run.run.value, run.started, run.scenario, run.state, run.outcome, run.units);
+    }
+    if (!options.yes || runs->empty()) {
+        fmt::print("{} of {} runs would go; {}\n", runs->size(), all->size(), runs->empty() ? "nothing to do" : "--yes takes them away");
+        return 0;
+    }
+    if (auto done = archive::prune(*archive, numbers); !done) return failed_at("prune", done.error());
+    fmt::print("{} of {} runs are gone; aeolis archive vacuum gives their room back to the disk\n", runs->size(), all->size());
+    return 0;
+}
+
+int archive_vacuum(const std::filesystem::path& file) {
+    auto archive = archive::Maintenance::open(file);
+    if (!archive) return failed_at("vacuum", archive.error());
+    std::error_code ignored;
+    const auto before = std::filesystem::file_size(file, ignored);
+    if (auto done = archive::vacuum(*archive); !done) return failed_at("vacuum", done.error());
+    fmt::print("{}: {} octets, before {}\n", file.string(), std::filesystem::file_size(file, ignored), before);
+    return 0;
+}
+
+int archive_backup(const std::filesystem::path& file, const std::filesystem::path& copy) {
+    if (auto done = archive::backup(file, copy); !done) return failed_at("backup", done.error());
+    std::error_code ignored;
+    fmt::print("{}: {} octets, all of {} as it was\n", copy.string(), std::filesystem::file_size(copy, ignored), file.string());
+    return 0;
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,369 @@
+#include "server/pipeline/derivation.hpp"
+
+#include "server/archive/archive.hpp"
+#include "server/archive/column_codec.hpp"
+#include "server/archive/row_reader.hpp"
+#include "server/archive/row_writer.hpp"
+#include "server/archive/schema.hpp"
+#include "server/archive/upkeep.hpp"
+#include "server/pipeline/packet_intake.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <unistd.h>
+
+namespace aeolis::pipeline {
+
+using archive::RunId;
+namespace sqlite = archive::sqlite;
+
+namespace {
+
+constexpr std::size_t batch_units = 4096;  ///< ours: some MB in hand
+constexpr std::size_t faults_a_table = 20; ///< ours: more nobody reads
+constexpr int first_schema_with_packed_segments = 4;
+
+struct RunToDerive {
+    RunId run;
+    bool finished = false;
+    std::uint16_t dictionary = 0;
+    double progress = 0.0; ///< of the recording: the only one of its totals that no unit tells
+};
+
+/// An archive of derived rows only, beside which the one they are derived from is attached as "archive": one transaction
+/// sees both at one moment. The file goes with it.
+class Scratch {
+  public:
+    static Result<Scratch> open(const std::filesystem::path& file, const std::filesystem::path& archive) {
+        remove(file);
+        auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+        if (!database) return database.error();
+        Scratch scratch(file, std::move(*database));
+        // Nothing here has to survive anything.
+        for (const char* sql : {"PRAGMA journal_mode = OFF", "PRAGMA synchronous = OFF"})
+            if (auto done = scratch.database_.execute(sql); !done) return done.error();
+        if (auto done = archive::prepare_for_writing(scratch.database_); !done) return done.error();
+        if (auto done = scratch.database_.attach_read_only(archive, "archive"); !done) return done.error();
+        if (auto done = scratch.database_.execute("INSERT OR REPLACE INTO main.words SELECT * FROM archive.words"); !done)
+            return done.error();
+        return scratch;
+    }
+    Scratch(Scratch&& other) noexcept : file_(std::exchange(other.file_, {})), database_(std::move(other.database_)) {}
+    Scratch& operator=(Scratch&&) = delete;
+    ~Scratch() {
+        if (!file_.empty()) remove(file_);
+    }
+
+    sqlite::Database& database() { return database_; }
+    const std::filesystem::path& file() const { return file_; }
+
+  private:
+    Scratch(std::filesystem::path file, sqlite::Database database) : file_(std::move(file)), database_(std::move(database)) {}
+    static void remove(const std::filesystem::path& file) {
+        std::error_code ignored;
+        std::filesystem::remove(file, ignored);
+    }
+
+    std::filesystem::path file_;
+    sqlite::Database database_;
+};
+
+Result<std::vector<RunToDerive>> runs_of(sqlite::Database& database, std::optional<RunId> only) {
+    auto rows = database.prepare("SELECT r.run, r.state = 'finished', r.dictionary, coalesce(c.progress, 0)"
+                                 " FROM archive.runs r LEFT JOIN archive.recordings c ON c.run = r.run"
+                                 " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run");
+    if (!rows) return rows.error();
+    if (only)
+        rows->bind(1, std::int64_t{only->value});
+    else
+        rows->bind_null(1);
+    std::vector<RunToDerive> runs;
+    for (;;) {
+        auto found = rows->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        runs.push_back({RunId{static_cast<std::uint32_t>(rows->integer(0))}, rows->integer(1) != 0,
+                        static_cast<std::uint16_t>(rows->integer(2)), rows->real(3)});
+    }
+    if (only && runs.empty()) return Error{"no run " + std::to_string(only->value)};
+    return runs;
+}
+
+std::string other_words(const RunToDerive& run, const dictionary::Dictionary& dictionary) {
+    return "run " + std::to_string(run.run.value) + " was recorded with dictionary " + std::to_string(run.dictionary) +
+           ", this program has " + std::to_string(dictionary.id);
+}
+
+/// Derived rows of a run, from "archive" into "main". @return its units
+Result<std::size_t> derive(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
+                           const telemetry::OtherMission* other) {
+    auto writer = archive::RowWriter::open(database);
+    if (!writer) return writer.error();
+    std::string units_sql = archive::row::unit_rows;
+    units_sql.replace(units_sql.find("FROM units"), std::string_view("FROM units").size(), "FROM archive.units");
+    auto units = database.prepare(units_sql.c_str());
+    if (!units) return units.error();
+    units->bind(1, archive::item_key(run.run, 0)).bind(2, archive::item_key(run.run, archive::sequence_max)).bind(3, std::int64_t{-1});
+    const archive::PacketColumns columns(dictionary);
+    PacketIntake intake(dictionary, columns, other);
+    archive::Batch batch;
+    std::size_t count = 0;
+    for (;;) {
+        auto found = units->step();
+        if (!found) return found.error();
+        if (!*found) break;
+        const auto stored = archive::row::unit(*units);
+        const auto octets = units->octets(archive::row::unit_octets_column);
+        Numbering numbering(stored.seq);
+        if (other != nullptr)
+            intake.take(DownlinkPacket{{octets.begin(), octets.end()}, stored.ert}, numbering, batch);
+        else
+            intake.take(simulation::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded}, stored.ert, {octets.begin(), octets.end()}},
+                        numbering, batch, {});
+        ++count;
+        if (batch.units.size() < batch_units) continue;
+        if (auto done = writer->write(run.run, batch); !done) return done.error();
+        batch.clear();
+    }
+    if (run.finished) intake.seal(batch);
+    if (count > 0) {
+        batch.totals = intake.totals();
+        batch.totals->progress = run.progress;
+    }
+    if (auto done = writer->write(run.run, batch); !done) return done.error();
+    return count;
+}
+
+/// What is wrong with one of a run's tables, found by comparing "archive" with "main".
+class Comparison {
+  public:
+    Comparison(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary, std::vector<std::string>& faults)
+        : database_(database), run_(run), dictionary_(dictionary), faults_(faults) {}
+
+    /// All of its columns but `packed`, whose octets may differ where what is packed does not.
+    Result<void> rows(const archive::RunTable& table, const std::string& key, const std::string& packed) {
+        auto columns = columns_of(table.name, packed);
+        if (!columns) return columns.error();
+        const auto one_way = [&](const char* from, const char* less, const char* mark) {
+            const auto of = [&](const char* schema) {
+                return "SELECT " + *columns + " FROM " + schema + "." + table.name + " WHERE " + table.rows;
+            };
+            return std::string("SELECT ") + key + " AS item, " + mark + " AS side FROM (" + of(from) + " EXCEPT " + of(less) + ")";
+        };
+        const std::string sql = "SELECT item, max(side = 1) + 2 * max(side = 2) FROM (" + one_way("archive", "main", "1") + " UNION ALL " +
+                                one_way("main", "archive", "2") + ") GROUP BY item ORDER BY item LIMIT " + std::to_string(faults_a_table);
+        auto rows = database_.prepare(sql.c_str());
+        if (!rows) return rows.error();
+        rows->bind(1, std::int64_t{run_.run.value});
+        for (;;) {
+            auto found = rows->step();
+            if (!found) return found.error();
+            if (!*found) return {};
+            const auto side = rows->integer(1);
+            add(table.name, named(table.name, *rows), side == 1   ? "is stored, and no unit says it"
+                                                      : side == 2 ? "is missing: a unit says it"
+                                                                  : "is not what its unit says");
+        }
+    }
+
+    /// Packed columns of a table whose octets differ.
+    Result<void> packed(const char* table, const char* sql) {
+        auto rows = database_.prepare(sql);
+        if (!rows) return rows.error();
+        rows->bind(1, std::int64_t{run_.run.value});
+        std::vector<double> stored, derived;
+        for (std::size_t faults = 0; faults < faults_a_table;) {
+            auto found = rows->step();
+            if (!found) return found.error();
+            if (!*found) break;
+            derived.resize(static_cast<std::size_t>(rows->integer(1)));
+            stored.resize(derived.size());
+            if (auto fine = codec_.unpack(rows->octets(3), derived); !fine) return fine;
+            const auto readable = codec_.unpack(rows->octets(2), stored);
+            const bool same = readable.ok() && std::ranges::equal(stored, derived, {}, std::bit_cast<std::uint64_t, double>,
+                                                                  std::bit_cast<std::uint64_t, double>);
+            if (same) continue;
+            add(table, named(table, *rows), readable ? "its samples are not those of its units" : "is damaged: " + readable.error().message);
+            ++faults;
+        }
+        return {};
+    }
+
+  private:
+    Result<std::string> columns_of(const char* table, const std::string& left_out) {
+        auto rows = database_.prepare("SELECT group_concat(name, ', ') FROM pragma_table_info(?1, 'main') WHERE name <> ?2");
+        if (!rows) return rows.error();
+        rows->bind(1, std::string_view(table)).bind(2, std::string_view(left_out));
+        auto found = rows->step();
+        if (!found) return found.error();
+        return std::string(rows->text(0));
+    }
+    std::string named(std::string_view table, const sqlite::Statement& row) const {
+        if (table == "segments") return "segment " + std::to_string(row.integer(0));
+        if (table == "segment_columns" || table == "pyramid_columns") {
+            const auto channel = static_cast<std::size_t>(row.integer(0) % 65536);
+            return (table == "segment_columns" ? "segment " : "block ") + std::to_string(row.integer(0) / 65536) + ", channel " +
+                   (channel < dictionary_.channels.size() ? dictionary_.channels[channel].name : std::to_string(channel));
+        }
+        if (table == "pyramid") return "block " + std::to_string(row.integer(0));
+        if (table == "recordings") return "the row";
+        return "item " + std::to_string(archive::sequence_of(row.integer(0)));
+    }
+    void add(std::string_view table, const std::string& item, const std::string& what) {
+        faults_.push_back("run " + std::to_string(run_.run.value) + ": " + std::string(table) + ": " + item + " " + what);
+    }
+
+    sqlite::Database& database_;
+    const RunToDerive& run_;
+    const dictionary::Dictionary& dictionary_;
+    std::vector<std::string>& faults_;
+    archive::ColumnCodec codec_;
+};
+
+Result<void> compare(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary, Verification& found) {
+    auto plain = database.integer_of(
+        ("SELECT count(*) FROM archive.segments WHERE packed = 0 AND run = " + std::to_string(run.run.value)).c_str());
+    if (!plain) return plain.error();
+    if (*plain > 0)
+        found.notes.push_back("run " + std::to_string(run.run.value) + ": its " + std::to_string(*plain) +
+                              " segments are those of schema 3 and were not compared; aeolis archive rebuild packs them");
+    Comparison comparison(database, run, dictionary, found.faults);
+    for (const archive::RunTable& table : archive::run_tables) {
+        const std::string_view name = table.name;
+        const bool of_segments = name == "segments" || name == "segment_columns" || name.starts_with("pyramid");
+        if (!table.derived || (of_segments && *plain > 0)) continue;
+        const std::string key = name == "segments"          ? "segment"
+                                : name == "recordings"      ? "run"
+                                : name == "pyramid"         ? "block"
+                                                            : "key";
+        const std::string packed = name == "segments" ? "sclk" : name == "segment_columns" ? "value" : name == "pyramid" ? "spans" : "";
+        if (auto done = comparison.rows(table, key, packed); !done) return done;
+    }
+    if (*plain > 0) return {};
+    if (auto done = comparison.packed("segments", "SELECT a.segment, b.samples, a.sclk, b.sclk FROM archive.segments a JOIN main.segments b"
+                                                  " USING (segment) WHERE a.run = ?1 AND a.sclk <> b.sclk");
+        !done)
+        return done;
+    if (auto done = comparison.packed("pyramid", "SELECT b.block, 2 * b.nodes, a.spans, b.spans"
+                                                 " FROM archive.pyramid a JOIN main.pyramid b USING (run, packet, source, level, position)"
+                                                 " WHERE run = ?1 AND a.spans <> b.spans");
+        !done)
+        return done;
+    return comparison.packed("segment_columns",
+                             "SELECT a.key, s.samples, a.value, b.value FROM main.segments s JOIN main.segment_columns b"
+                             " ON b.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535"
+                             " JOIN archive.segment_columns a ON a.key = b.key WHERE s.run = ?1 AND a.value <> b.value");
+}
+
+} // namespace
+
+Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
+                            const telemetry::OtherMission* other, const std::filesystem::path& scratch_folder) {
+    Verification found;
+    int schema = 0;
+    {
+        auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
+        if (!database) return database.error();
+        if (auto ours = archive::check_for_reading(*database); !ours) return ours.error();
+        auto version = database->integer_of("PRAGMA user_version");
+        if (!version) return version.error();
+        schema = static_cast<int>(*version);
+        auto faults = archive::integrity_faults(*database);
+        if (!faults) return faults.error();
+        for (auto& fault : *faults)
+            found.faults.push_back("the file: " + std::move(fault));
+        if (!found.faults.empty()) return found; // what the rest would find is no news
+    }
+    auto scratch = Scratch::open(scratch_folder / ("aeolis-verify-" + std::to_string(::getpid()) + ".db"), file);
+    if (!scratch) return scratch.error();
+    auto& database = scratch->database();
+    auto transaction = sqlite::Transaction::begin_write(database);
+    if (!transaction) return transaction.error();
+    auto runs = runs_of(database, only);
+    if (!runs) return runs.error();
+    if (schema < first_schema_with_packed_segments)
+        found.notes.push_back(file.string() + " has schema " + std::to_string(schema) +
+                              ": its derived rows were not compared; aeolis archive rebuild brings it up to date");
+    for (const RunToDerive& run : *runs) {
+        ++found.runs;
+        auto gaps = archive::sequence_faults(database, run.run, "archive.", faults_a_table);
+        if (!gaps) return gaps.error();
+        found.faults.insert(found.faults.end(), gaps->begin(), gaps->end());
+        if (schema < first_schema_with_packed_segments) continue;
+        if (run.dictionary != dictionary.id) {
+            found.notes.push_back(other_words(run, dictionary) + ": its derived rows were not compared");
+            continue;
+        }
+        auto units = derive(database, run, dictionary, other);
+        if (!units) return Error{"run " + std::to_string(run.run.value) + ": its units cannot be told again: " + units.error().message};
+        found.units += *units;
+        if (auto done = compare(database, run, dictionary, found); !done) return done.error();
+        for (const archive::RunTable& table : archive::run_tables)
+            if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done) return done.error();
+    }
+    return found;
+}
+
+Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
+                        const telemetry::OtherMission* other) {
+    auto archive = archive::Maintenance::open(file);
+    if (!archive) return archive.error();
+    auto scratch_file = file;
+    scratch_file += "-rebuild";
+    std::vector<RunToDerive> runs;
+    {
+        auto scratch = Scratch::open(scratch_file, file);
+        if (!scratch) return scratch.error();
+        auto found = runs_of(scratch->database(), only);
+        if (!found) return found.error();
+        runs = std::move(*found);
+    }
+    Rebuilt rebuilt;
+    auto& database = archive->database();
+    for (const RunToDerive& run : runs) {
+        if (run.dictionary != dictionary.id) {
+            rebuilt.left.push_back(other_words(run, dictionary));
+            continue;
+        }
+        const auto of_run = "run " + std::to_string(run.run.value);
+        auto scratch = Scratch::open(scratch_file, file);
+        if (!scratch) return scratch.error();
+        {
+            auto transaction = sqlite::Transaction::begin_write(scratch->database());
+            if (!transaction) return transaction.error();
+            if (auto units = derive(scratch->database(), run, dictionary, other); !units) {
+                rebuilt.left.push_back(of_run + ": its units cannot be told again: " + units.error().message);
+                continue;
+            }
+            if (auto done = transaction->commit(); !done) return done.error();
+        }
+        if (auto done = scratch->database().execute("DETACH archive"); !done) return done.error();
+        if (auto done = database.attach_read_only(scratch->file(), "fresh"); !done) return done.error();
+        const auto replaced = [&]() -> Result<std::vector<std::string>> {
+            auto transaction = sqlite::Transaction::begin_write(database);
+            if (!transaction) return transaction.error();
+            for (const archive::RunTable& table : archive::run_tables) {
+                if (!table.derived) continue;
+                auto taken = database.prepare((std::string("DELETE FROM main.") + table.name + " WHERE " + table.rows).c_str());
+                if (!taken) return taken.error();
+                taken->bind(1, std::int64_t{run.run.value});
+                if (auto done = taken->run(); !done) return done.error();
+                const auto put = std::string("INSERT INTO main.") + table.name + " SELECT * FROM fresh." + table.name;
+                if (auto done = database.execute(put.c_str()); !done) return done.error();
+            }
+            auto faults = archive::sequence_faults(database, run.run, "main.", 1);
+            if (!faults || !faults->empty()) return faults;
+            if (auto done = transaction->commit(); !done) return done.error();
+            return faults;
+        }();
+        if (auto done = database.execute("DETACH fresh"); !done) return done.error();
+        if (!replaced) return replaced.error();
+        if (replaced->empty())
+            rebuilt.runs.push_back(run.run);
+        else
+            rebuilt.left.push_back(of_run + ": its units now say something else, and its items would get other numbers (" + replaced->front() + ")");
+    }
+    return rebuilt;
+}
+
+} // namespace aeolis::pipeline

@@ -1,0 +1,204 @@
+#include "server/archive/upkeep.hpp"
+#include "server/archive/archive.hpp"
+#include "server/archive/reader.hpp"
+#include "server/archive/schema.hpp"
+#include "server/pipeline/derivation.hpp"
+#include "server/pipeline/pipeline.hpp"
+#include "tests/server/schema_three.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+using namespace aeolis;
+using namespace aeolis::test;
+using namespace aeolis::archive;
+
+namespace {
+
+/// `runs` finished runs of 2500 navigation packets each.
+void record(const std::filesystem::path& file, const dictionary::Dictionary& dictionary, int runs) {
+    auto archive = std::move(Archive::open(file)).value();
+    pipeline::Pipeline pipeline(archive, dictionary);
+    for (int run = 0; run < runs; ++run) {
+        RunStart start;
+        start.scenario = "nominal";
+        start.solution = {{"latitude_deg", -4.5}};
+        REQUIRE(pipeline.begin(start).ok());
+        for (std::size_t i = 0; i < 2500; ++i)
+            REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), static_cast<double>(i) / 64.0, static_cast<float>(i), 3.0F))).ok());
+        REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+    }
+}
+
+std::int64_t ask(const std::filesystem::path& file, const char* sql) {
+    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
+    auto answer = database->integer_of(sql);
+    REQUIRE(answer.ok());
+    return *answer;
+}
+
+} // namespace
+
+TEST_CASE("pruned runs are gone from every table, are noted, and their numbers are not given again", "[archive][prune]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    const auto file = folder / "a.db";
+    record(file, dictionary, 3);
+    {
+        auto archive = Maintenance::open(file);
+        REQUIRE(archive.ok());
+        const auto lines = run_lines(archive->database());
+        REQUIRE(lines->size() == 3);
+        CHECK(lines->back().units == 2500);
+        CHECK_FALSE(prune(*archive, {RunId{1}, RunId{9}}).ok()); // all or none
+        CHECK(run_lines(archive->database())->size() == 3);
+        REQUIRE(prune(*archive, {RunId{1}, RunId{3}}).ok());
+    }
+    for (const auto& table : run_tables) {
+        INFO(table.name);
+        const auto total = ask(file, (std::string("SELECT count(*) FROM ") + table.name).c_str());
+        std::string of_second = table.rows;
+        for (auto at = of_second.find("?1"); at != std::string::npos; at = of_second.find("?1"))
+            of_second.replace(at, 2, "2");
+        CHECK(total == ask(file, (std::string("SELECT count(*) FROM ") + table.name + " WHERE " + of_second).c_str()));
+    }
+    CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
+    CHECK(ask(file, "SELECT count(*) FROM pruned_runs WHERE scenario = 'nominal'") == 2);
+    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults.empty());
+    auto archive = Archive::open(file);
+    CHECK(*archive->begin_run({}, dictionary) == RunId{4});
+}
+
+TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    { REQUIRE(Archive::open(file).ok()); }
+    std::string known = "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs'";
+    for (const auto& table : run_tables)
+        known += std::string(", '") + table.name + "'";
+    CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT IN (" + known + ")").c_str()) == 0);
+}
+
+TEST_CASE("vacuum gives the room of pruned runs back", "[archive][prune]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    record(file, small_dictionary(), 2);
+    auto archive = Maintenance::open(file);
+    REQUIRE(prune(*archive, {RunId{1}}).ok());
+    const auto before = std::filesystem::file_size(file);
+    REQUIRE(vacuum(*archive).ok());
+    CHECK(std::filesystem::file_size(file) < before * 2 / 3);
+}
+
+TEST_CASE("a backup is a whole archive of one moment while its writer goes on", "[archive][backup]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    const auto file = folder / "a.db";
+    std::atomic<bool> stop = false;
+    std::atomic<std::uint64_t> written = 0;
+    {
+        auto made = Archive::open(file);
+        REQUIRE(made.ok());
+    }
+    std::thread writer{[&] {
+        auto archive = std::move(Archive::open(file)).value();
+        pipeline::Pipeline pipeline(archive, dictionary);
+        if (!pipeline.begin({}).ok()) return;
+        for (std::size_t i = 0; !stop; ++i) {
+            const auto count = static_cast<std::uint16_t>(i & 0x3FFFU);
+            if (!pipeline.accept(live(navigation_packet(count, static_cast<double>(i) / 64.0, 1.0F, 7000.0F))).ok()) return;
+            if (i % 50 == 49 && !pipeline.commit().ok()) return;
+            written = pipeline.last_durable();
+        }
+    }};
+    std::uint64_t copied = 0;
+    for (int i = 0; i < 5; ++i) {
+        const auto since = written.load();
+        while (written < since + 3000) // it writes before, during and after each copy
+            std::this_thread::yield();
+        const auto copy = folder / ("copy" + std::to_string(i)).c_str();
+        const auto before = written.load();
+        const auto done = backup(file, copy);
+        INFO((done ? "" : done.error().message));
+        REQUIRE(done.ok());
+        CHECK_FALSE(std::filesystem::exists(folder / ("copy" + std::to_string(i) + "-wal").c_str()));
+        const auto found = pipeline::verify(copy, {}, dictionary, nullptr, folder / "");
+        REQUIRE(found.ok());
+        CHECK(found->faults.empty());
+        auto reader = Reader::open(copy, dictionary);
+        const auto last = reader->last_seq(RunId{1});
+        REQUIRE(last.ok());
+        CHECK(*last >= before);
+        CHECK(*last > copied);
+        copied = *last;
+    }
+    const auto while_copied = written.load();
+    stop = true;
+    writer.join();
+    CHECK(while_copied >= 15'000);
+    CHECK(backup(file, folder / "copy0").error().message == (folder / "copy0").string() + " is there already: nothing is overwritten");
+}
+
+TEST_CASE("a backup that fails leaves no file under its name", "[archive][backup]") {
+    TemporaryFolder folder;
+    const auto file = folder / "notes.db";
+    std::ofstream(file) << std::string(5000, 'x');
+    CHECK(backup(file, folder / "copy").error().message == file.string() + " is not an Aeolis archive");
+    record(folder / "a.db", small_dictionary(), 1);
+    CHECK_FALSE(backup(folder / "a.db", folder / "none/copy").ok());
+    CHECK_FALSE(std::filesystem::exists(folder / "copy"));
+    CHECK_FALSE(std::filesystem::exists(folder / "copy-partial"));
+}
+
+TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    record(file, small_dictionary(), 1);
+    auto database = std::move(sqlite::Database::open(file.string(), sqlite::Mode::read_write_create)).value();
+    CHECK(sequence_faults(database, RunId{1}, "main.", 10)->empty());
+    REQUIRE(database.execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + 21, 1, 1, '', 0);"
+                             "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
+                .ok());
+    CHECK(*sequence_faults(database, RunId{1}, "main.", 10) ==
+          std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21", "run 1: no item has the number 32"});
+}
+
+TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a rebuild", "[archive][rebuild]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    const auto file = folder / "a.db";
+    record(file, dictionary, 2);
+    const auto answer = [&] {
+        auto reader = Reader::open(file, dictionary);
+        REQUIRE(reader.ok());
+        auto exact = reader->series(RunId{2}, {{"altitude_m", "speed_mps"}, {3.0, 30.0}, {}});
+        auto thinned = reader->series(RunId{2}, {{"altitude_m"}, {}, 100});
+        REQUIRE(exact.ok());
+        REQUIRE(thinned.ok());
+        CHECK(thinned->channels(0).samples() == 2500);
+        return exact->SerializeAsString();
+    };
+    const auto packed = answer();
+    make_schema_three(file);
+    CHECK(ask(file, "PRAGMA user_version") == 3);
+    CHECK(answer() == packed);
+    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->notes.size() == 1);
+    CHECK(ask(file, "PRAGMA user_version") == 3); // it was only read
+
+    record(file, dictionary, 1); // opened for writing
+    CHECK(ask(file, "PRAGMA user_version") == schema_version);
+    CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 6);
+    CHECK(ask(file, "SELECT max(position) FROM segments WHERE run = 2") == 2);
+    CHECK(answer() == packed);
+    const auto found = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
+    CHECK(found->faults.empty());
+    CHECK(found->notes.size() == 2);
+
+    CHECK(pipeline::rebuild(file, {}, dictionary, nullptr)->runs.size() == 3);
+    CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 0);
+    CHECK(answer() == packed);
+    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->notes.empty());
+}
