@@ -14,7 +14,6 @@ try {
 
     await shows('guide', /Tell the vehicle where it is/);
     await shows('waiting', /set edl parameters/);
-    await waitFor(() => text('tone-title'), /Tone \d/, 60_000);
     await take('tour_begin.png');
 
     await page.keyboard.press('/');
@@ -39,9 +38,9 @@ try {
     await page.keyboard.press('Escape');
 
     await setPace(page, 100);
-    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 60_000);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 180_000);
     await setPace(page, 10);
-    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 60_000);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 180_000);
     await page.keyboard.press('p');
     await shows('badge', /paused/);
     await page.setViewportSize({ width: 1920, height: 1080 });
@@ -50,16 +49,16 @@ try {
     await page.setViewportSize({ width: 1600, height: 900 });
     await page.keyboard.press('p');
     await setPace(page, 100);
-    await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 60_000);
-    await shows('waiting', /Landed/, 90_000);
+    await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 180_000);
+    await shows('waiting', /Landed/, 180_000);
     await page.keyboard.press('v');
     await shows('verdict-sentence', /bit for bit/, 30_000);
     await take('tour_landed.png');
 
     await page.goto(`${server.address}/?panel=packets`);
     await shows('badge', /ENDED RUN/);
-    await page.setViewportSize({ width: 1600, height: 620 });
-    await page.getByTestId('units').focus();
+    await page.setViewportSize({ width: 1600, height: 760 });
+    await page.getByRole('button', { name: 'GncNavigation', exact: true }).click();
     await page.keyboard.press('ArrowDown');
     await shows('packet', /unit \d/);
     await page.getByTestId('packet-fields').focus();

@@ -1,6 +1,7 @@
 // The whole console, or one panel of it at ?panel=NAME for further monitors.
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
+import { step } from './commands/line';
 import { Commands } from './commands/view';
 import { Descent } from './descent/view';
 import { Events } from './events/view';
@@ -67,7 +68,7 @@ export function App({ panel }: { panel?: string | undefined }) {
   const mode = modeNow();
   const Alone = panel === undefined ? undefined : ALONE[panel as keyof typeof ALONE];
   return (
-    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''}`} data-testid="console" data-mode={mode}>
+    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`} data-testid="console" data-mode={mode}>
       <Tape />
       <Header />
       <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>

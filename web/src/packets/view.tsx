@@ -237,18 +237,18 @@ export function Packets() {
   if (moving) return <p class="none" data-testid="packets-not-replayed">▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.</p>;
   const packet = opened.value;
   const lines = linesOf(run, past !== undefined);
-  const newest = run.units.at(-1)?.fact.unit;
-  const top = held.value?.run === run.id ? lines[0]?.fact.unit : undefined;
+  const top = held.value?.run === run.id && !past ? lines[0]?.fact.unit : undefined;
+  const since = top === undefined ? 0 : run.units.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value)).length;
   return (
     <div class="table-box">
       <Links whole={past !== undefined} />
-      {(wanted.value !== undefined || top !== undefined) && (
+      {(wanted.value !== undefined || since > 0) && (
         <div class="table-tools">
           {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of the {past ? `${SHOWN} listed` : 'newest held'} <button type="button" onClick={() => {
             wanted.value = undefined;
             close();
           }}>show all</button></span>}
-          {top !== undefined && !past && newest !== undefined && newest > top && <span class="status-caution" data-testid="list-held">▲ the list stands still while a packet is open: {String(newest - top)} came since</span>}
+          {since > 0 && <span class="status-caution" data-testid="list-held">▲ the list stands still while a packet is open: {since} came since</span>}
         </div>
       )}
       <div class={`packets ${packet ? 'with-packet' : ''}`}>
