@@ -4,7 +4,7 @@ import type { CommandList } from '../gen/aeolis/v1/run_pb';
 import { ask, cutoff, dictionary, runNow, store, takesCommands } from '../run/session';
 import type { CommandRow, RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
-import { act } from './line';
+import { act, uplink } from './line';
 import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
 import type { StageCell } from './model';
 
@@ -21,9 +21,14 @@ export function Queue() {
     <section class="queue" data-testid="command-queue" aria-label="commands that wait">
       <h3>{waiting.length === 1 ? 'One command waits' : `${waiting.length} commands wait`} on the ground</h3>
       <ol>
-        {waiting.map(({ row, evidence, held }) => (
+        {waiting.map(({ row, evidence, held, asker }) => (
           <li key={row.command} data-waiting={row.command}>
             <div><b>{row.name} #{row.command}</b> <small>{evidence}</small></div>
+            {asker !== undefined && <>
+              <label>I am <input class="name" data-testid="approver" maxLength={64} placeholder={`not ${asker}`} value={uplink.value.controller}
+                onInput={(event) => (uplink.value = { ...uplink.value, controller: event.currentTarget.value })} /></label>
+              <button type="button" data-testid="approve" disabled={uplink.value.controller.trim() === ''} onClick={() => void act(row.command, 'approve')}>approve</button>
+            </>}
             <button type="button" onClick={() => void act(row.command, held ? 'release' : 'hold')}>{held ? 'release' : 'hold'}</button>
             <button type="button" onClick={() => void act(row.command, 'cancel')}>cancel</button>
           </li>

@@ -88,7 +88,7 @@ export function choose(name: string): void {
   chosenName.value = name;
   confirmation.value = '';
   formText.value = new Map();
-  uplink.value = AT_ONCE;
+  uplink.value = { ...AT_ONCE, controller: uplink.value.controller };
   step.value = 'review';
   message.value = undefined;
 }
@@ -159,9 +159,9 @@ async function arm(): Promise<void> {
 
 /** On a command that waits. */
 export async function act(number: number, action: QueueAction): Promise<void> {
-  const done = { release: 'released', hold: 'held', cancel: 'cancelled' }[action];
+  const done = { release: 'released', hold: 'held', cancel: 'cancelled', approve: 'approved' }[action];
   try {
-    const reply = await sendCommand({ action, number: BigInt(number) });
+    const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller });
     message.value = reply.accepted ? { good: true, text: `#${number} ${done}` } : { good: false, text: reply.reason };
   } catch (error) {
     message.value = { good: false, text: `#${number} was not ${done}: ${error instanceof Error ? error.message : String(error)}` };

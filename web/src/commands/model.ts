@@ -162,8 +162,9 @@ export interface UplinkText {
   releaseAt: string;
   hold: boolean;
   priority: string;
+  controller: string; // who asks
 }
-export const AT_ONCE: UplinkText = { service: '', releaseAt: '', hold: false, priority: '' };
+export const AT_ONCE: UplinkText = { service: '', releaseAt: '', hold: false, priority: '', controller: '' };
 
 /** What is asked of the uplink: exactly this, dry run or not. */
 export function intentOf(command: DictionaryCommand, fields: readonly Field[], uplink: UplinkText, store: RunStore | undefined): CommandIntent | { problem: string } {
@@ -176,7 +177,7 @@ export function intentOf(command: DictionaryCommand, fields: readonly Field[], u
     command: command.name,
     arguments: fields.filter((field) => field.from === 'typed').map((field) => ({ name: field.argument.name, value: field.value as number })),
     fromSolution: fields.some((field) => field.from === 'solution'),
-    service: uplink.service, releaseAt, hold: uplink.hold, priority: Number(uplink.priority),
+    service: uplink.service, releaseAt, hold: uplink.hold, priority: Number(uplink.priority), controller: uplink.controller.trim(),
   };
 }
 
@@ -247,11 +248,13 @@ export function newestEvidence(cells: readonly StageCell[]): string {
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
 }
 
-/** Those that may be sent and have not left, in the order of their numbers. */
-export function waitingCommands(store: RunStore): { row: CommandRow; evidence: string; held: boolean }[] {
+/** Those that may be sent and have not left, in the order of their numbers; `asker`: another than this one must approve it. */
+export function waitingCommands(store: RunStore): { row: CommandRow; evidence: string; held: boolean; asker: string | undefined }[] {
   return [...store.commands.values()].flatMap((row) => {
     const released = row.stages.get('released')?.at(-1);
-    return released?.status === 'pending' ? [{ row, evidence: released.evidence, held: released.evidence.startsWith('held') }] : [];
+    if (released?.status !== 'pending') return [];
+    const asker = /approval of another controller than ([^;]*);/.exec(released.evidence)?.[1];
+    return [{ row, evidence: released.evidence, held: /(^|; )held/.test(released.evidence), asker }];
   }).sort((a, b) => a.row.command - b.row.command);
 }
 

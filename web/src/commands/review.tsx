@@ -48,11 +48,13 @@ function Uplink({ onKey }: Pick<Properties, 'onKey'>) {
         value={now.releaseAt} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ releaseAt: event.currentTarget.value })} /></label>
       <label>priority <input class="narrow" data-testid="priority" inputMode="numeric" placeholder="0" title="of those that are due the largest leaves first"
         value={now.priority} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ priority: event.currentTarget.value })} /></label>
-      <label>by <select data-testid="service" value={now.service} disabled={fixed} onKeyDown={onKey}
+      <label>service <select data-testid="service" value={now.service} disabled={fixed} onKeyDown={onKey}
         title="AD: repeated until the vehicle reports its frame. BD: sent once, taken by a vehicle that is not heard."
         onChange={(event) => set({ service: event.currentTarget.value as UplinkText['service'] })}>
         <option value="">what suits</option><option value="AD">AD</option><option value="BD">BD</option>
       </select></label>
+      <label>by <input class="name" data-testid="controller" placeholder="your name" maxLength={64} title="who asks; needed where a second person must approve" spellcheck={false}
+        value={now.controller} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ controller: event.currentTarget.value })} /></label>
       <label><input type="checkbox" data-testid="hold" checked={now.hold} disabled={fixed} onKeyDown={onKey} onChange={(event) => set({ hold: event.currentTarget.checked })} /> hold</label>
     </div>
   );
@@ -112,6 +114,7 @@ function DryRun({ command }: { command: DictionaryCommand }) {
     <div class="dry-run" data-testid="dry-run" aria-live="polite">
       {problem !== undefined ? <p class="verdict unknown">○ {problem}</p>
         : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
+          : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
           : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
             : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
       {step.value === 'review' && (

@@ -62,9 +62,9 @@ describe('stages', () => {
 describe('what is asked of the uplink', () => {
   const whole = fieldsOf(set, readLine('x solution_id=3').given, []);
   it('is the command with its time, hold and priority, and only what was typed of its arguments', () => {
-    expect(intentOf(set, whole, { service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: '7' }, aStore())).toEqual({
+    expect(intentOf(set, whole, { service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: '7', controller: ' Ann ' }, aStore())).toEqual({
       command: 'EDL_SET_PARAMETERS', arguments: [{ name: 'solution_id', value: 3 }], fromSolution: false,
-      service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: 7,
+      service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: 7, controller: 'Ann',
     });
   });
   it('names what cannot be read, and then there is nothing to send', () => {
@@ -97,6 +97,8 @@ describe('the queue', () => {
   it('has what has not left, held or waiting for its time, and nothing that left or was cancelled', () => {
     expect(waitingCommands(aStore([waits('held until a controller releases it; then leaves at once')]))).toMatchObject([{ held: true, row: { command: 4 } }]);
     expect(waitingCommands(aStore([waits('leaves at 2012-219T05:10:00')]))).toMatchObject([{ held: false }]);
+    expect(waitingCommands(aStore([waits('waits for the approval of another controller than Ann; held until a controller releases it')])))
+      .toMatchObject([{ held: true, asker: 'Ann' }]);
     expect(waitingCommands(aStore([waits('leaves'), stage({ command: 4n, stage: 'released', status: 'ok' })]))).toEqual([]);
     expect(waitingCommands(aStore([waits('leaves'), stage({ command: 4n, stage: 'released', status: 'failed' })]))).toEqual([]);
   });

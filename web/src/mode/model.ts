@@ -48,5 +48,5 @@ export function resumedWords(break_: { after: number; through: number; attempts:
     ? `numbers ${break_.after + 1} to ${break_.through}, which came meanwhile, were filled in from the archive, none is missing`
     : 'nothing had come meanwhile';
   const begin = `The connection was lost at ${fromEntry(lost_e_s)} and is back at attempt ${break_.attempts}: ${filled}.`;
-  return state === 'interrupted' ? `${begin} The server had stopped and was started again: this run ended at number ${break_.through}; start another under Runs.` : begin;
+  return state === 'interrupted' ? `${begin} The server had stopped and was started again: this run was cut off at number ${break_.through}; continue it under Runs, or start another.` : begin;
 }

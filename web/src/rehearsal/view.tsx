@@ -74,9 +74,16 @@ export function Rehearsal() {
                   <td class="number">{String(each.run)}</td><td>{each.scenario}</td><td class="number">{String(each.seed)}</td>
                   <td>{live.state === 'interrupted' ? '▲ ' : ''}{live.state}</td><td>{outcomeWords(live.outcome, live.state)}</td>
                   <td>{each.started}</td><td class="number">{String(live.lastSeq)}</td>
-                  <td>{shown ? '◀ shown' : (
-                    <button type="button" onClick={() => watch(['waiting', 'running', 'paused'].includes(each.state) ? 0 : Number(each.run))}>show</button>
-                  )}</td>
+                  <td>
+                    {shown ? '◀ shown ' : (
+                      <button type="button" onClick={() => watch(['waiting', 'running', 'paused'].includes(each.state) ? 0 : Number(each.run))}>show</button>
+                    )}
+                    {live.state === 'interrupted' && (
+                      <button type="button" disabled={going !== undefined} data-testid={`continue-${String(each.run)}`}
+                        title="flown again up to its last item, each held against the archive; then it goes on"
+                        onClick={() => control({ action: 'continue', run: Number(each.run), pace: 1 })}>continue</button>
+                    )}
+                  </td>
                 </tr>
               );
             })}

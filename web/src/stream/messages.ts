@@ -49,6 +49,7 @@ export type FromWorker =
 
 export type ControlAction =
   | { action: 'start'; scenario: string; seed: number; pace: number }
+  | { action: 'continue'; run: number; pace: number } // one that was cut off
   | { action: 'pause'; pause: boolean }
   | { action: 'pace'; pace: number }
   | { action: 'stop' };
@@ -69,8 +70,9 @@ export interface CommandIntent {
   priority?: number;
   action?: QueueAction;
   number?: bigint;
+  controller?: string; // who asks
 }
-export type QueueAction = 'release' | 'hold' | 'cancel';
+export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }

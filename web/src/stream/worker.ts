@@ -283,6 +283,8 @@ function control(wanted: ControlAction): MessageInitShape<typeof RehearsalContro
   switch (wanted.action) {
     case 'start':
       return { action: { case: 'start', value: { scenario: wanted.scenario, seed: BigInt(wanted.seed), pace: wanted.pace } } };
+    case 'continue':
+      return { action: { case: 'start', value: { continueRun: BigInt(wanted.run), pace: wanted.pace } } };
     case 'pause':
       return { action: { case: 'pause', value: wanted.pause } };
     case 'pace':

@@ -67,7 +67,7 @@ function ended(store: RunStore): Waiting {
   return {
     kind: 'ended',
     title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
-    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state === 'interrupted' ? '' : complete}`,
+    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state === 'interrupted' ? 'The server stopped in mid-run; the panel Runs continues it from here.' : complete}`,
     lines: [],
   };
 }
