@@ -164,7 +164,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
     }
 });
 
-test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown', { timeout: 40_000 }, async () => {
+test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown, and can be continued', { timeout: 60_000 }, async () => {
     const archive = path.join(folder.folder, 'killed.db');
     const first = await serve({ archive, more: ['--scenario', 'nominal_auto', '--pace', '100'] });
     let second;
@@ -181,7 +181,7 @@ test('after kill -9 in mid-landing the run is there, interrupted, up to the last
         second = await serve({ archive, port: first.port });
         await shows('stream-state', /connected/);
         await shows('badge', /INTERRUPTED RUN/);
-        await shows('notices', /The server had stopped and was started again: this run ended at number \d+/);
+        await shows('notices', /The server had stopped and was started again: this run was cut off at number \d+/);
         await shows('waiting', /Interrupted/);
         await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
         assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
@@ -192,6 +192,13 @@ test('after kill -9 in mid-landing the run is there, interrupted, up to the last
         await page.reload();
         await shows('badge', /INTERRUPTED RUN/);
         await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
+
+        await page.getByTestId('tab-rehearsal').click();
+        await page.getByTestId('continue-1').click();
+        await waitFor(async () => (await second.get('/runs')).runs[0], (now) => now.state === 'running' && Number(now.last_seq) > Number(run.last_seq) + 50);
+        await shows('badge', /REHEARSAL/);
+        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) > Number(run.last_seq) + 50);
+        assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
         await page.close();
     } finally {
         await first.kill();

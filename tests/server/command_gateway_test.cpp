@@ -31,7 +31,7 @@ v1::CommandRequest request(const std::string& command) {
 struct Station {
     std::vector<std::string> second_person{};
     CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution()), second_person};
-    std::vector<archive::StageRecord> stages;
+    std::vector<archive::StageRecord> stages{};
 
     v1::CommandReply send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
     /// The packet in the one unit that the station is to radiate.
