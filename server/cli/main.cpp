@@ -4,7 +4,10 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 #include <fmt/format.h>
+#include <fstream>
+#include <optional>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -42,6 +45,33 @@ std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& f
                 ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
 }
 
+std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
+    constexpr std::string_view option = "--config";
+    for (int i = 2; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word == option && i + 1 < argc) return argv[i + 1];
+        if (word.starts_with(option) && word.substr(option.size()).starts_with('=')) return word.substr(option.size() + 1);
+    }
+    return std::nullopt;
+}
+
+/// What the file says becomes the default of each option, so that environment and command line count before it.
+aeolis::Result<void> take_settings(CLI::App& command, const std::filesystem::path& file) {
+    std::ifstream in{file};
+    if (!in) return aeolis::Error{file.string() + " cannot be read"};
+    for (const auto& item : CLI::ConfigINI{}.from_config(in)) {
+        auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
+        if (option == nullptr || item.inputs.size() != 1)
+            return aeolis::Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(), item.fullname(), command.get_name())};
+        try {
+            option->run_callback_for_default()->default_val(item.inputs.front());
+        } catch (const CLI::Error& error) {
+            return aeolis::Error{file.string() + ": " + error.what()};
+        }
+    }
+    return {};
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -62,8 +92,8 @@ int main(int argc, char** argv) {
         "serve", "the console backend: open the address it prints in a browser.\n"
                  "Each option can also stand in a file (--config), a line each without its dashes: archive=/var/lib/aeolis/aeolis.db.\n"
                  "What the command line says counts first, then the environment variable named beside an option, then the file.");
-    serve_command->set_config("--config", "", "read options from this file");
-    serve_command->allow_config_extras(CLI::config_extras_mode::error);
+    std::filesystem::path settings;
+    serve_command->add_option("--config", settings, "the file of options");
     serve_command->add_option("--listen", serving.listen, "loopback ADDRESS:PORT; port 0 takes a free one")
         ->envname("AEOLIS_LISTEN")
         ->capture_default_str();
@@ -317,6 +347,9 @@ int main(int argc, char** argv) {
     backup->callback([&] { exit_code = archive_backup(pruning.archive, backup_to); });
 
     try {
+        if (argc > 1 && std::string_view{argv[1]} == "serve")
+            if (const auto given = settings_given(argc, argv))
+                if (const auto taken = take_settings(*serve_command, *given); !taken) return failed(taken.error().message, 2);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
