@@ -95,6 +95,10 @@ void CommandLifecycle::ground_stage(Stage stage, Status status, std::string evid
     }
 }
 
+void CommandLifecycle::approved(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    out.push_back({Stage::authorised, Status::ok, std::move(evidence), at});
+}
+
 void CommandLifecycle::await_release(std::string evidence, Ert at, std::vector<StageChange>& out) {
     set(Stage::released, Status::pending, std::move(evidence), at, out);
 }

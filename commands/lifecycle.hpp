@@ -58,6 +58,8 @@ class CommandLifecycle {
     /// One of ground's own stages, queued … radiated, was done (ok) or failed, which ends the command.
     void ground_stage(Stage stage, Status status, std::string evidence, Ert at, std::vector<StageChange>& out);
 
+    /// A second person has approved it.
+    void approved(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// It may be sent, and waits on the ground.
     void await_release(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Its frame went out once more: the windows begin anew.

@@ -241,8 +241,7 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
             append(*command, changes_, stages);
         } else if (action == "approve") {
             changes_.clear();
-            command->lifecycle.ground_stage(commands::Stage::authorised, commands::Status::ok,
-                                            fmt::format("approved by {}, as the second person", request.controller()), now, changes_);
+            command->lifecycle.approved(fmt::format("approved by {}, as the second person", request.controller()), now, changes_);
             append(*command, changes_, stages);
             tell_wait(*command, now, stages);
         } else {
