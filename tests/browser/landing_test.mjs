@@ -16,7 +16,7 @@ after(async () => {
     await folder?.remove();
 });
 
-test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 240_000 }, async () => {
+test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 480_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'landing.db'), more: ['--scenario', 'nominal'] });
     try {
         const { page, problems, text, shows } = await open(chrome, server.address);
@@ -51,9 +51,9 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await pace(page, 100);
         await shows('waiting', /Waiting for coolant vent/);
         await shows('timepoints-fired', /^[1-9]/);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 40_000);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 150_000);
         await pace(page, 20);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 30_000);
+        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 100_000);
         await page.keyboard.press('p');
         await shows('badge', /paused/);
         await shows('pause', /go on/);
@@ -63,9 +63,9 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
         await page.keyboard.press('p');
         await pace(page, 100);
 
-        await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 30_000);
+        await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 100_000);
         await pace(page, 0).catch(() => undefined); // it may have ended by now
-        await shows('waiting', /Landed/, 30_000);
+        await shows('waiting', /Landed/, 100_000);
         await shows('badge', /ENDED RUN.*touchdown/s);
         // The end of the run may be told before its last items: the page has all once it has what the server has, and
         // neither goes on.
@@ -126,7 +126,7 @@ async function obey(page) {
     }
 }
 
-test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 240_000 }, async () => {
+test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 480_000 }, async () => {
     const server = await serve({ archive: path.join(folder.folder, 'guide.db'), more: ['--scenario', 'nominal'] });
     try {
         const { page, problems, text, shows } = await open(chrome, server.address);

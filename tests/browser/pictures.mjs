@@ -14,6 +14,7 @@ try {
 
     await shows('guide', /Tell the vehicle where it is/);
     await shows('waiting', /set edl parameters/);
+    await shows('phases', /▶\s*Cruise/);
     await take('tour_begin.png');
 
     await page.keyboard.press('/');
@@ -56,7 +57,7 @@ try {
     await take('tour_landed.png');
 
     await page.goto(`${server.address}/?panel=packets`);
-    await shows('badge', /ENDED RUN/);
+    await shows('phases', /▶\s*Landed/, 60_000);
     await page.setViewportSize({ width: 1600, height: 760 });
     await page.getByRole('button', { name: 'GncNavigation', exact: true }).click();
     await page.keyboard.press('ArrowDown');

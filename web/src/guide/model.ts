@@ -91,9 +91,11 @@ export function guideStep(run: RunStore | undefined, words: Dictionary, mode: Mo
         : pace < FAST ? [{ key: '+', words: 'a few times, to 100×: the minutes before entry pass in seconds' }] : [{ words: `At ${pace === Infinity ? 'this pace' : `${pace}×`} it is soon there.` }],
     };
   }
+  const down = now === phases.length - 1; // nothing is left to be watched
   const press: Press[] = paused ? [{ key: 'p', words: 'goes on' }]
+    : down ? [{ words: `${Math.round(run.run.relayProgress * 100)} % of the recording is down.` }]
     : pace > FAST ? [{ key: '−', words: 'to 10× or less, to see it happen' }] : [{ words: 'Watch the dot: it should stay inside the grey corridor.' }];
-  return { number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2), title: now <= 0 ? 'Entry is near' : phases[now]?.title ?? '', why: plain, press, wants: !paused && pace > FAST ? 'pace' : 'nothing' };
+  return { number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2), title: now <= 0 ? 'Entry is near' : phases[now]?.title ?? '', why: plain, press, wants: !paused && !down && pace > FAST ? 'pace' : 'nothing' };
 }
 
 function afterwards(run: RunStore): GuideStep {

@@ -38,6 +38,10 @@ describe('the guide', () => {
     expect(keys(guideStep(aStore(entry, at(100, { pace: 100 })), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['−']);
     expect(keys(guideStep(aStore(entry, at(100, { state: 'paused' })), aDictionary, 'rehearsal', 'type', Infinity))).toEqual(['p']);
   });
+  it('slows nothing down once it has landed: then the recording comes down', () => {
+    const landed = aStore([...done(2), firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 200 }), samples(1450, { 1: 9 })], at(450, { pace: 100, relayProgress: 0.25 }));
+    expect(guideStep(landed, aDictionary, 'rehearsal', 'type', Infinity)).toMatchObject({ title: 'Landed', wants: 'nothing', press: [{ words: '25 % of the recording is down.' }] });
+  });
   it('ends with the landing, and says what can be looked at then', () => {
     const over = aStore(done(2), aRun({ state: 'finished', outcome: 'touchdown' }));
     expect(guideStep(over, aDictionary, 'ended', 'type', Infinity)).toMatchObject({ number: GUIDE_STEPS, title: 'You have landed it' });

@@ -23,7 +23,7 @@ export function aRun(fields: MessageInitShape<typeof RunStateSchema> = {}) {
 
 export const aDictionary = new Dictionary(create(DictionaryReplySchema, {
   channels: [
-    { id: 1, name: 'edl_phase', packet: 'Status', labels: [{ value: 0n, label: 'late_cruise' }, { value: 4n, label: 'range_control' }], expectedRateHz: 1 },
+    { id: 1, name: 'edl_phase', packet: 'Status', labels: [{ value: 0n, label: 'late_cruise' }, { value: 4n, label: 'range_control' }, { value: 9n, label: 'landed' }], expectedRateHz: 1 },
     { id: 2, name: 'next_desired_sclk', packet: 'Status', unit: 's', expectedRateHz: 1 },
     { id: 3, name: 'altitude_m', alias: 'GNC-0101', packet: 'Navigation', unit: 'm', limits: [{ severity: 'warning', above: 200000 }], expectedRateHz: 8 },
     { id: 4, name: 'speed_mps', alias: 'GNC-0102', packet: 'Navigation', unit: 'm/s', expectedRateHz: 8 },
