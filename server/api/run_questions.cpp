@@ -211,6 +211,10 @@ HttpResponse proof(const dictionary::Dictionary&, archive::Reader& reader, archi
     return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
 }
 
+HttpResponse report(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    return answer(reader.as_flown(run));
+}
+
 /// The newest value of every channel at an instant: a series of one sample each.
 HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
                    const QueryText& query) {
@@ -246,6 +250,7 @@ const std::array questions{
     RunQuestionEntry{"explanations", {"decision", "from", "to", "after", "limit", "duplicates"}, explanations},
     RunQuestionEntry{"recording", {}, recording},
     RunQuestionEntry{"proof", {"format"}, proof},
+    RunQuestionEntry{"report", {}, report},
     RunQuestionEntry{"state", {"at"}, state},
 };
 

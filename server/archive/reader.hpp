@@ -131,6 +131,8 @@ class Reader {
     Result<v1::RecordingSummary> recording(RunId run);
     /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
     Result<v1::ProofReport> proof(RunId run);
+    /// All that a review of the landing begins with; as long as proof().
+    Result<v1::AsFlownReport> as_flown(RunId run);
 
     struct State; ///< reader_state.hpp: shared by the reader's parts
 
@@ -138,6 +140,7 @@ class Reader {
     explicit Reader(std::unique_ptr<State> state);
     Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
     Result<void> add_counters(RunId run, v1::ProofReport& report);
+    Result<void> add_silences(RunId run, v1::AsFlownReport& report);
     std::unique_ptr<State> state_;
 };
 

@@ -47,6 +47,13 @@ struct ArchiveOptions {
     std::filesystem::path xtce; ///< of the mission that was followed; empty: our own
     std::optional<std::uint32_t> run;
 };
+struct ReportOptions {
+    ArchiveOptions of;
+    bool json = false;
+};
+/// Prints a run as it was flown.
+int report(const ReportOptions& options);
+
 struct ExportOptions {
     ArchiveOptions of;
     std::vector<std::string> channels; ///< empty: all

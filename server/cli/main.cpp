@@ -312,6 +312,15 @@ int main(int argc, char** argv) {
     export_command->add_option("--out", exporting.out, "a new file; left out: standard output");
     export_command->callback([&] { exit_code = export_samples(exporting); });
 
+    ReportOptions reporting{exporting.of};
+    auto* report_command = app.add_subcommand(
+        "report", "a run as it was flown: when each timepoint came by plan, tone, UHF and recording, what was silent, and the proof");
+    add_archive(*report_command, reporting.of.archive);
+    report_command->add_option("--dictionary", reporting.of.shared.dictionary, "the mission's words")->capture_default_str();
+    report_command->add_option("--run", reporting.of.run, "number of the run")->required()->check(whole_number());
+    report_command->add_flag("--json", reporting.json, "print one JSON object");
+    report_command->callback([&] { exit_code = report(reporting); });
+
     auto* archive_command = app.add_subcommand("archive", "what is done to an archive now and then")->require_subcommand(1);
     ArchiveOptions kept = exporting.of;
     auto* verify = archive_command->add_subcommand(

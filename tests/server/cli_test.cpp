@@ -1,3 +1,4 @@
+#include "aeolis/v1/run.pb.h"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
 #include "flight/load.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -132,6 +134,44 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     says("archive prune --keep 0 --yes --archive " + in("b.db"), "1 of 1 runs are gone");
     says("archive vacuum --archive " + in("b.db"), "octets, before");
     CHECK(run(program(), "export --run 1 --archive " + in("b.db")).code == 1);
+    std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a landing is reported as it was flown, each timepoint by plan, tone, UHF and recording, which agree",
+          "[cli][archive][R41][R43]") {
+    if (program() == nullptr) return;
+    const auto folder = std::filesystem::temp_directory_path() / ("aeolis-report-" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder);
+    const std::string archive = (folder / "a.db").string();
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + archive).code == 0);
+    const auto printed = run(program(), "report --run 1 --archive " + archive);
+    CHECK(printed.code == 0);
+    CHECK_THAT(printed.text, Catch::Contains("nominal_auto, seed 1, touchdown"));
+    CHECK_THAT(printed.text, Catch::Contains("0 differ, 0 are missing in it, 0 wait for it"));
+    CHECK_THAT(printed.text, Catch::Contains("Command 2 EDL_DO_EDL"));
+
+    aeolis::v1::AsFlownReport report;
+    const auto json = run(program(), "report --json --run 1 --archive " + archive);
+    const auto parsed = aeolis::server::from_json(json.text, report);
+    INFO((parsed ? std::string{} : parsed.error().message));
+    REQUIRE(parsed);
+    CHECK(report.run().outcome() == "touchdown");
+    CHECK(report.proof().recording_complete());
+    CHECK(report.silences_size() > 0);
+    int by_tone = 0, live = 0;
+    for (const auto& row : report.timepoints()) {
+        INFO(row.name());
+        CHECK(row.has_recorded_e_s());
+        if (row.has_realtime_e_s()) CHECK(row.realtime_e_s() == row.recorded_e_s());
+        if (row.has_planned_e_s() && row.planned_e_s() < 0.0) CHECK(row.recorded_e_s() == Approx(row.planned_e_s()).margin(0.1));
+        if (row.has_tone_e_s()) CHECK(std::abs(row.tone_e_s() - row.recorded_e_s()) < 15.0);
+        if (row.has_margin_s()) CHECK(row.margin_s() > -1.0 / 64.0);
+        by_tone += row.has_tone_e_s() ? 1 : 0;
+        live += row.has_realtime_e_s() ? 1 : 0;
+    }
+    CHECK(by_tone > 10);
+    CHECK(live > 20);
+    CHECK_THAT(run(program(), "report --run 9 --archive " + archive).text, Catch::Contains("no run 9"));
     std::filesystem::remove_all(folder);
 }
 

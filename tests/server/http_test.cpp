@@ -40,6 +40,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/timepoints", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/explanations", "", 200, "\"explanations\":["},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
+        {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/state", "", 200, "\"channels\":["},
         {"GET", "/api/v1/scenarios", "", 200, "nominal_auto"},
         {"GET", "/api/v1/rehearsals", "", 200, "\"run\":\"1\""},

@@ -1,0 +1,82 @@
+#include "server/api/json.hpp"
+#include "server/archive/reader.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/recorded_words.hpp"
+#include "server/cli/shipped_paths.hpp"
+
+#include <fmt/format.h>
+
+namespace aeolis::server {
+namespace {
+
+std::string from_entry(double e_s) {
+    return fmt::format("E{:+.1f}", e_s);
+}
+std::string from_entry(bool known, double e_s) {
+    return known ? from_entry(e_s) : "-";
+}
+
+void print_timepoints(const v1::AsFlownReport& report) {
+    fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "by tone", "by UHF", "recorded", "margin", "verdict");
+    for (const auto& row : report.timepoints())
+        fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(), from_entry(row.has_planned_e_s(), row.planned_e_s()),
+                   from_entry(row.has_tone_e_s(), row.tone_e_s()), from_entry(row.has_realtime_e_s(), row.realtime_e_s()),
+                   from_entry(row.has_recorded_e_s(), row.recorded_e_s()),
+                   row.has_margin_s() ? fmt::format("{:.1f} s", row.margin_s()) : "-", row.verdict());
+    fmt::print("Margin: later than the previous timepoint and the minimum offset from it.\n");
+}
+
+void print_links(const v1::AsFlownReport& report) {
+    fmt::print("\nTones: {} decoded, {} erased.\n", report.tones_decoded(), report.tones_erased());
+    for (const auto& counted : report.proof().counters())
+        fmt::print("{}: {} good frames, {} bad, {} missing in {} gaps.\n", counted.link(), counted.frames(),
+                   counted.bad_crc() + counted.bad_header(), counted.missing_frames(), counted.gaps());
+    for (const auto& silence : report.silences())
+        fmt::print("{} silent from {} to {}: {}\n", silence.link(), from_entry(silence.from_e_s()),
+                   silence.has_to_e_s() ? from_entry(silence.to_e_s()) : "the end", silence.reason());
+}
+
+void print_proof(const v1::ProofReport& proof) {
+    v1::ProofRow all;
+    for (const auto& row : proof.streams()) {
+        all.set_realtime(all.realtime() + row.realtime());
+        all.set_identical(all.identical() + row.identical());
+        all.set_differs(all.differs() + row.differs());
+        all.set_missing_in_recording(all.missing_in_recording() + row.missing_in_recording());
+        all.set_never_seen_live(all.never_seen_live() + row.never_seen_live());
+        all.set_pending(all.pending() + row.pending());
+    }
+    fmt::print("\nOf {} packets seen live {} are in the recording bit for bit, {} differ, {} are missing in it, {} wait for it; "
+               "{} were never seen live.{}\n",
+               all.realtime(), all.identical(), all.differs(), all.missing_in_recording(), all.pending(), all.never_seen_live(),
+               proof.recording_complete() ? "" : " The recording is not complete.");
+}
+
+} // namespace
+
+int report(const ReportOptions& options) {
+    int exit_code = 0;
+    const auto words = recorded_words(options.of.shared.dictionary, {}, exit_code);
+    if (!words) return exit_code;
+    auto reader = archive::Reader::open(options.of.archive, words->dictionary);
+    if (!reader) return failed(reader.error().message);
+    const auto report = reader->as_flown(archive::RunId{options.of.run.value_or(0)});
+    if (!report) return failed(fmt::format("{}: {}", options.of.archive.string(), report.error().message));
+    if (options.json) {
+        fmt::print("{}\n", to_json(*report));
+        return 0;
+    }
+    const auto& run = report->run();
+    fmt::print("Run {}: {}, seed {}, {}; {}\n", run.run(), run.scenario(), run.seed(), run.outcome(), run.started());
+    print_timepoints(*report);
+    print_links(*report);
+    print_proof(report->proof());
+    for (const auto& command : report->commands())
+        if (command.stages_size() > 0) {
+            const auto& last = command.stages(command.stages_size() - 1).command_stage();
+            fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(), last.stage(), last.status(), last.evidence());
+        }
+    return 0;
+}
+
+} // namespace aeolis::server
