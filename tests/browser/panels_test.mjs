@@ -9,7 +9,7 @@ import { gzipSync } from 'node:zlib';
 import { browser, focused, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
 
 const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
-const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'recorded', 'rehearsal'];
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal'];
 const SCRIPT_KB = 150;
 
 let chrome;

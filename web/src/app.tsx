@@ -5,6 +5,7 @@ import { step } from './commands/line';
 import { Commands } from './commands/view';
 import { Descent } from './descent/view';
 import { Events } from './events/view';
+import { Flown } from './flown/view';
 import { guideNow } from './guide/model';
 import { Guide } from './guide/view';
 import { Links } from './links/view';
@@ -24,7 +25,7 @@ import { Tones } from './tones/view';
 import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
-const DATA = { channels: Channels, packets: Packets, verdicts: Verdicts, links: Links, recorded: Recorded, rehearsal: Rehearsal };
+const DATA = { channels: Channels, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal };
 
 function Data() {
   const Shown = DATA[tab.value];

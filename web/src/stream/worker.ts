@@ -7,7 +7,7 @@
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
-  ChannelSeriesListSchema, CommandListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
+  AsFlownReportSchema, ChannelSeriesListSchema, CommandListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
   ScenarioListSchema, TimepointListSchema,
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
@@ -216,7 +216,7 @@ async function fetchHistory(all = true): Promise<void> {
 
 const ANSWERS: Record<Question, DescMessage> = {
   runs: RunListSchema, dictionary: DictionaryReplySchema, timepoints: TimepointListSchema, scenarios: ScenarioListSchema,
-  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema,
+  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema, report: AsFlownReportSchema,
   commands: CommandListSchema,
 };
 

@@ -1,0 +1,40 @@
+// The as-flown report in words: each timepoint by every source that told of it, and what is worth a second look.
+import type { AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
+import { fromEntry } from '../run/time';
+
+export const SPARE_LITTLE_S = 0.25; // ours: less than a controller would call a margin
+
+export interface FlownRow {
+  name: string;
+  planned: string;
+  tone: string;
+  uhf: string;
+  recorded: string;
+  margin: string;
+  tight: boolean;
+  verdict: string;
+}
+
+const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_s, { tenths: true }));
+
+export function flownRow(row: AsFlownTimepoint): FlownRow {
+  return {
+    name: row.name, planned: time(row.plannedES), tone: time(row.toneES), uhf: time(row.realtimeES), recorded: time(row.recordedES),
+    margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`, tight: row.marginS !== undefined && row.marginS < SPARE_LITTLE_S,
+    verdict: row.verdict,
+  };
+}
+
+/** What the landing came to, in one sentence for people. */
+export function summaryOf(report: AsFlownReport): string {
+  const all = report.timepoints.length;
+  const count = (known: (row: AsFlownTimepoint) => boolean) => report.timepoints.filter(known).length;
+  const fired = count((row) => row.recordedES !== undefined || row.realtimeES !== undefined);
+  return `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
+    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.`;
+}
+
+export function silenceWords(silence: AsFlownReport['silences'][number]): string {
+  const to = silence.toES === undefined ? 'to the end' : `to ${fromEntry(silence.toES)}, ${Math.round(silence.toES - silence.fromES)} s`;
+  return `${fromEntry(silence.fromES)} ${to}: ${silence.reason}`;
+}

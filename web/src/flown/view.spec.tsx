@@ -1,0 +1,28 @@
+import { create } from '@bufbuild/protobuf';
+import { describe, expect, it } from 'vitest';
+import { AsFlownReportSchema, AsFlownTimepointSchema, SilenceSchema } from '../gen/aeolis/v1/run_pb';
+import { flownRow, silenceWords, summaryOf } from './model';
+
+const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_deploy', verdict: 'nominal', ...of });
+
+describe('a timepoint as it was flown', () => {
+  it('has the times that are known, from entry, and nothing where nobody told', () => {
+    expect(flownRow(row({ realtimeES: 254.05, recordedES: 254.05 }))).toMatchObject({ planned: '', tone: '', uhf: 'E+04:14.1', recorded: 'E+04:14.1' });
+  });
+  it('is marked when it had next to nothing to spare', () => {
+    expect(flownRow(row({ marginS: 0.1 }))).toMatchObject({ margin: '0.1 s', tight: true });
+    expect(flownRow(row({ marginS: 3 }))).toMatchObject({ margin: '3.0 s', tight: false });
+    expect(flownRow(row({}))).toMatchObject({ margin: '', tight: false });
+  });
+});
+
+describe('the report', () => {
+  it('says in a sentence what came by which way', () => {
+    const report = create(AsFlownReportSchema, { timepoints: [row({ toneES: 1, realtimeES: 2, recordedES: 2 }), row({ recordedES: 3 }), row({})], tonesDecoded: 40n, tonesErased: 3n });
+    expect(summaryOf(report)).toBe('2 of 3 timepoints fired: 1 told by UHF, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.');
+  });
+  it('tells a silence from when to when, and why', () => {
+    expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'plasma', fromES: 60, toES: 130 }))).toBe('E+01:00 to E+02:10, 70 s: plasma');
+    expect(silenceWords(create(SilenceSchema, { link: 'x_band', reason: 'Earth has set', fromES: 300 }))).toBe('E+05:00 to the end: Earth has set');
+  });
+});
