@@ -147,7 +147,7 @@ Result<void> ColumnCodec::unpack(std::span<const std::uint8_t> packed, std::span
     const std::size_t count = column.size() - order;
     auto& words = state_->candidates.front();
     words.assign(column.size(), 0);
-    std::memcpy(words.data(), packed.data() + head_octets, order * sizeof(std::uint64_t));
+    if (order > 0) std::memcpy(words.data(), packed.data() + head_octets, order * sizeof(std::uint64_t));
     const auto frame = packed.subspan(head + crc_octets);
     if (planes == 0) {
         if (!frame.empty()) return Error{"there is something behind its end"};
