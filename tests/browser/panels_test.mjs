@@ -44,6 +44,7 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
             await page.goto(panel === undefined ? server.address : `${server.address}/?panel=${panel}`);
             await shows('badge', /ENDED RUN/);
             if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
+            if (panel === 'flown') await shows('flown-summary', /timepoints fired/);
             if (panel !== 'phases') assert.match((await page.getByTestId('mode-mark').allInnerTexts()).join(), /ended, rehearsal/, `${panel} does not say its mode`);
             found.push(...(await findings(page, name)).map((line) => `${panel ?? 'console'}, ${name}: ${line}`));
         }

@@ -45,7 +45,7 @@ export function Flown() {
         <span data-testid="flown-summary">{of ? summaryOf(of) : problem.value ? `✖ ${problem.value}` : 'asking the archive…'}</span>
         <a href={`api/v1/runs/${run.id}/report`} download={`as-flown-${run.id}.json`}>take the report as JSON</a>
       </div>
-      <div class="table-scroll" tabIndex={0} aria-label="timepoints as flown">
+      <div class="table-scroll" tabIndex={0} role="region" aria-label="timepoints as flown">
         {of && (
           <table data-testid="flown-table">
             <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
