@@ -1,8 +1,6 @@
-// The as-flown report in words: each timepoint by every source that told of it, and what is worth a second look.
+// The as-flown report in words: each timepoint by every source that told of it, and what was silent.
 import type { AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';
-
-export const SPARE_LITTLE_S = 0.25; // ours: less than a controller would call a margin
 
 export interface FlownRow {
   name: string;
@@ -11,7 +9,6 @@ export interface FlownRow {
   uhf: string;
   recorded: string;
   margin: string;
-  tight: boolean;
   verdict: string;
 }
 
@@ -20,7 +17,7 @@ const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_
 export function flownRow(row: AsFlownTimepoint): FlownRow {
   return {
     name: row.name, planned: time(row.plannedES), tone: time(row.toneES), uhf: time(row.realtimeES), recorded: time(row.recordedES),
-    margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`, tight: row.marginS !== undefined && row.marginS < SPARE_LITTLE_S,
+    margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`,
     verdict: row.verdict,
   };
 }

@@ -54,7 +54,7 @@ export function Flown() {
               {of.timepoints.map(flownRow).map((row) => (
                 <tr key={row.name} data-flown={row.name}>
                   <td>{row.name}</td><td class="number">{row.planned}</td><td class="number">{row.tone}</td><td class="number">{row.uhf}</td><td class="number">{row.recorded}</td>
-                  <td class="number">{row.tight ? '▲ ' : ''}{row.margin}</td><td>{row.verdict}</td>
+                  <td class="number">{row.margin}</td><td>{row.verdict}</td>
                 </tr>
               ))}
             </tbody>
