@@ -5,7 +5,11 @@
 #include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/rehearsal/wall_clock.hpp"
 
+#include "commands/authorise.hpp"
+
+#include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
 #include <fstream>
@@ -16,6 +20,8 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::string_view api_prefix = "/api/v1/";
+constexpr std::size_t audit_detail_max = 2'000; ///< ours: of a request's body
+constexpr std::size_t audit_outcome_max = 500;  ///< ours: of an answer's
 
 std::vector<std::string> split(std::string_view path) {
     std::vector<std::string> parts;
@@ -34,15 +40,18 @@ std::optional<archive::RunId> run_id(std::string_view text) {
     return archive::RunId{number};
 }
 
-HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200) {
-    HttpResponse response;
-    response.status = status;
-    response.body = to_json(message);
-    return response;
-}
-
-HttpResponse wrong_method(const HttpRequest& request, std::string_view right) {
-    return error_response(405, fmt::format("{} {}: only {} here", request.method, request.path, right));
+/// What stands in the braces of the pattern; none: the path is another one.
+std::optional<std::vector<std::string>> parts_of(std::string_view pattern, std::string_view path) {
+    const auto wanted = split(pattern.substr(1)), given = split(path.substr(1));
+    if (wanted.size() != given.size() || path.ends_with('/') != pattern.ends_with('/')) return std::nullopt;
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (wanted[i].starts_with('{'))
+            parts.push_back(given[i]);
+        else if (wanted[i] != given[i])
+            return std::nullopt;
+    }
+    return parts;
 }
 
 std::uint64_t resident_octets() {
@@ -54,66 +63,148 @@ std::uint64_t resident_octets() {
 
 } // namespace
 
+HttpResponse json_response(const google::protobuf::Message& message, unsigned status) {
+    HttpResponse response;
+    response.status = status;
+    response.body = to_json(message);
+    return response;
+}
+
 HttpResponse error_response(unsigned status, const std::string& error) {
     v1::ErrorReply reply;
     reply.set_error(error);
     return json_response(reply, status);
 }
 
+HttpResponse refusal_of(const Operator& who, Right right) {
+    if (may(who, right)) return {};
+    if (!who.role)
+        return error_response(401, "log in first: POST /api/v1/session, or send a token (Authorization: Bearer TOKEN)");
+    if (!who.accounts) return error_response(409, "this server has no accounts: it is started with --accounts FILE to have some");
+    if (who.choose_password)
+        return error_response(403, fmt::format("choose a password of your own first: PATCH /api/v1/users/{}", who.user));
+    return error_response(403, fmt::format("{} is {}: this needs the right to {}, which begins with {}", who.user, name_of(*who.role),
+                                           name_of(right), name_of(*least_role(right))));
+}
+
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const v1::CommandRequest& request) {
+    const auto* command = dictionary.command(request.command());
+    if (command == nullptr || !request.action().empty()) return {};
+    if (!who.commands.empty() && std::ranges::find(who.commands, command->name) == who.commands.end())
+        return Error{fmt::format("{} may not send {}: it is not among the commands of this account", who.user, command->name)};
+    if (!commands::is_hazardous(*command) || request.dry_run() || may(who, Right::hazardous)) return {};
+    return Error{fmt::format("{} is hazardous: it needs a {}, and {} is {}", command->name, name_of(*least_role(Right::hazardous)),
+                             who.user, name_of(*who.role))};
+}
+
+archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
+    if (detail.size() > audit_detail_max) detail = detail.substr(0, audit_detail_max) + fmt::format(" … ({} octets)", detail.size());
+    archive::AuditRecord record;
+    record.at = wall_clock_text();
+    record.who = who.user;
+    record.from = who.from;
+    record.action = action;
+    record.detail = std::move(detail);
+    record.outcome = outcome.substr(0, audit_outcome_max);
+    return record;
+}
+
+std::span<const Api::Route> Api::routes() {
+    // The first that fits answers. What stands for one run comes before the questions to it.
+    static constexpr Route all[] = {
+        {"GET", "/api/v1/session", Right::open, &Api::session, ""},
+        {"POST", "/api/v1/session", Right::open, &Api::log_in, ""},
+        {"DELETE", "/api/v1/session", Right::open, &Api::log_out, ""},
+        {"GET", "/api/v1/users", Right::administer, &Api::list_users, ""},
+        {"POST", "/api/v1/users", Right::administer, &Api::add_user, ""},
+        {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user, ""}, // one's own needs no right
+        {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, "user"},
+        {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens, ""},
+        {"POST", "/api/v1/tokens", Right::administer, &Api::add_token, "token"},
+        {"DELETE", "/api/v1/tokens/{name}", Right::administer, &Api::remove_token, "token"},
+        {"GET", "/api/v1/audit", Right::administer, &Api::audit, ""},
+        {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, ""},
+        {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command"},
+        {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, ""},
+        {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, ""},
+        {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, ""},
+        {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary, ""},
+        {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi, ""},
+        {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals, ""},
+        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, "rehearsal"},
+        {"GET", "/api/v1/rehearsals/current", Right::watch, &Api::current_rehearsal, ""},
+        {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, "rehearsal"},
+        {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, "rehearsal"},
+        {"GET", "/api/v1/stream", Right::watch, &Api::stream, ""},
+        {"GET", "/healthz", Right::open, &Api::health, ""},
+        {"GET", "/metrics", Right::watch, &Api::metrics, ""},
+    };
+    return all;
+}
+
 Api::Api(Parts parts) : parts_(std::move(parts)), dictionary_json_(to_json(dictionary_reply(parts_.dictionary))) {}
 
-void Api::handle(const HttpRequest& request, const Respond& respond) {
-    if (request.path.starts_with(api_prefix)) return handle_api(request, respond);
-    if (request.method != "GET" && request.method != "HEAD") return respond(wrong_method(request, "GET"));
-    if (request.path == "/healthz") {
-        const std::string fault = parts_.pipeline.fault();
-        return respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", (fault.empty() ? "ok" : fault) + "\n"});
+void Api::handle(HttpRequest request, const Respond& respond) {
+    const std::string_view method = request.method == "HEAD" ? "GET" : std::string_view{request.method};
+    const std::string path = request.path;
+    std::string others;
+    for (const auto& route : routes()) {
+        auto parts = parts_of(route.path, path);
+        if (!parts) continue;
+        if (route.method == method) {
+            auto who = parts_.access.identify(request.credentials);
+            return answer(route, {std::move(request), std::move(who), std::move(*parts), respond});
+        }
+        if (others.find(route.method) == std::string::npos) others += (others.empty() ? "" : " and ") + std::string{route.method};
     }
-    if (request.path == "/metrics") return respond(metrics());
-    const bool taken = parts_.queries.ask(
-        [this, path = request.path, respond](archive::Reader&) { respond(parts_.console.file(path)); });
+    if (!others.empty()) return respond(error_response(405, fmt::format("{} {}: only {} here", request.method, path, others)));
+    if (path.starts_with(api_prefix))
+        return respond(error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
+    if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
+    aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); });
+}
+
+void Api::answer(const Route& route, Asked asked) {
+    const bool changes = route.method != "GET";
+    auto refused = refusal_of(asked.who, route.right);
+    const bool has_parameters = route.answer == &Api::run_question || route.answer == &Api::audit;
+    if (refused.status == 200 && !changes && !has_parameters && route.path.starts_with(api_prefix))
+        if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
+    if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
+        refused = error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault());
+    if (!route.audit.empty()) {
+        // Of a command, a rehearsal and the like the body says what was asked; who may not even ask is noted as well.
+        asked.respond = [this, who = asked.who, action = route.audit,
+                         detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, asked.request.body),
+                         respond = std::move(asked.respond)](HttpResponse response) {
+            const bool known = who.role || !who.accounts;
+            if (known) note(who, action, detail, response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body));
+            respond(std::move(response));
+        };
+    }
+    if (refused.status != 200) return asked.respond(std::move(refused));
+    (this->*route.answer)(asked);
+}
+
+void Api::note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
+    parts_.pipeline.audit(audit_record(who, action, std::move(detail), outcome));
+}
+
+void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer) {
+    const bool taken = parts_.queries.ask([answer = std::move(answer), respond](archive::Reader& reader) { respond(answer(reader)); });
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::handle_api(const HttpRequest& request, const Respond& respond) {
-    const auto parts = split(std::string_view{request.path}.substr(api_prefix.size()));
-    const auto get_only = [&](auto&& answer) {
-        if (request.method != "GET" && request.method != "HEAD") return respond(wrong_method(request, "GET"));
-        const auto none = QueryText::parse(request.query, {});
-        if (!none) return respond(error_response(400, none.error().message));
-        answer();
-    };
-    const std::string first = parts.empty() ? "" : parts[0];
-    if (first == "runs" && parts.size() == 1) return get_only([&] { list_runs(respond); });
-    if (first == "runs" && parts.size() <= 3)
-        return handle_run(request, parts[1], parts.size() == 3 ? parts[2] : "", respond);
-    if (first == "scenarios" && parts.size() == 1) return get_only([&] { list_scenarios(respond); });
-    if (first == "dictionary" && parts.size() == 1)
-        return get_only([&] { respond({200, "application/json", "no-store", dictionary_json_}); });
-    if (first == "openapi.yaml" && parts.size() == 1)
-        return get_only([&] { respond({200, "application/yaml", "no-cache", std::string{openapi_text}}); });
-    if (first == "rehearsals" && parts.size() == 1) return rehearsals(request, false, respond);
-    if (first == "rehearsals" && parts.size() == 2 && parts[1] == "current") return rehearsals(request, true, respond);
-    if (first == "stream" && parts.size() == 1)
-        return respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
-                                           "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
-    respond(
-        error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", request.path)));
-}
-
-void Api::handle_run(const HttpRequest& request, const std::string& run, const std::string& what,
-                     const Respond& respond) {
+void Api::run_question(const Asked& asked) {
+    const auto& run = asked.parts[0];
+    const std::string what = asked.parts.size() == 2 ? asked.parts[1] : "";
+    const auto& respond = asked.respond;
     if (run != "latest" && !run_id(run))
-        return respond(
-            error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
-    if (what == "commands" && request.method == "POST") return post_command(request, run, respond);
-    const auto* question = run_question(what);
+        return respond(error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
+    const auto* question = server::run_question(what);
     if (question == nullptr)
-        return respond(error_response(
-            404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
-    if (request.method != "GET" && request.method != "HEAD")
-        return respond(wrong_method(request, what == "commands" ? "GET and POST" : "GET"));
-    auto query = QueryText::parse(request.query, question->parameters);
+        return respond(error_response(404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
+    auto query = QueryText::parse(asked.request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error().message));
     const auto& dictionary = parts_.dictionary;
     // What the archive cannot know of the run that goes on: its pace and its clocks.
@@ -122,8 +213,8 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
         return respond(json_response(current));
     ask(
         run, std::move(*query),
-        [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
-            return answer(dictionary, reader, id, asked);
+        [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
+            return answer(dictionary, reader, id, asked_of);
         },
         respond);
 }
@@ -144,65 +235,95 @@ void Api::ask(const std::string& run, QueryText query, RunQuestion question, con
     if (!parts_.queries.ask(job)) respond(error_response(503, "too many questions wait: try again"));
 }
 
-void Api::list_runs(const Respond& respond) {
-    const bool taken = parts_.queries.ask(
-        [respond, current = current_run()](archive::Reader& reader) {
-            auto runs = reader.runs();
-            if (!runs) return respond(error_response(500, runs.error().message));
-            for (auto& run : *runs->mutable_runs())
-                if (run.run() == current.run()) run = current;
-            respond(json_response(*runs));
-        });
-    if (!taken) respond(error_response(503, "too many questions wait: try again"));
+void Api::list_runs(const Asked& asked) {
+    aside(asked.respond, [current = current_run()](archive::Reader& reader) {
+        auto runs = reader.runs();
+        if (!runs) return error_response(500, runs.error().message);
+        for (auto& run : *runs->mutable_runs())
+            if (run.run() == current.run()) run = current;
+        return json_response(*runs);
+    });
 }
 
-void Api::list_scenarios(const Respond& respond) {
-    const bool taken =
-        parts_.queries.ask([this, respond](archive::Reader&) { respond(json_response(parts_.scenarios.list())); });
-    if (!taken) respond(error_response(503, "too many questions wait: try again"));
+void Api::list_scenarios(const Asked& asked) {
+    aside(asked.respond, [this](archive::Reader&) { return json_response(parts_.scenarios.list()); });
 }
 
-void Api::rehearsals(const HttpRequest& request, bool current, const Respond& respond) {
-    // What cannot be done now may be asked again later; what makes no sense may not.
-    const bool going_on = parts_.desk.going_on();
-    const auto began = [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
+void Api::dictionary(const Asked& asked) {
+    asked.respond({200, "application/json", "no-store", dictionary_json_});
+}
+
+void Api::openapi(const Asked& asked) {
+    asked.respond({200, "application/yaml", "no-cache", std::string{openapi_text}});
+}
+
+void Api::stream(const Asked& asked) {
+    asked.respond(error_response(426, "the stream is a WebSocket: ask for an upgrade, with one of the "
+                                      "subprotocols aeolis.v1.protobuf, aeolis.v1.json"));
+}
+
+void Api::health(const Asked& asked) {
+    const std::string fault = parts_.pipeline.fault();
+    // Whoever may not watch is not told the names of files.
+    const std::string text = fault.empty() ? "ok" : may(asked.who, Right::watch) ? fault : "the archive cannot be written";
+    asked.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
+}
+
+void Api::list_rehearsals(const Asked& asked) {
+    v1::RunList list;
+    if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
+    asked.respond(json_response(list));
+}
+
+void Api::current_rehearsal(const Asked& asked) {
+    const auto state = current_run();
+    asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up") : json_response(state));
+}
+
+namespace {
+
+// What cannot be done now may be asked again later; what makes no sense may not.
+RehearsalDesk::Began tell_begun(const Respond& respond, bool going_on) {
+    return [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
         respond(state ? json_response(*state, 201) : error_response(refused, state.error().message));
     };
-    if (request.method == "GET" || request.method == "HEAD") {
-        v1::RunList list;
-        if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
-        if (!current) return respond(json_response(list));
-        if (list.runs().empty())
-            return respond(error_response(404, "no rehearsal was started since the server came up"));
-        return respond(json_response(list.runs(0)));
-    }
-    if (!current && request.method == "POST") {
-        v1::StartRehearsal start;
-        if (const auto parsed = from_json(request.body, start); !parsed)
-            return respond(error_response(400, parsed.error().message));
-        return parts_.desk.start(start, began);
-    }
-    if (current && (request.method == "POST" || request.method == "PATCH")) {
-        v1::RehearsalControl control;
-        if (const auto parsed = from_json(request.body, control); !parsed)
-            return respond(error_response(400, parsed.error().message));
-        const bool starts = control.action_case() == v1::RehearsalControl::kStart;
-        const auto done = parts_.desk.control(control, began);
-        if (!done) return respond(error_response(going_on ? 422 : 409, done.error().message));
-        if (!starts) respond(json_response(current_run(), 202));
-        return;
-    }
-    respond(wrong_method(request, current ? "GET, POST and PATCH" : "GET and POST"));
 }
 
-void Api::post_command(const HttpRequest& request, const std::string& run, const Respond& respond) {
+} // namespace
+
+void Api::start_rehearsal(const Asked& asked) {
+    v1::StartRehearsal start;
+    if (const auto parsed = from_json(asked.request.body, start); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    parts_.desk.start(start, tell_begun(asked.respond, parts_.desk.going_on()));
+}
+
+void Api::control_rehearsal(const Asked& asked) {
+    v1::RehearsalControl control;
+    if (const auto parsed = from_json(asked.request.body, control); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    const bool going_on = parts_.desk.going_on();
+    const bool starts = control.action_case() == v1::RehearsalControl::kStart;
+    const auto done = parts_.desk.control(control, tell_begun(asked.respond, going_on));
+    if (!done) return asked.respond(error_response(going_on ? 422 : 409, done.error().message));
+    if (!starts) asked.respond(json_response(current_run(), 202));
+}
+
+void Api::post_command(const Asked& asked) {
+    const auto& run = asked.parts[0];
+    const auto& respond = asked.respond;
+    if (run != "latest" && !run_id(run))
+        return respond(error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
     v1::CommandRequest command;
-    if (const auto parsed = from_json(request.body, command); !parsed)
+    if (const auto parsed = from_json(asked.request.body, command); !parsed)
         return respond(error_response(400, parsed.error().message));
     const auto id = run_id(run);
     if (id && command.run() != 0 && command.run() != id->value)
         return respond(error_response(400, fmt::format("run: the path says {}, the body {}", run, command.run())));
     if (id) command.set_run(id->value);
+    if (asked.who.accounts) command.set_controller(asked.who.user);
+    if (const auto allowed = may_send(asked.who, parts_.dictionary, command); !allowed)
+        return respond(error_response(403, allowed.error().message));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
     parts_.desk.command(std::move(command), [respond, refused](const v1::CommandReply& reply) {
         respond(json_response(reply, reply.accepted() ? 202 : refused));
@@ -215,7 +336,7 @@ v1::RunState Api::current_run() const {
     return state;
 }
 
-HttpResponse Api::metrics() const {
+void Api::metrics(const Asked& asked) {
     const auto pipeline = parts_.pipeline.figures();
     const auto& hub = parts_.hub.figures;
     std::ostringstream text;
@@ -242,7 +363,7 @@ HttpResponse Api::metrics() const {
     write("run", "gauge", "number of the current run", count(parts_.desk.current().run()));
     write("run_attained_pace", "gauge", "seconds of the vehicle a second", parts_.desk.current().attained_pace());
     write("resident_memory_bytes", "gauge", "resident memory of the process", count(resident_octets()));
-    return {200, "text/plain; version=0.0.4; charset=utf-8", "no-store", text.str()};
+    asked.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", text.str()});
 }
 
 } // namespace aeolis::server

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "dictionaries/dictionary.hpp"
+#include "server/access/access.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
 #include "server/net/http_message.hpp"
@@ -11,15 +12,25 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace aeolis::server {
 
 class QueryText;
 
+/// A request with who asks, what stood in the braces of its route's path, and where its answer goes.
+struct Asked {
+    HttpRequest request;
+    Operator who;
+    std::vector<std::string> parts;
+    Respond respond;
+};
+
 /// Every HTTP route (server/api/openapi.yaml describes them): requests to questions, answers to JSON.
 ///
 /// Thread   handle() on the network thread; questions to the archive run on the query threads
+/// Access   a route says which right it needs; without it, 401 or 403. What changes something is written into the audit
 /// Faults   an answer other than 2xx carries ErrorReply: one sentence that names what is wrong
 class Api {
   public:
@@ -29,32 +40,75 @@ class Api {
         QueryThreads& queries;
         RehearsalDesk& desk;
         StreamHub& hub;
-        const PipelineThread& pipeline;
+        PipelineThread& pipeline;
         const StaticFiles& console;
+        Access& access;
+        bool secure; ///< over TLS: cookies say so
         std::function<std::size_t()> connections;
     };
     explicit Api(Parts parts);
 
-    void handle(const HttpRequest& request, const Respond& respond);
+    void handle(HttpRequest request, const Respond& respond);
     /// `respond` is called on whatever thread has the answer.
     using RunQuestion = std::function<HttpResponse(archive::Reader&, archive::RunId, const QueryText&)>;
 
+    struct Route {
+        std::string_view method; ///< GET answers HEAD, too
+        std::string_view path;   ///< "{…}" takes one part
+        Right right;
+        void (Api::*answer)(const Asked&);
+        std::string_view audit; ///< the action's word; empty: it changes nothing, or its answer writes it
+    };
+    static std::span<const Route> routes();
+
   private:
-    void handle_api(const HttpRequest& request, const Respond& respond);
-    void handle_run(const HttpRequest& request, const std::string& run, const std::string& what,
-                    const Respond& respond);
-    void list_runs(const Respond& respond);
-    void list_scenarios(const Respond& respond);
-    void rehearsals(const HttpRequest& request, bool current, const Respond& respond);
-    void post_command(const HttpRequest& request, const std::string& run, const Respond& respond);
+    void run_question(const Asked& asked);
+    void list_runs(const Asked& asked);
+    void list_scenarios(const Asked& asked);
+    void dictionary(const Asked& asked);
+    void openapi(const Asked& asked);
+    void stream(const Asked& asked);
+    void health(const Asked& asked);
+    void metrics(const Asked& asked);
+    void console_file(const Asked& asked);
+    void list_rehearsals(const Asked& asked);
+    void current_rehearsal(const Asked& asked);
+    void start_rehearsal(const Asked& asked);
+    void control_rehearsal(const Asked& asked);
+    void post_command(const Asked& asked);
+    // access_routes.cpp
+    void session(const Asked& asked);
+    void log_in(const Asked& asked);
+    void log_out(const Asked& asked);
+    void list_users(const Asked& asked);
+    void add_user(const Asked& asked);
+    void change_user(const Asked& asked);
+    void remove_user(const Asked& asked);
+    void list_tokens(const Asked& asked);
+    void add_token(const Asked& asked);
+    void remove_token(const Asked& asked);
+    void audit(const Asked& asked);
+
+    void answer(const Route& route, Asked asked);
+    void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
+    /// Answered on a query thread; 503 when too much waits.
+    void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer);
     void ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
-    v1::RunState current_run() const; ///< with what only the stream knows; run 0: none since the server started
-    HttpResponse metrics() const;
+    v1::RunState current_run() const;
 
     Parts parts_;
     std::string dictionary_json_;
 };
 
 HttpResponse error_response(unsigned status, const std::string& error);
+HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
+
+/// Why this one may not; empty: nothing is against it.
+HttpResponse refusal_of(const Operator& who, Right right);
+/// Whether they may send this command, by its significance and their own list.
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const v1::CommandRequest& request);
+
+/// An entry of the audit, now.
+archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
 
 } // namespace aeolis::server

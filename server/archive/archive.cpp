@@ -201,6 +201,13 @@ Result<void> Archive::append(RunId run, const Batch& batch) {
     return transaction->commit();
 }
 
+Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    if (auto done = archive::append_audit(state_->database, records); !done) return done;
+    return transaction->commit();
+}
+
 Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last_seq) {
     last_key.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
     auto found = last_key.step();

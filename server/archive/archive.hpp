@@ -2,6 +2,7 @@
 
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "server/archive/audit.hpp"
 #include "server/archive/records.hpp"
 
 #include <filesystem>
@@ -11,7 +12,7 @@
 namespace aeolis::archive {
 
 inline constexpr std::int32_t application_id = 0x41454F4C; ///< "AEOL": what file(1) and we know the file by
-inline constexpr std::int32_t schema_version = 4;          ///< PRAGMA user_version
+inline constexpr std::int32_t schema_version = 5;          ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///
@@ -38,6 +39,9 @@ class Archive {
 
     /// All of `batch` or none of it; durable when it returns. With `batch.end` the run is finished.
     Result<void> append(RunId run, const Batch& batch);
+
+    /// All of it or none, durable when it returns.
+    Result<void> append_audit(std::span<const AuditRecord> records);
 
     /// Runs that open() found cut off.
     const std::vector<RunId>& interrupted() const;

@@ -80,6 +80,10 @@ Result<Sequence> Reader::last_seq(RunId run) {
     return state_->last_seq(run);
 }
 
+Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t limit) {
+    return audit_entries(state_->database, after, limit);
+}
+
 Result<CutOffRun> Reader::cut_off(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();

@@ -4,6 +4,7 @@
 #include "aeolis/v1/run.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
+#include "server/archive/audit.hpp"
 #include "server/archive/records.hpp"
 #include "telemetry/other_mission.hpp"
 
@@ -133,6 +134,9 @@ class Reader {
     Result<v1::ProofReport> proof(RunId run);
     /// All that a review of the landing begins with; as long as proof().
     Result<v1::AsFlownReport> as_flown(RunId run);
+
+    /// In order, of those after `after`.
+    Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
 
     struct State; ///< reader_state.hpp: shared by the reader's parts
 

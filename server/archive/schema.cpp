@@ -221,6 +221,12 @@ CREATE TEMP TABLE requests (run INTEGER, position INTEGER, cycle INTEGER, reques
 CREATE TEMP TABLE pruned_runs (
     run INTEGER, scenario TEXT, seed INTEGER, case_number INTEGER, outcome TEXT, started TEXT, pruned TEXT);
 )sql"},
+    {5, R"sql(
+CREATE TABLE audit (
+    entry INTEGER PRIMARY KEY, at TEXT NOT NULL, who TEXT NOT NULL, peer TEXT NOT NULL, action TEXT NOT NULL,
+    detail TEXT NOT NULL, outcome TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
+)sql",
+     nullptr},
 };
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";

@@ -20,6 +20,9 @@ struct ServeOptions {
     std::string listen = "127.0.0.1:8080";
     std::filesystem::path archive = "run-data/aeolis.db";
     std::filesystem::path web;
+    std::filesystem::path accounts;            ///< empty: none
+    std::filesystem::path certificate, key;    ///< PEM; empty: no TLS
+    std::vector<std::string> names;            ///< by which browsers call the server
     std::string scenario; ///< empty: none is started
     std::uint64_t seed = 1;
     double pace = 1.0;
@@ -29,6 +32,15 @@ struct ServeOptions {
     std::string log_level = "info", log_format = "text";
 };
 int serve(const ServeOptions& options);
+
+struct AccountsOptions {
+    std::filesystem::path file;
+    std::string user;
+};
+/// Prints users and tokens of a file of accounts.
+int accounts_list(const AccountsOptions& options);
+/// Gives a user a new password, or makes an administrator of that name; prints the password.
+int accounts_reset(const AccountsOptions& options);
 
 struct RehearseOptions {
     SharedOptions shared;

@@ -94,9 +94,17 @@ int main(int argc, char** argv) {
                  "What the command line says counts first, then the environment variable named beside an option, then the file.");
     std::filesystem::path settings;
     serve_command->add_option("--config", settings, "the file of options");
-    serve_command->add_option("--listen", serving.listen, "loopback ADDRESS:PORT; port 0 takes a free one")
+    serve_command->add_option("--listen", serving.listen, "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")
         ->envname("AEOLIS_LISTEN")
         ->capture_default_str();
+    serve_command->add_option("--accounts", serving.accounts, "the file of users and tokens, made at the first start; left out: no log-in, on loopback only")
+        ->envname("AEOLIS_ACCOUNTS");
+    serve_command->add_option("--tls-certificate", serving.certificate, "PEM file with the server's certificate and its chain: then https only")
+        ->envname("AEOLIS_TLS_CERTIFICATE");
+    serve_command->add_option("--tls-key", serving.key, "PEM file with its private key")->envname("AEOLIS_TLS_KEY");
+    serve_command->add_option("--host", serving.names, "names by which browsers call this server, with commas between; loopback names always count")
+        ->delimiter(',')
+        ->envname("AEOLIS_HOST");
     serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
         ->envname("AEOLIS_ARCHIVE")
         ->capture_default_str();
@@ -320,6 +328,17 @@ int main(int argc, char** argv) {
     report_command->add_option("--run", reporting.of.run, "number of the run")->required()->check(whole_number());
     report_command->add_flag("--json", reporting.json, "print one JSON object");
     report_command->callback([&] { exit_code = report(reporting); });
+
+    AccountsOptions keeping;
+    auto* accounts_command = app.add_subcommand("accounts", "who may use a server: its file of accounts, by hand")->require_subcommand(1);
+    auto* listed = accounts_command->add_subcommand("list", "users and tokens with their roles");
+    listed->add_option("--accounts", keeping.file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
+    listed->callback([&] { exit_code = accounts_list(keeping); });
+    auto* reset = accounts_command->add_subcommand(
+        "reset", "a new password for a user who has lost theirs, or a new administrator; a server that runs takes it over");
+    reset->add_option("--accounts", keeping.file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
+    reset->add_option("--user", keeping.user, "the name")->required();
+    reset->callback([&] { exit_code = accounts_reset(keeping); });
 
     auto* archive_command = app.add_subcommand("archive", "what is done to an archive now and then")->require_subcommand(1);
     ArchiveOptions kept = exporting.of;

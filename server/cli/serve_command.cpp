@@ -104,18 +104,23 @@ int serve(const ServeOptions& options) {
     pthread_sigmask(SIG_BLOCK, &ending, nullptr);
 
     auto backend = ConsoleBackend::open(
-        {listen->address, listen->port, options.archive, options.shared.scenarios, options.web, other.get()},
+        {.web_server = {.address = listen->address, .port = listen->port, .names = options.names, .certificate = options.certificate, .key = options.key},
+         .accounts = options.accounts, .archive = options.archive, .scenarios = options.shared.scenarios, .web = options.web, .other = other.get()},
         *dictionary);
     if (!backend) return failed(backend.error().message);
     if (downlink)
         if (auto following = (*backend)->follow(*downlink); !following) return failed("--downlink " + following.error().message);
     if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
 
-    fmt::print("Aeolis is at http://{}:{}/\n  {}\n  archive {}; end with Ctrl-C\n",
+    if (const auto& password = (*backend)->first_password(); !password.empty())
+        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and only lets you choose a "
+                   "password of your own.\n", options.accounts.string(), password);
+    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n", (*backend)->secure() ? "https" : "http",
                listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
                (*backend)->port(),
                downlink ? "Open it in a browser: it follows " + downlink->address.text() + "." : what_to_do(scenario),
-               std::filesystem::absolute(options.archive).lexically_normal().string());
+               std::filesystem::absolute(options.archive).lexically_normal().string(),
+               options.accounts.empty() ? "no accounts: whoever uses this machine may command" : "accounts in " + options.accounts.string());
     std::fflush(stdout);
 
     std::thread waiter{[&] {

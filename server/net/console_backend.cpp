@@ -1,8 +1,28 @@
 #include "server/net/console_backend.hpp"
 
+#include "server/api/json.hpp"
+
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
+namespace {
+
+constexpr unsigned stream_check_ms = 1'000; // ours: so long a client may follow after its log-in has ended
+
+/// What other machines can reach must know who asks, and must not be listened to.
+Result<void> check_reach(const ConsoleBackend::Settings& settings) {
+    const auto& web = settings.web_server;
+    if (WebServer::is_loopback(web.address)) return {};
+    if (settings.accounts.empty() || web.certificate.empty())
+        return Error{fmt::format("--listen {}: other machines reach this address: give --accounts, --tls-certificate and --tls-key; "
+                                 "without accounts the server listens on loopback only", web.address)};
+    if (web.names.empty())
+        return Error{fmt::format("--listen {}: give --host, the name by which browsers call this server", web.address)};
+    return {};
+}
+
+} // namespace
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
     : settings_(std::move(settings)), dictionary_(dictionary), scenarios_(settings_.scenarios),
@@ -14,18 +34,16 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     const auto& chosen = backend->settings_;
     auto* const self = backend.get();
 
+    if (auto safe = check_reach(chosen); !safe) return safe.error();
     // The address first: a second server must not touch the archive before it fails.
     backend->hub_ = std::make_unique<StreamHub>(dictionary.id, self->stream_services());
-    WebServer::Handlers handlers;
-    handlers.request = [self](const HttpRequest& request, const Respond& respond) {
-        self->api_->handle(request, respond);
-    };
-    handlers.open_stream = [self](StreamFormat format, std::function<void()> wake) {
-        return std::make_shared<StreamSession>(*self->hub_, format, std::move(wake));
-    };
-    auto server = WebServer::open(chosen.address, chosen.port, std::move(handlers));
+    auto server = WebServer::open(chosen.web_server, self->web_handlers());
     if (!server) return server.error();
     backend->server_ = std::move(*server);
+    backend->server_->every(stream_check_ms, [self] { self->hub_->check_clients(); });
+    auto access = Access::open({.file = chosen.accounts});
+    if (!access) return access.error();
+    backend->access_ = std::move(*access);
     const auto post = [self](std::function<void()> action) { self->server_->post(std::move(action)); };
 
     std::error_code ignored;
@@ -55,9 +73,60 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
     backend->api_ = std::make_unique<Api>(
         Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->hub_,
-                   *backend->pipeline_, backend->console_, [self] { return self->server_->connections(); }});
+                   *backend->pipeline_, backend->console_, *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
     return backend;
+}
+
+WebServer::Handlers ConsoleBackend::web_handlers() {
+    WebServer::Handlers handlers;
+    handlers.request = [this](HttpRequest request, const Respond& respond) { api_->handle(std::move(request), respond); };
+    handlers.admit_stream = [this](const Credentials& credentials) { return refusal_of(access_->identify(credentials), Right::watch); };
+    handlers.open_stream = [this](const Credentials& credentials, StreamFormat format, std::function<void()> wake) {
+        return std::make_shared<StreamSession>(*hub_, format, std::move(wake), stream_client(credentials));
+    };
+    return handlers;
+}
+
+/// The same checks and the same audit as the routes of the same words.
+StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentials) {
+    StreamSession::Client client;
+    client.refusal = [this, credentials] { return may(access_->identify(credentials), Right::watch) ? "" : "the log-in has ended: log in again"; };
+    const auto allowed = [this](const Operator& who, Right right) -> Result<void> {
+        if (!may(who, right))
+            return Error{fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
+        if (!pipeline_->audit_has_room()) return Error{"nothing is done that the audit cannot take: " + pipeline_->fault()};
+        return {};
+    };
+    client.command = [this, credentials, allowed](v1::CommandRequest request, const std::function<void(v1::CommandReply)>& reply) {
+        const auto who = access_->identify(credentials);
+        if (who.accounts) request.set_controller(who.user);
+        auto right = allowed(who, Right::command);
+        if (right) right = may_send(who, dictionary_, request);
+        const auto noted = [this, who, detail = to_json(request), reply](const v1::CommandReply& answer) {
+            pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
+            reply(answer);
+        };
+        if (right) return desk_->command(std::move(request), noted);
+        v1::CommandReply refusal;
+        refusal.set_request(request.request());
+        refusal.set_reason(right.error().message);
+        noted(refusal);
+    };
+    client.control = [this, credentials, allowed](const v1::RehearsalControl& control, const std::function<void(Result<void>)>& done) {
+        const auto who = access_->identify(credentials);
+        const auto noted = [this, who, detail = to_json(control), done](const Result<void>& result) {
+            pipeline_->audit(audit_record(who, "rehearsal", detail, result ? "done" : "refused: " + result.error().message));
+            done(result);
+        };
+        if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
+        const bool starts = control.action_case() == v1::RehearsalControl::kStart;
+        const auto now = desk_->control(control, [noted](const Result<v1::RunState>& began) {
+            noted(began ? Result<void>{} : Result<void>{began.error()});
+        });
+        if (!now || !starts) noted(now);
+    };
+    return client;
 }
 
 ConsoleBackend::~ConsoleBackend() {
@@ -87,15 +156,6 @@ StreamHub::Services ConsoleBackend::stream_services() {
             server_->post([done, state = std::move(state)]() mutable { done(std::move(state)); });
         });
         if (!taken) server_->post([done] { done(Error{"too many questions wait: try again"}); });
-    };
-    services.command = [this](v1::CommandRequest request, auto reply) {
-        desk_->command(std::move(request), std::move(reply));
-    };
-    services.control = [this](const v1::RehearsalControl& control, const auto& done) {
-        const auto now = desk_->control(control, [done](const Result<v1::RunState>& began) {
-            if (!began) done(began.error());
-        });
-        if (!now) done(now);
     };
     services.want_items = [this](bool wanted) {
         if (pipeline_) pipeline_->want_items(wanted);

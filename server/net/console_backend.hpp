@@ -18,9 +18,9 @@ namespace aeolis::server {
 class ConsoleBackend {
   public:
     struct Settings {
-        std::string address = "127.0.0.1";
-        std::uint16_t port = 8080; ///< 0: a free one
-        std::filesystem::path archive, scenarios, web;
+        WebServer::Settings web_server{};
+        std::filesystem::path accounts{}; ///< empty: none, which is possible on loopback only
+        std::filesystem::path archive{}, scenarios{}, web{};
         const telemetry::OtherMission* other = nullptr; ///< whose dictionary it then is; it must outlive this
     };
     /// Fails with one line that names the archive or the address. The dictionary must outlive this.
@@ -35,16 +35,22 @@ class ConsoleBackend {
     void run();
     void stop(); ///< from any thread
     std::uint16_t port() const { return server_->port(); }
+    bool secure() const { return server_->secure(); }
+    /// Of the administrator, when the file of accounts was made just now; else empty.
+    const std::string& first_password() const { return access_->first_password(); }
 
   private:
     ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary);
     StreamHub::Services stream_services();
+    WebServer::Handlers web_handlers();
+    StreamSession::Client stream_client(const Credentials& credentials);
     void adopt_newest_run();
 
     Settings settings_;
     const dictionary::Dictionary& dictionary_;
     ScenarioLibrary scenarios_;
     StaticFiles console_;
+    std::unique_ptr<Access> access_;
     std::unique_ptr<StreamHub> hub_;
     std::unique_ptr<WebServer> server_;
     std::unique_ptr<QueryThreads> queries_;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "server/access/access.hpp"
+
 #include <functional>
 #include <string>
 
@@ -10,6 +12,7 @@ struct HttpRequest {
     std::string path;  ///< decoded, without the query
     std::string query; ///< as it stands after '?', still percent-encoded
     std::string body;
+    Credentials credentials{};
 };
 
 struct HttpResponse {
@@ -17,6 +20,7 @@ struct HttpResponse {
     std::string content_type = "application/json";
     std::string cache_control = "no-store";
     std::string body;
+    std::string set_cookie{}; ///< empty: none
 };
 
 /// To be called once, from any thread.

@@ -122,6 +122,11 @@ void StreamHub::add(StreamSession& session) {
     services_.want_items(true);
 }
 
+void StreamHub::check_clients() {
+    for (auto* session : sessions_)
+        session->check();
+}
+
 void StreamHub::remove(StreamSession& session) {
     std::erase(sessions_, &session);
     if (sessions_.empty()) services_.want_items(false);

@@ -71,8 +71,6 @@ class StreamHub {
                            std::function<void(Result<archive::ItemPage>)>)>
             read_items;
         std::function<void(std::uint64_t run, std::function<void(Result<v1::RunState>)>)> read_run;
-        std::function<void(v1::CommandRequest, std::function<void(v1::CommandReply)>)> command;
-        std::function<void(v1::RehearsalControl, std::function<void(Result<void>)>)> control;
         std::function<void(bool wanted)> want_items;
     };
     StreamHub(std::uint16_t dictionary_id, Services services);
@@ -83,6 +81,8 @@ class StreamHub {
 
     void add(StreamSession& session);
     void remove(StreamSession& session);
+    /// Clients that may follow no longer are closed.
+    void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
 
     // ---- for sessions ------------------------------------------------------------------------------------------

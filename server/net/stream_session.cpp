@@ -9,14 +9,25 @@
 
 namespace aeolis::server {
 
-StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake)
-    : hub_(hub), wake_(std::move(wake)) {
+StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake, Client client)
+    : hub_(hub), wake_(std::move(wake)), client_(std::move(client)) {
     shape_.format = format;
     hub_.add(*this);
 }
 
 StreamSession::~StreamSession() {
     hub_.remove(*this);
+}
+
+std::string StreamSession::closing() const {
+    if (!refusal_.empty()) return refusal_;
+    return replies_.size() > replies_max ? "too many requests without reading the answers" : "";
+}
+
+void StreamSession::check() {
+    if (!refusal_.empty()) return;
+    refusal_ = client_.refusal();
+    if (!refusal_.empty()) wake_();
 }
 
 void StreamSession::on_message(std::string_view payload) {
@@ -26,12 +37,14 @@ void StreamSession::on_message(std::string_view payload) {
     } else if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
         return refuse(fmt::format("these {} octets are not a ClientMessage of aeolis.v1", payload.size()));
     }
+    check();
+    if (!refusal_.empty()) return;
     const auto self = weak_from_this();
     switch (message.message_case()) {
     case v1::ClientMessage::kSubscribe:
         return subscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
-        return hub_.services().command(message.command(), [self](v1::CommandReply answer) {
+        return client_.command(message.command(), [self](v1::CommandReply answer) {
             const auto session = self.lock();
             if (!session) return;
             v1::ServerMessage out;
@@ -39,7 +52,7 @@ void StreamSession::on_message(std::string_view payload) {
             session->reply(out);
         });
     case v1::ClientMessage::kControl:
-        return hub_.services().control(message.control(), [self](const Result<void>& done) {
+        return client_.control(message.control(), [self](const Result<void>& done) {
             const auto session = self.lock();
             if (session && !done) session->refuse(done.error().message);
         });
@@ -122,6 +135,7 @@ Encoded StreamSession::welcome() {
 }
 
 Encoded StreamSession::next_message() {
+    if (!refusal_.empty()) return nullptr;
     if (!replies_.empty()) {
         auto message = replies_.front();
         replies_.pop_front();

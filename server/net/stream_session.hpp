@@ -23,7 +23,13 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     static constexpr std::size_t page_items = 2'048;      ///< read from the archive at once
     static constexpr double catching_up_interval_s = 1.0; ///< ours: samples of one who fell behind are thinned to 1 Hz
 
-    StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake);
+    /// What a client does besides following the stream, with its rights checked.
+    struct Client {
+        std::function<void(v1::CommandRequest, std::function<void(v1::CommandReply)>)> command;
+        std::function<void(v1::RehearsalControl, std::function<void(Result<void>)>)> control;
+        std::function<std::string()> refusal; ///< why it may follow no longer; empty: it may
+    };
+    StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake, Client client);
     ~StreamSession();
     StreamSession(const StreamSession&) = delete;
     StreamSession& operator=(const StreamSession&) = delete;
@@ -33,8 +39,10 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     void on_message(std::string_view payload);
     /// What to write next; null when there is nothing now: wake() comes when that changes.
     Encoded next_message();
-    /// Too many replies wait: the connection should close.
-    bool flooded() const { return replies_.size() > replies_max; }
+    /// Why the connection should close; empty: it should not.
+    std::string closing() const;
+    /// Looks again whether the client may follow.
+    void check();
     void wake() { wake_(); }
 
   private:
@@ -50,6 +58,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
 
     StreamHub& hub_;
     std::function<void()> wake_;
+    Client client_;
+    std::string refusal_;
     StreamShape shape_;
     std::deque<Encoded> replies_;
 

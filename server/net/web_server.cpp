@@ -3,6 +3,7 @@
 #include "aeolis/v1/run.pb.h"
 #include "server/api/json.hpp"
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
@@ -11,12 +12,15 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <boost/url/parse.hpp>
 #include <deque>
 #include <fmt/format.h>
@@ -36,6 +40,7 @@ using error_code = boost::system::error_code;
 using Executor = asio::io_context::executor_type;
 using Socket = asio::basic_stream_socket<tcp, Executor>;
 using Stream = beast::basic_stream<tcp, Executor>;
+using TlsStream = asio::ssl::stream<Stream>;
 using Acceptor = asio::basic_socket_acceptor<tcp, Executor>;
 using Timer =
     asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>, Executor>;
@@ -58,31 +63,21 @@ std::string_view plain(beast::string_view text) {
     return {text.data(), text.size()};
 }
 
-/// "localhost", "127.0.0.1", "[::1]", each with or without a port.
-bool is_loopback_authority(std::string_view authority) {
+/// The console needs nothing from elsewhere, and nobody may show it in a frame.
+constexpr const char* security_policy =
+    "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src 'self'; "
+    "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
+
+/// Of "name", "name:port", "[::1]:port".
+std::string_view host_of(std::string_view authority) {
     const auto bracket = authority.rfind(']');
     const auto colon = authority.rfind(':');
-    if (colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket))
-        authority = authority.substr(0, colon);
-    return authority == "localhost" || authority == "127.0.0.1" || authority == "[::1]";
+    const bool has_port = colon != std::string_view::npos && (bracket == std::string_view::npos || colon > bracket);
+    return has_port ? authority.substr(0, colon) : authority;
 }
 
-/// A page's own address; a program that is no browser sends none.
-/// Another program's page on this machine is another origin too: only our own may command.
-bool is_own_origin(std::string_view origin, std::string_view host) {
-    constexpr std::string_view scheme = "http://";
-    return origin.starts_with(scheme) && origin.substr(scheme.size()) == host;
-}
-
-/// Empty when the request may go on.
-std::string refusal_of(const Request& request) {
-    const auto host = plain(request[http::field::host]);
-    if (!is_loopback_authority(host))
-        return fmt::format("Host '{}' is not a loopback name: this server answers on this machine only", host);
-    const auto origin = request.find(http::field::origin);
-    if (origin != request.end() && !is_own_origin(plain(origin->value()), host))
-        return fmt::format("Origin '{}' is not a page of this server", plain(origin->value()));
-    return {};
+bool is_loopback_name(std::string_view host) {
+    return host == "localhost" || host == "127.0.0.1" || host == "[::1]";
 }
 
 /// The first of ours that the client offers.
@@ -104,11 +99,29 @@ Response error_reply(const Request& request, http::status status, const std::str
     return response;
 }
 
+/// Of certificate and key, or what is wrong with them; none: no TLS.
+Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& settings) {
+    if (settings.certificate.empty() && settings.key.empty()) return std::optional<asio::ssl::context>{};
+    if (settings.certificate.empty() || settings.key.empty())
+        return Error{"TLS: --tls-certificate and --tls-key are given together"};
+    asio::ssl::context context{asio::ssl::context::tls_server};
+    SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
+    context.set_password_callback([](std::size_t, asio::ssl::context::password_purpose) { return std::string{}; }); // never asks
+    error_code error;
+    context.use_certificate_chain_file(settings.certificate.string(), error);
+    if (error) return Error{fmt::format("--tls-certificate {}: {}", settings.certificate.string(), error.message())};
+    context.use_private_key_file(settings.key.string(), asio::ssl::context::pem, error);
+    if (error) return Error{fmt::format("--tls-key {}: {}", settings.key.string(), error.message())};
+    return std::optional{std::move(context)};
+}
+
 } // namespace
 
 struct WebServer::State {
     asio::io_context io{1};
     Acceptor acceptor{io.get_executor()};
+    std::optional<asio::ssl::context> tls;
+    std::vector<std::string> names;
     Handlers handlers;
     std::size_t connections = 0;
     std::deque<Timer> timers; ///< of every()
@@ -116,28 +129,46 @@ struct WebServer::State {
     Task<> accept();
     Task<> repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action);
     Task<> serve(Socket socket);
-    Task<> serve_requests(Stream& stream);
-    Task<> serve_stream(Stream stream, Request request, StreamFormat format, std::string_view subprotocol);
+    template <typename AnyStream>
+    Task<> serve_requests(AnyStream& stream, std::string from);
+    template <typename AnyStream>
+    Task<> serve_stream(AnyStream stream, Request request, Credentials credentials, StreamFormat format, std::string_view subprotocol);
     Task<HttpResponse> answer(HttpRequest request);
+    std::string refusal_of(const Request& request) const;
 };
+
+/// Empty when the request may go on.
+std::string WebServer::State::refusal_of(const Request& request) const {
+    const auto host = plain(request[http::field::host]);
+    if (!is_loopback_name(host_of(host)) && std::ranges::find(names, host_of(host)) == names.end())
+        return fmt::format("Host '{}' is not a name of this server: it answers to loopback names{}", host,
+                           names.empty() ? " only" : " and to those of --host");
+    // Another program's page on this machine is another origin, too: only our own may command. A program that is no browser sends none.
+    const auto origin = request.find(http::field::origin);
+    const std::string own = fmt::format("{}://{}", tls ? "https" : "http", host);
+    if (origin != request.end() && plain(origin->value()) != own)
+        return fmt::format("Origin '{}' is not a page of this server", plain(origin->value()));
+    return {};
+}
 
 namespace {
 
 /// A WebSocket client's connection: one message is written at a time, whatever else is due waits in the session.
+template <typename AnyStream>
 struct StreamConnection {
-    StreamConnection(Stream stream) : socket(std::move(stream)), due(socket.get_executor()) {}
-    websocket::stream<Stream> socket;
+    StreamConnection(AnyStream stream) : socket(std::move(stream)), due(socket.get_executor()) {}
+    websocket::stream<AnyStream> socket;
     Timer due; ///< cancelled when the session has something to write
     bool open = true;
 };
 
-Task<> write_messages(std::shared_ptr<StreamConnection> connection, std::shared_ptr<StreamSession> session) {
+template <typename AnyStream>
+Task<> write_messages(std::shared_ptr<StreamConnection<AnyStream>> connection, std::shared_ptr<StreamSession> session) {
     error_code error;
     while (connection->open) {
         const auto message = session->next_message();
-        if (session->flooded()) {
-            const websocket::close_reason reason{websocket::close_code::policy_error,
-                                                 "too many requests without reading the answers"};
+        if (const auto why = session->closing(); !why.empty()) {
+            const websocket::close_reason reason{websocket::close_code::policy_error, why};
             co_await connection->socket.async_close(reason, asio::redirect_error(awaiting, error));
             break;
         }
@@ -168,10 +199,11 @@ Task<HttpResponse> WebServer::State::answer(HttpRequest request) {
         awaiting, std::move(request));
 }
 
-Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamFormat format,
+template <typename AnyStream>
+Task<> WebServer::State::serve_stream(AnyStream stream, Request request, Credentials credentials, StreamFormat format,
                                       std::string_view subprotocol) {
-    stream.expires_never(); // the WebSocket has time-outs of its own
-    auto connection = std::make_shared<StreamConnection>(std::move(stream));
+    beast::get_lowest_layer(stream).expires_never(); // the WebSocket has time-outs of its own
+    auto connection = std::make_shared<StreamConnection<AnyStream>>(std::move(stream));
     auto& socket = connection->socket;
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
     timeout.idle_timeout = std::chrono::seconds{silence_seconds_max};
@@ -185,7 +217,7 @@ Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamForm
     co_await socket.async_accept(request, asio::redirect_error(awaiting, error));
     if (error) co_return;
 
-    auto session = handlers.open_stream(format, [weak = std::weak_ptr{connection}] {
+    auto session = handlers.open_stream(credentials, format, [weak = std::weak_ptr{connection}] {
         if (const auto alive = weak.lock()) alive->due.cancel();
     });
     asio::co_spawn(io, write_messages(connection, session), asio::detached);
@@ -211,14 +243,16 @@ Task<> WebServer::State::serve_stream(Stream stream, Request request, StreamForm
     beast::get_lowest_layer(socket).socket().close(ignored);
 }
 
-Task<> WebServer::State::serve_requests(Stream& stream) {
+template <typename AnyStream>
+Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
+    auto& lowest = beast::get_lowest_layer(stream);
     beast::flat_buffer buffer;
     for (;;) {
         error_code error;
         http::request_parser<http::string_body> parser;
         parser.body_limit(body_octets_max);
         parser.header_limit(header_octets_max);
-        stream.expires_after(std::chrono::seconds{request_seconds_max});
+        lowest.expires_after(std::chrono::seconds{request_seconds_max});
         co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
         if (error == http::error::end_of_stream || error == beast::error::timeout) co_return;
         if (error) {
@@ -237,6 +271,8 @@ Task<> WebServer::State::serve_requests(Stream& stream) {
         }
         auto request = parser.release();
         Response response;
+        const auto field = [&](http::field name) { return std::string{plain(request[name])}; };
+        Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
         const auto target =
             boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
         if (const auto refusal = refusal_of(request); !refusal.empty()) {
@@ -244,30 +280,41 @@ Task<> WebServer::State::serve_requests(Stream& stream) {
         } else if (!target) {
             response = error_reply(request, http::status::bad_request, "the request's target is not a path");
         } else if (websocket::is_upgrade(request) && target->path() == stream_path) {
-            if (const auto* subprotocol = chosen_subprotocol(request)) {
-                co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name);
+            auto admitted = handlers.admit_stream(credentials);
+            const auto* subprotocol = chosen_subprotocol(request);
+            if (admitted.status == 200 && subprotocol != nullptr) {
+                co_await serve_stream(std::move(stream), std::move(request), std::move(credentials), subprotocol->format, subprotocol->name);
                 co_return;
             }
-            response =
-                error_reply(request, http::status::bad_request,
+            if (admitted.status != 200) {
+                response = Response{static_cast<http::status>(admitted.status), request.version()};
+                response.set(http::field::content_type, admitted.content_type);
+                response.body() = std::move(admitted.body);
+            } else
+                response = error_reply(request, http::status::bad_request,
                             "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
         } else {
-            stream.expires_never();
+            lowest.expires_never();
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
             HttpRequest asked{std::string{plain(request.method_string())}, target->path(),
-                              std::string{target->encoded_query()}, std::move(request.body())};
+                              std::string{target->encoded_query()}, std::move(request.body()), std::move(credentials)};
             auto answered = co_await answer(std::move(asked));
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
             response.set(http::field::cache_control, answered.cache_control);
+            if (!answered.set_cookie.empty()) response.set(http::field::set_cookie, answered.set_cookie);
             response.body() = std::move(answered.body);
         }
         response.set(http::field::server, "aeolis");
         response.set("X-Content-Type-Options", "nosniff");
+        response.set("Content-Security-Policy", security_policy);
+        response.set("Referrer-Policy", "no-referrer");
+        response.set("Cross-Origin-Opener-Policy", "same-origin");
+        if (tls && !is_loopback_name(host_of(plain(request[http::field::host])))) response.set("Strict-Transport-Security", "max-age=31536000");
         response.keep_alive(request.keep_alive());
         response.prepare_payload();
         if (request.method() == http::verb::head) response.body().clear();
-        stream.expires_after(std::chrono::seconds{request_seconds_max});
+        lowest.expires_after(std::chrono::seconds{request_seconds_max});
         co_await http::async_write(stream, response, asio::redirect_error(awaiting, error));
         if (error || !response.keep_alive()) co_return;
     }
@@ -290,8 +337,23 @@ Task<> WebServer::State::serve(Socket socket) {
         co_await http::async_write(stream, reply, asio::redirect_error(awaiting, ignored));
         co_return;
     }
-    co_await serve_requests(stream);
-    if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    const auto peer = stream.socket().remote_endpoint(ignored);
+    std::string from = ignored ? "unknown" : peer.address().to_string();
+    if (!tls) {
+        co_await serve_requests(stream, std::move(from));
+        if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+        co_return;
+    }
+    TlsStream secure{std::move(stream), *tls};
+    auto& lowest = beast::get_lowest_layer(secure);
+    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    error_code error;
+    co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
+    if (error) co_return; // it speaks no TLS, or does not trust us
+    co_await serve_requests(secure, std::move(from));
+    if (!lowest.socket().is_open()) co_return;
+    lowest.expires_after(std::chrono::seconds{1});
+    co_await secure.async_shutdown(asio::redirect_error(awaiting, error));
 }
 
 Task<> WebServer::State::accept() {
@@ -325,14 +387,17 @@ Task<> WebServer::State::repeat(Timer& timer, std::chrono::milliseconds interval
     }
 }
 
-Result<std::unique_ptr<WebServer>> WebServer::open(const std::string& address, std::uint16_t port, Handlers handlers) {
+Result<std::unique_ptr<WebServer>> WebServer::open(const Settings& settings, Handlers handlers) {
     error_code error;
+    const auto& address = settings.address;
+    const auto port = settings.port;
     const auto ip = asio::ip::make_address(address == "localhost" ? "127.0.0.1" : address, error);
     if (error) return Error{fmt::format("--listen {}: not an IP address", address)};
-    if (!ip.is_loopback())
-        return Error{fmt::format("--listen {}: only loopback addresses as yet; access control comes with a later issue",
-                                 address)};
+    auto tls = tls_of(settings);
+    if (!tls) return tls.error();
     auto state = std::make_unique<State>();
+    state->tls = std::move(*tls);
+    state->names = settings.names;
     state->handlers = std::move(handlers);
     const tcp::endpoint endpoint{ip, port};
     auto& acceptor = state->acceptor;
@@ -346,6 +411,12 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const std::string& address, s
     if (error) return Error{fmt::format("--listen {}:{}: {}", address, port, error.message())};
     asio::co_spawn(state->io, state->accept(), asio::detached);
     return std::unique_ptr<WebServer>{new WebServer{std::move(state)}};
+}
+
+bool WebServer::is_loopback(const std::string& address) {
+    error_code error;
+    const auto ip = asio::ip::make_address(address, error);
+    return address == "localhost" || (!error && ip.is_loopback());
 }
 
 WebServer::WebServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -362,6 +433,9 @@ void WebServer::stop() {
 }
 void WebServer::post(std::function<void()> action) {
     asio::post(state_->io, std::move(action));
+}
+bool WebServer::secure() const {
+    return state_->tls.has_value();
 }
 std::size_t WebServer::connections() const {
     return state_->connections;

@@ -5,19 +5,23 @@
 #include "server/net/stream_session.hpp"
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace aeolis::server {
 
-/// HTTP/1.1 and WebSocket on a loopback address: sockets and protocol only; what is said is decided elsewhere.
+/// HTTP/1.1 and WebSocket, with TLS where there is a certificate: sockets and protocol only; what is said, and to whom, is
+/// decided elsewhere.
 ///
 /// Thread   run() is the network thread: handlers and sessions are called there and must not block
 /// Limits   below; a request beyond one is answered with its status and the limit's name, or the connection is closed
 /// Faults   a peer that breaks the protocol, is slow or dead costs its own connection only
-/// Safety   requests whose Host or Origin is not a loopback name are refused: a page of another site, or a name that
-///          was rebound to this address, cannot command
+/// Safety   requests whose Host is neither a loopback name nor one of ours, or whose Origin is not our own page, are
+///          refused: a page of another site, or a name that was rebound to this address, cannot command. Every answer
+///          carries a content security policy
 class WebServer {
   public:
     static constexpr std::size_t body_octets_max = 1 << 20;     ///< ours: a scenario with every field is under 2 KiB
@@ -30,13 +34,24 @@ class WebServer {
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
-        /// A client opened /api/v1/stream. `wake` tells the connection that next_message() has something.
-        std::function<std::shared_ptr<StreamSession>(StreamFormat, std::function<void()> wake)> open_stream;
+        /// A client asks for /api/v1/stream: 200 lets it in, anything else is the answer.
+        std::function<HttpResponse(const Credentials&)> admit_stream;
+        /// It was let in. `wake` tells the connection that next_message() has something.
+        std::function<std::shared_ptr<StreamSession>(const Credentials&, StreamFormat, std::function<void()> wake)> open_stream;
+    };
+    struct Settings {
+        std::string address = "127.0.0.1";
+        std::uint16_t port = 0;              ///< 0: a free one
+        std::vector<std::string> names;      ///< by which browsers call this server, besides those of loopback
+        std::filesystem::path certificate;   ///< PEM, the whole chain; empty: no TLS
+        std::filesystem::path key;           ///< PEM
     };
 
-    /// Binds and listens; port 0 takes a free one. Fails with one line that names the address: not loopback, in use.
-    static Result<std::unique_ptr<WebServer>> open(const std::string& address, std::uint16_t port, Handlers handlers);
+    /// Binds and listens. Fails with one line that names the address or the file.
+    static Result<std::unique_ptr<WebServer>> open(const Settings& settings, Handlers handlers);
     ~WebServer();
+    /// Whether only this machine reaches the address; false of what is no address.
+    static bool is_loopback(const std::string& address);
 
     std::uint16_t port() const;
     void run();                                                      ///< until stop()
@@ -44,6 +59,7 @@ class WebServer {
     void post(std::function<void()> action);                         ///< run it on the network thread; from any thread
     void every(unsigned milliseconds, std::function<void()> action); ///< on the network thread, before run()
     std::size_t connections() const;                                 ///< on the network thread
+    bool secure() const;                                             ///< over TLS
 
   private:
     struct State;

@@ -22,6 +22,7 @@ namespace {
 constexpr std::size_t batch_units = 4096;  ///< ours: some MB in hand
 constexpr std::size_t faults_a_table = 20; ///< ours: more nobody reads
 constexpr int first_schema_with_packed_segments = 4;
+constexpr int first_schema_with_audit = 5;
 
 struct RunToDerive {
     RunId run;
@@ -273,6 +274,13 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         for (auto& fault : *faults)
             found.faults.push_back("the file: " + std::move(fault));
         if (!found.faults.empty()) return found; // what the rest would find is no news
+        if (schema >= first_schema_with_audit) {
+            auto audit = archive::check_audit(*database);
+            if (!audit) return audit.error();
+            found.faults = std::move(audit->faults);
+            if (audit->entries > 0)
+                found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " + audit->last_hash);
+        }
     }
     auto scratch = Scratch::open(scratch_folder / ("aeolis-verify-" + std::to_string(::getpid()) + ".db"), file);
     if (!scratch) return scratch.error();

@@ -94,6 +94,29 @@ void PipelineThread::abandon() {
     perform([&] { pipeline_.abandon(); });
 }
 
+void PipelineThread::audit(archive::AuditRecord record) {
+    {
+        const std::scoped_lock lock{audit_mutex_};
+        audit_.push_back(std::move(record));
+    }
+    jobs_.try_push(Action{[] {}}); // wakes it; a full queue keeps it awake
+}
+
+bool PipelineThread::audit_has_room() const {
+    const std::scoped_lock lock{audit_mutex_};
+    return audit_.size() < audit_waiting_max;
+}
+
+void PipelineThread::write_audit() {
+    std::vector<archive::AuditRecord> records;
+    {
+        const std::scoped_lock lock{audit_mutex_};
+        records.swap(audit_);
+    }
+    if (records.empty() || insist([&] { return archive_.append_audit(records); })) return;
+    spdlog::error("audit: {} entries could not be written", records.size());
+}
+
 bool PipelineThread::deliver(Delivery delivery) {
     return !given_up_ && jobs_.push(std::move(delivery)) && !given_up_;
 }
@@ -120,7 +143,7 @@ void PipelineThread::run() {
         auto job = pipeline_.pending_items() == 0
                        ? jobs_.pop()
                        : jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval);
-        if (!job && pipeline_.pending_items() == 0) return;
+        if (!job && pipeline_.pending_items() == 0) return write_audit();
         pipeline_.want_items(items_wanted_);
         if (job) {
             if (auto* begin = std::get_if<Begin>(&*job)) {
@@ -138,6 +161,7 @@ void PipelineThread::run() {
             }
         }
         insist([&] { return pipeline_.commit_if_due(std::chrono::steady_clock::now()); });
+        write_audit();
         if (!job && jobs_.closed() && (given_up_ || !pipeline_.commit().ok())) return;
     }
 }

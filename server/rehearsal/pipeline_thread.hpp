@@ -37,6 +37,7 @@ struct Delivery {
 ///          lost. With `Faults::give_up` (one landing without a console) the first failure ends it.
 class PipelineThread {
   public:
+    static constexpr std::size_t audit_waiting_max = 1'000; ///< ours: some 200 kB
     static constexpr std::size_t deliveries_max = 64; ///< ours: some 64 × 256 units, about 2 MB
 
     enum class Faults { hold, give_up };
@@ -57,6 +58,11 @@ class PipelineThread {
     bool deliver(Delivery delivery);
     /// Waits until everything delivered is durable and the run is marked finished.
     Result<void> finish(const archive::RunEnd& end);
+
+    /// Stored as soon as the disk takes it; never waits. From any thread.
+    void audit(archive::AuditRecord record);
+    /// False while so much of the audit waits for a failing disk that nothing more may be done that belongs into it.
+    bool audit_has_room() const;
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Given up, or held right now; empty when all is well.
@@ -95,6 +101,9 @@ class PipelineThread {
     BoundedQueue<Job> jobs_{deliveries_max};
     std::atomic<bool> items_wanted_{true}, given_up_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    void write_audit();
+    mutable std::mutex audit_mutex_;
+    std::vector<archive::AuditRecord> audit_;
     mutable std::mutex fault_mutex_;
     std::string fault_;
     std::thread thread_;

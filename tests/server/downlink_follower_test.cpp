@@ -121,7 +121,7 @@ class Follower {
     Follower(const telemetry::OtherMission& mission, const std::string& address, DownlinkForm format) {
         spdlog::set_level(spdlog::level::off);
         ConsoleBackend::Settings settings;
-        settings.port = 0;
+        settings.web_server.port = 0;
         settings.archive = folder_ / "a.db";
         settings.scenarios = AEOLIS_SOURCE_DIR "/simulation/scenarios";
         settings.web = folder_ / "web";

@@ -177,17 +177,17 @@ TEST_CASE("the console's files are served, and nothing outside its folder", "[ht
 TEST_CASE("a second server on the port, or another address, is refused in one line", "[http]") {
     RunningServer server;
     server::ConsoleBackend::Settings settings;
-    settings.port = server.port();
+    settings.web_server.port = server.port();
     settings.archive = server.archive().parent_path() / "other.db";
     const auto second = server::ConsoleBackend::open(settings, tests::shipped_dictionary());
     REQUIRE_FALSE(second);
     CHECK_THAT(second.error().message, Catch::Contains("in use"));
     CHECK_FALSE(std::filesystem::exists(settings.archive));
-    settings.address = "0.0.0.0";
+    settings.web_server.address = "0.0.0.0";
     CHECK_THAT(server::ConsoleBackend::open(settings, tests::shipped_dictionary()).error().message,
-               Catch::Contains("only loopback"));
-    settings.address = "127.0.0.1";
-    settings.port = 0;
+               Catch::Contains("loopback only"));
+    settings.web_server.address = "127.0.0.1";
+    settings.web_server.port = 0;
     settings.archive = server.archive();
     const auto same_archive = server::ConsoleBackend::open(settings, tests::shipped_dictionary());
     REQUIRE_FALSE(same_archive);

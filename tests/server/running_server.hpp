@@ -34,7 +34,28 @@ class RunningServer {
     }
     ~RunningServer() { end(); }
 
+    /// With accounts, in the folder of the archive.
+    struct WithAccounts {};
+    explicit RunningServer(WithAccounts) {
+        accounts_ = folder_ / "accounts.json";
+        open();
+        start_thread();
+    }
+
+    struct Secure {
+        std::filesystem::path certificate, key;
+    };
+    explicit RunningServer(const Secure& tls) {
+        accounts_ = folder_ / "accounts.json";
+        web_server_.certificate = tls.certificate;
+        web_server_.key = tls.key;
+        open();
+        start_thread();
+    }
+
     std::uint16_t port() const { return port_; }
+    std::string first_password() const { return backend_->first_password(); }
+    std::filesystem::path accounts() const { return accounts_; }
     /// Ends it and opens the same archive again: as after a restart.
     void restart() {
         end();
@@ -47,7 +68,8 @@ class RunningServer {
     void open() {
         spdlog::set_level(spdlog::level::err); // what a test provokes need not be read
         server::ConsoleBackend::Settings settings;
-        settings.port = 0;
+        settings.web_server = web_server_;
+        settings.accounts = accounts_;
         settings.archive = archive();
         settings.scenarios = shipped_scenarios;
         settings.web = folder_ / "web";
@@ -66,6 +88,8 @@ class RunningServer {
     }
 
     TemporaryFolder folder_;
+    std::filesystem::path accounts_;
+    server::WebServer::Settings web_server_;
     std::unique_ptr<server::ConsoleBackend> backend_;
     std::thread network_;
     std::uint16_t port_ = 0;

@@ -48,13 +48,6 @@ struct Venue {
             waiting.push_back([done, page] { done(page); });
         };
         services.read_run = [](std::uint64_t run, const auto& done) { done(Error{"no run " + std::to_string(run)}); };
-        services.command = [](const v1::CommandRequest& request, const auto& reply) {
-            v1::CommandReply answer;
-            answer.set_request(request.request());
-            answer.set_reason("nothing listens");
-            reply(answer);
-        };
-        services.control = [](const v1::RehearsalControl&, const auto& done) { done(Error{"no rehearsal goes on"}); };
         services.want_items = [](bool) {};
         return services;
     }
@@ -87,7 +80,20 @@ struct Venue {
 
 struct Client {
     explicit Client(StreamHub& hub, StreamFormat format = StreamFormat::protobuf)
-        : session(std::make_shared<StreamSession>(hub, format, [] {})) {}
+        : session(std::make_shared<StreamSession>(hub, format, [] {}, rights())) {}
+
+    StreamSession::Client rights() {
+        StreamSession::Client client;
+        client.command = [](const v1::CommandRequest& request, const auto& reply) {
+            v1::CommandReply answer;
+            answer.set_request(request.request());
+            answer.set_reason("nothing listens");
+            reply(answer);
+        };
+        client.control = [](const v1::RehearsalControl&, const auto& done) { done(Error{"no rehearsal goes on"}); };
+        client.refusal = [this] { return refusal; };
+        return client;
+    }
 
     void subscribe(archive::Sequence after, double max_rate_hz = 0.0, bool all_channels = true) {
         v1::ClientMessage message;
@@ -119,6 +125,7 @@ struct Client {
         return seen == wanted;
     }
 
+    std::string refusal;
     std::shared_ptr<StreamSession> session;
     archive::Sequence complete_through = 0;
     std::vector<archive::Sequence> seen;
@@ -256,7 +263,21 @@ TEST_CASE("a client that asks and never reads is marked to be closed", "[stream]
     Client client{venue.hub};
     for (std::size_t i = 0; i <= StreamSession::replies_max; ++i)
         client.session->on_message("\xFF");
-    CHECK(client.session->flooded());
+    CHECK_THAT(client.session->closing(), Catch::Contains("without reading"));
+}
+
+TEST_CASE("a client whose log-in has ended is told nothing more and is marked to be closed", "[stream][access]") {
+    Venue venue;
+    Client client{venue.hub};
+    venue.publish_events(2);
+    client.subscribe(0);
+    client.read_all();
+    CHECK(client.session->closing().empty());
+    client.refusal = "the log-in has ended";
+    venue.publish_events(2);
+    venue.hub.check_clients();
+    CHECK(client.session->next_message() == nullptr);
+    CHECK(client.session->closing() == "the log-in has ended");
 }
 
 TEST_CASE("a client of the newest run is moved to the next one", "[stream]") {

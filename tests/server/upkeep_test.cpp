@@ -76,7 +76,7 @@ TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
     { REQUIRE(Archive::open(file).ok()); }
-    std::string known = "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs'";
+    std::string known = "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs', 'audit'";
     for (const auto& table : run_tables)
         known += std::string(", '") + table.name + "'";
     CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT IN (" + known + ")").c_str()) == 0);

@@ -58,7 +58,8 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     if (error) return {};
     const auto& response = parser.get();
     const auto text = [&](http::field field) { return std::string{response[field]}; };
-    return {response.result_int(), text(http::field::content_type), text(http::field::cache_control), response.body()};
+    return {response.result_int(), text(http::field::content_type), text(http::field::cache_control), text(http::field::set_cookie),
+            std::string{response["Content-Security-Policy"]}, response.body()};
 }
 
 std::string raw_exchange(std::uint16_t port, std::string_view octets) {

@@ -1,0 +1,343 @@
+#include "server/access/access.hpp"
+
+#include "server/access/account_file.hpp"
+#include "server/access/secrets.hpp"
+
+#include <algorithm>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr unsigned token_days_max = 3'650; // ours
+
+std::string iso_text(Access::Clock::time_point time) {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
+}
+
+/// The value of our cookie in a Cookie field; empty: it is not there.
+std::string cookie_value(std::string_view field) {
+    while (!field.empty()) {
+        const auto end = field.find(';');
+        auto pair = field.substr(0, end);
+        field = end == std::string_view::npos ? std::string_view{} : field.substr(end + 1);
+        while (pair.starts_with(' ')) pair.remove_prefix(1);
+        const auto equals = pair.find('=');
+        if (equals != std::string_view::npos && pair.substr(0, equals) == session_cookie) return std::string{pair.substr(equals + 1)};
+    }
+    return {};
+}
+
+v1::User user_of(const v1::Account& account) {
+    v1::User user;
+    user.set_user(account.user());
+    user.set_role(account.role());
+    user.set_choose_password(account.choose_password());
+    *user.mutable_commands() = account.commands();
+    return user;
+}
+
+v1::Token token_of(const v1::AccessToken& token) {
+    v1::Token shown;
+    shown.set_name(token.name());
+    shown.set_role(token.role());
+    shown.set_created(token.created());
+    shown.set_expires(token.expires());
+    return shown;
+}
+
+bool is_administrator(const v1::Account& account) {
+    return account.role() == name_of(Role::administrator);
+}
+
+Error no_accounts() {
+    return Error{"this server has no accounts: it is started with --accounts FILE to have some"};
+}
+Error no_user(const std::string& user) {
+    return Error{fmt::format("there is no user '{}'", user)};
+}
+Error no_role(const std::string& role) {
+    return Error{fmt::format("role: '{}' is none of observer, controller, director, administrator", role)};
+}
+
+} // namespace
+
+Result<std::unique_ptr<Access>> Access::open(Settings settings) {
+    std::unique_ptr<Access> access{new Access{std::move(settings)}};
+    if (!access->accounts()) return access;
+    const auto& file = access->settings_.file;
+    std::error_code error;
+    if (!std::filesystem::exists(file, error)) {
+        v1::AccountFile fresh;
+        access->first_password_ = reset_account(fresh, "administrator");
+        if (auto written = write_accounts(file, fresh); !written) return written.error();
+    }
+    auto accounts = read_accounts(file);
+    if (!accounts) return accounts.error();
+    if (std::ranges::none_of(accounts->accounts(), is_administrator))
+        return Error{fmt::format("{}: no user is an administrator; aeolis accounts reset makes one", file.string())};
+    access->file_ = std::move(*accounts);
+    access->file_time_ = std::filesystem::last_write_time(file, error);
+    return access;
+}
+
+void Access::refresh() {
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(settings_.file, error);
+    if (error || time == file_time_) return;
+    file_time_ = time;
+    auto accounts = read_accounts(settings_.file);
+    if (!accounts) return spdlog::error("accounts: {}; those of before count on", accounts.error().message);
+    file_ = std::move(*accounts);
+}
+
+Result<void> Access::store(v1::AccountFile changed) {
+    if (auto written = write_accounts(settings_.file, changed); !written) return written;
+    file_ = std::move(changed);
+    std::error_code ignored;
+    file_time_ = std::filesystem::last_write_time(settings_.file, ignored);
+    return {};
+}
+
+Operator Access::operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const {
+    Operator who;
+    who.user = account.user();
+    who.role = role_of(account.role());
+    who.commands.assign(account.commands().begin(), account.commands().end());
+    who.choose_password = account.choose_password();
+    who.session = session;
+    who.expires = iso_text(live.expires);
+    return who;
+}
+
+Operator Access::identify(const Credentials& credentials) {
+    Operator nobody;
+    nobody.from = credentials.from;
+    if (!accounts()) {
+        nobody.accounts = false;
+        nobody.role = Role::director;
+        return nobody;
+    }
+    const auto now = settings_.now();
+    constexpr std::string_view bearer = "Bearer ";
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    if (credentials.authorization.starts_with(bearer)) {
+        const auto hash = secret_hash(credentials.authorization.substr(bearer.size()));
+        const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
+        if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now))) return nobody;
+        nobody.user = "token " + token->name();
+        nobody.role = role_of(token->role());
+        nobody.expires = token->expires();
+        return nobody;
+    }
+    const auto secret = cookie_value(credentials.cookie);
+    if (secret.empty()) return nobody;
+    const auto session = sessions_.find(secret_hash(secret));
+    if (session == sessions_.end()) return nobody;
+    const auto* account = find_account(file_, session->second.user);
+    if (account == nullptr || session->second.expires < now) {
+        sessions_.erase(session);
+        return nobody;
+    }
+    auto who = operator_of(*account, session->first, session->second);
+    who.from = credentials.from;
+    return who;
+}
+
+Result<void> Access::refuse_locked_out(const std::string& user, const std::string& from) {
+    const auto now = settings_.now();
+    for (const auto& key : {from, from + ' ' + user}) {
+        const auto found = failures_.find(key);
+        if (found == failures_.end() || found->second.locked_until <= now) continue;
+        const auto wait = std::chrono::ceil<std::chrono::seconds>(found->second.locked_until - now);
+        return Error{fmt::format("too many wrong log-ins from {}: wait {} s", from, wait.count())};
+    }
+    return {};
+}
+
+void Access::count_failure(const std::string& key, unsigned allowed) {
+    const auto now = settings_.now();
+    if (failures_.size() >= failures_max && !failures_.contains(key))
+        failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& each) { return each.second.last; }));
+    auto& failures = failures_[key];
+    failures.last = now;
+    if (++failures.count < allowed) return;
+    const auto doublings = std::min(failures.count - allowed, 5U);
+    failures.locked_until = now + std::min<std::chrono::seconds>(first_lock_out * (1U << doublings), longest_lock_out);
+}
+
+Result<void> Access::check_log_in(const std::string& user, const std::string& password, const std::string& from) {
+    std::string hash;
+    {
+        const std::scoped_lock lock{mutex_};
+        refresh();
+        if (auto free = refuse_locked_out(user, from); !free) return free;
+        if (const auto* account = find_account(file_, user)) hash = account->password_hash();
+    }
+    const bool matches = password.size() <= password_octets_max && password_matches(hash, password);
+    const std::scoped_lock lock{mutex_};
+    if (matches) {
+        failures_.erase(from + ' ' + user);
+        return {};
+    }
+    count_failure(from, tries_of_address);
+    count_failure(from + ' ' + user, tries_of_user);
+    return Error{"user or password is wrong"};
+}
+
+Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::string& from) {
+    if (!accounts()) return no_accounts();
+    if (!check_name(asked.user())) return Error{"user or password is wrong"};
+    if (auto right = check_log_in(asked.user(), asked.password(), from); !right) return right.error();
+    const auto now = settings_.now();
+    const std::scoped_lock lock{mutex_};
+    const auto* account = find_account(file_, asked.user());
+    if (account == nullptr) return Error{"user or password is wrong"};
+    std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
+    if (sessions_.size() >= sessions_max)
+        sessions_.erase(std::ranges::min_element(sessions_, {}, [](const auto& each) { return each.second.expires; }));
+    LoggedIn done;
+    done.secret = new_secret();
+    const auto hash = secret_hash(done.secret);
+    const LiveSession live{asked.user(), now + session_length};
+    sessions_[hash] = live;
+    done.who = operator_of(*account, hash, live);
+    done.who.from = from;
+    return done;
+}
+
+void Access::log_out(const Operator& who) {
+    const std::scoped_lock lock{mutex_};
+    sessions_.erase(who.session);
+}
+
+void Access::end_sessions(const std::string& user, const std::string& but) {
+    std::erase_if(sessions_, [&](const auto& each) { return each.second.user == user && each.first != but; });
+}
+
+v1::UserList Access::users() {
+    const std::scoped_lock lock{mutex_};
+    if (accounts()) refresh();
+    v1::UserList list;
+    for (const auto& account : file_.accounts())
+        *list.add_users() = user_of(account);
+    return list;
+}
+
+Result<v1::User> Access::add_user(const v1::NewUser& user) {
+    if (!accounts()) return no_accounts();
+    if (auto named = check_name(user.user()); !named) return Error{"user: " + named.error().message};
+    if (!role_of(user.role())) return no_role(user.role());
+    if (auto good = check_password(user.password()); !good) return good.error();
+    v1::Account account;
+    account.set_user(user.user());
+    account.set_role(user.role());
+    account.set_password_hash(password_hash(user.password()));
+    account.set_choose_password(true);
+    *account.mutable_commands() = user.commands();
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    if (find_account(file_, user.user()) != nullptr) return Error{fmt::format("there is a user '{}' already", user.user())};
+    auto changed = file_;
+    *changed.add_accounts() = account;
+    if (auto stored = store(std::move(changed)); !stored) return stored.error();
+    return user_of(account);
+}
+
+Result<v1::User> Access::change_user(const Operator& who, const std::string& user, const v1::UserChange& change) {
+    if (!accounts()) return no_accounts();
+    const bool own = user == who.user;
+    if (!own && !may(who, Right::administer)) return Error{fmt::format("only an administrator changes user '{}'", user)};
+    if (own && !change.role().empty()) return Error{"role: nobody changes their own; another administrator does"};
+    if (!change.role().empty() && !role_of(change.role())) return no_role(change.role());
+    if (change.role().empty() && change.password().empty()) return Error{"the change says nothing: role or password is wanted"};
+    std::string hash;
+    if (!change.password().empty()) {
+        if (auto good = check_password(change.password()); !good) return good.error();
+        if (own && change.password() == change.current_password()) return Error{"password: it is the one of before, choose another"};
+        if (own)
+            if (auto right = check_log_in(user, change.current_password(), who.from); !right)
+                return Error{"current_password: " + right.error().message};
+        hash = password_hash(change.password());
+    }
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    auto changed = file_;
+    auto* account = find_account(changed, user);
+    if (account == nullptr) return no_user(user);
+    if (!change.role().empty()) account->set_role(change.role());
+    if (!hash.empty()) {
+        account->set_password_hash(hash);
+        account->set_choose_password(!own);
+    }
+    if (std::ranges::none_of(changed.accounts(), is_administrator)) return Error{"role: one administrator must remain"};
+    const auto shown = user_of(*account);
+    if (auto stored = store(std::move(changed)); !stored) return stored.error();
+    if (!hash.empty()) end_sessions(user, who.session);
+    return shown;
+}
+
+Result<void> Access::remove_user(const std::string& user) {
+    if (!accounts()) return no_accounts();
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    auto changed = file_;
+    auto& all = *changed.mutable_accounts();
+    const auto found = std::ranges::find(all, user, &v1::Account::user);
+    if (found == all.end()) return no_user(user);
+    all.erase(found);
+    if (std::ranges::none_of(all, is_administrator)) return Error{"one administrator must remain"};
+    if (auto stored = store(std::move(changed)); !stored) return stored;
+    end_sessions(user, "");
+    return {};
+}
+
+v1::TokenList Access::tokens() {
+    const std::scoped_lock lock{mutex_};
+    if (accounts()) refresh();
+    v1::TokenList list;
+    for (const auto& token : file_.tokens())
+        *list.add_tokens() = token_of(token);
+    return list;
+}
+
+Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
+    if (!accounts()) return no_accounts();
+    if (auto named = check_name(asked.name()); !named) return Error{"name: " + named.error().message};
+    if (!role_of(asked.role())) return no_role(asked.role());
+    if (asked.days() > token_days_max) return Error{fmt::format("days: {} at most", token_days_max)};
+    const auto secret = new_secret();
+    const auto now = settings_.now();
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    if (std::ranges::find(file_.tokens(), asked.name(), &v1::AccessToken::name) != file_.tokens().end())
+        return Error{fmt::format("there is a token '{}' already", asked.name())};
+    auto changed = file_;
+    auto& token = *changed.add_tokens();
+    token.set_name(asked.name());
+    token.set_role(asked.role());
+    token.set_secret_hash(secret_hash(secret));
+    token.set_created(iso_text(now));
+    if (asked.days() > 0) token.set_expires(iso_text(now + std::chrono::hours{24} * asked.days()));
+    auto shown = token_of(token);
+    if (auto stored = store(std::move(changed)); !stored) return stored.error();
+    shown.set_token(secret);
+    return shown;
+}
+
+Result<void> Access::remove_token(const std::string& name) {
+    if (!accounts()) return no_accounts();
+    const std::scoped_lock lock{mutex_};
+    refresh();
+    auto changed = file_;
+    auto& all = *changed.mutable_tokens();
+    const auto found = std::ranges::find(all, name, &v1::AccessToken::name);
+    if (found == all.end()) return Error{fmt::format("there is no token '{}'", name)};
+    all.erase(found);
+    return store(std::move(changed));
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,99 @@
+#include "server/access/account_file.hpp"
+
+#include "server/access/role.hpp"
+#include "server/access/secrets.hpp"
+#include "server/api/json.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <unistd.h>
+
+namespace aeolis::server {
+namespace {
+
+constexpr std::size_t name_octets_max = 32;
+
+Result<void> check_accounts(const v1::AccountFile& accounts) {
+    std::set<std::string> users, tokens;
+    const auto check = [](auto& names, const char* what, const std::string& name, const std::string& role) -> Result<void> {
+        if (auto named = check_name(name); !named) return named;
+        if (!names.insert(name).second) return Error{fmt::format("{} '{}' is there twice", what, name)};
+        if (!role_of(role)) return Error{fmt::format("{} '{}': there is no role '{}'", what, name, role)};
+        return {};
+    };
+    for (const auto& account : accounts.accounts())
+        if (auto right = check(users, "user", account.user(), account.role()); !right) return right;
+    for (const auto& token : accounts.tokens())
+        if (auto right = check(tokens, "token", token.name(), token.role()); !right) return right;
+    return {};
+}
+
+} // namespace
+
+Result<void> check_name(const std::string& name) {
+    const auto allowed = [](char letter) {
+        return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '-' || letter == '_' || letter == '.';
+    };
+    const bool begins = !name.empty() && name[0] >= 'a' && name[0] <= 'z';
+    if (begins && name.size() <= name_octets_max && std::ranges::all_of(name, allowed)) return {};
+    return Error{fmt::format("a name has 1 to {} of a-z, 0-9, '-', '_' and '.', and begins with a letter", name_octets_max)};
+}
+
+v1::Account* find_account(v1::AccountFile& accounts, const std::string& user) {
+    auto& all = *accounts.mutable_accounts();
+    const auto found = std::ranges::find(all, user, &v1::Account::user);
+    return found == all.end() ? nullptr : &*found;
+}
+
+std::string reset_account(v1::AccountFile& accounts, const std::string& user) {
+    auto* account = find_account(accounts, user);
+    if (account == nullptr) {
+        account = accounts.add_accounts();
+        account->set_user(user);
+        account->set_role(std::string{name_of(Role::administrator)});
+    }
+    auto password = new_password();
+    account->set_password_hash(password_hash(password));
+    account->set_choose_password(true);
+    return password;
+}
+
+Result<v1::AccountFile> read_accounts(const std::filesystem::path& file) {
+    std::ifstream in{file, std::ios::binary};
+    const std::string text{std::istreambuf_iterator<char>{in}, {}};
+    if (!in) return Error{file.string() + " cannot be read"};
+    v1::AccountFile accounts;
+    auto right = from_json(text, accounts);
+    if (right) right = check_accounts(accounts);
+    if (!right) return Error{fmt::format("{}: {}", file.string(), right.error().message)};
+    return accounts;
+}
+
+Result<void> write_accounts(const std::filesystem::path& file, const v1::AccountFile& accounts) {
+    auto partial = file;
+    partial += "-partial";
+    const auto failed = [&] { return Error{fmt::format("{}: {}", file.string(), std::strerror(errno))}; };
+    const std::string text = to_json(accounts) + "\n";
+    ::unlink(partial.c_str());
+    const int out = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (out < 0) return failed();
+    const bool written = ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;
+    const auto why = failed();
+    ::close(out);
+    if (!written) return why;
+    if (::rename(partial.c_str(), file.c_str()) != 0) return failed();
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const int directory = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool durable = directory >= 0 && ::fsync(directory) == 0;
+    const auto not_durable = failed();
+    if (directory >= 0) ::close(directory);
+    return durable ? Result<void>{} : not_durable;
+}
+
+} // namespace aeolis::server

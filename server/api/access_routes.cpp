@@ -1,0 +1,153 @@
+#include "server/api/api.hpp"
+#include "server/api/json.hpp"
+#include "server/api/query_text.hpp"
+
+#include <fmt/format.h>
+
+// The routes of log-in, users, tokens and audit. Passwords are hashed on the query threads, and stand in no audit.
+namespace aeolis::server {
+namespace {
+
+constexpr std::uint64_t audit_page_max = 1'000; // ours: some 300 kB
+
+v1::Session session_of(const Operator& who) {
+    v1::Session session;
+    session.set_accounts(who.accounts);
+    session.set_user(who.user);
+    if (who.role) session.set_role(std::string{name_of(*who.role)});
+    for (const Right right : rights)
+        if (right != Right::open && may(who, right)) session.add_rights(std::string{name_of(right)});
+    session.set_expires(who.expires);
+    session.set_choose_password(who.choose_password);
+    return session;
+}
+
+std::string cookie(const std::string& value, std::chrono::seconds length, bool secure) {
+    return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", session_cookie, value, length.count(), secure ? "; Secure" : "");
+}
+
+template <typename Message>
+HttpResponse response_of(const Result<Message>& done, unsigned status) {
+    return done ? json_response(*done, status) : error_response(409, done.error().message);
+}
+HttpResponse response_of(const Result<void>& done) {
+    return done ? HttpResponse{204, "application/json", "no-store", ""} : error_response(409, done.error().message);
+}
+
+std::string outcome_of(bool done, const std::string& why) {
+    return done ? "done" : "refused: " + why;
+}
+
+} // namespace
+
+void Api::session(const Asked& asked) {
+    asked.respond(json_response(session_of(asked.who)));
+}
+
+void Api::log_in(const Asked& asked) {
+    v1::LogIn wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    aside(asked.respond, [this, wanted, who = asked.who](archive::Reader&) {
+        const auto done = parts_.access.log_in(wanted, who.from);
+        const std::string asked_by = wanted.user().substr(0, 64);
+        if (done || who.accounts) note(done ? done->who : who, "log-in", asked_by, outcome_of(done.ok(), done ? "" : done.error().message));
+        if (!done) return error_response(who.accounts ? 401 : 409, done.error().message);
+        auto response = json_response(session_of(done->who), 201);
+        response.set_cookie = cookie(done->secret, Access::session_length, parts_.secure);
+        return response;
+    });
+}
+
+void Api::log_out(const Asked& asked) {
+    parts_.access.log_out(asked.who);
+    if (!asked.who.session.empty()) note(asked.who, "log-out", "", "done");
+    HttpResponse response{204, "application/json", "no-store", ""};
+    response.set_cookie = cookie("", std::chrono::seconds{0}, parts_.secure);
+    asked.respond(std::move(response));
+}
+
+void Api::list_users(const Asked& asked) {
+    asked.respond(json_response(parts_.access.users()));
+}
+
+void Api::add_user(const Asked& asked) {
+    v1::NewUser wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    for (const auto& command : wanted.commands())
+        if (parts_.dictionary.command(command) == nullptr)
+            return asked.respond(error_response(422, fmt::format("commands: '{}' is no command of the dictionary", command)));
+    aside(asked.respond, [this, wanted, who = asked.who](archive::Reader&) {
+        const auto done = parts_.access.add_user(wanted);
+        note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
+             outcome_of(done.ok(), done ? "" : done.error().message));
+        return response_of(done, 201);
+    });
+}
+
+void Api::change_user(const Asked& asked) {
+    if (!asked.who.role) return asked.respond(refusal_of(asked.who, Right::watch));
+    if (!asked.who.accounts) return asked.respond(refusal_of(asked.who, Right::administer));
+    const auto& user = asked.parts[0];
+    if (user != asked.who.user)
+        if (auto refused = refusal_of(asked.who, Right::administer); refused.status != 200) return asked.respond(std::move(refused));
+    v1::UserChange change;
+    if (const auto parsed = from_json(asked.request.body, change); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    aside(asked.respond, [this, change, user, who = asked.who](archive::Reader&) {
+        const auto done = parts_.access.change_user(who, user, change);
+        note(who, "user",
+             fmt::format("change '{}'{}{}", user.substr(0, 64), change.role().empty() ? "" : ", role " + change.role().substr(0, 64),
+                         change.password().empty() ? "" : ", password"),
+             outcome_of(done.ok(), done ? "" : done.error().message));
+        return response_of(done, 200);
+    });
+}
+
+void Api::remove_user(const Asked& asked) {
+    asked.respond(response_of(parts_.access.remove_user(asked.parts[0])));
+}
+
+void Api::list_tokens(const Asked& asked) {
+    asked.respond(json_response(parts_.access.tokens()));
+}
+
+void Api::add_token(const Asked& asked) {
+    v1::NewToken wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
+        return asked.respond(error_response(400, parsed.error().message));
+    asked.respond(response_of(parts_.access.add_token(wanted), 201));
+}
+
+void Api::remove_token(const Asked& asked) {
+    asked.respond(response_of(parts_.access.remove_token(asked.parts[0])));
+}
+
+void Api::audit(const Asked& asked) {
+    const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
+    if (!query) return asked.respond(error_response(400, query.error().message));
+    const auto after = query->count("after", UINT32_MAX), limit = query->count("limit", audit_page_max);
+    if (!after) return asked.respond(error_response(400, after.error().message));
+    if (!limit) return asked.respond(error_response(400, limit.error().message));
+    aside(asked.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
+        const auto entries = reader.audit(after, limit);
+        if (!entries) return error_response(500, entries.error().message);
+        v1::AuditList list;
+        for (const auto& entry : *entries) {
+            auto& shown = *list.add_entries();
+            shown.set_entry(entry.entry);
+            shown.set_at(entry.at);
+            shown.set_who(entry.who);
+            shown.set_from(entry.from);
+            shown.set_action(entry.action);
+            shown.set_detail(entry.detail);
+            shown.set_outcome(entry.outcome);
+            shown.set_hash(entry.hash);
+        }
+        if (entries->size() == limit && limit > 0) list.set_next_after(entries->back().entry);
+        return json_response(list);
+    });
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,211 @@
+#include "server/access/access.hpp"
+#include "server/access/account_file.hpp"
+#include "server/access/secrets.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+
+#include <fstream>
+#include <sys/stat.h>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+/// Accounts with an administrator who has chosen a password, and a clock that the test sets.
+struct Accounts {
+    static constexpr const char* password = "a password of my own";
+    test::TemporaryFolder folder;
+    std::filesystem::path file = folder / "accounts.json";
+    Access::Clock::time_point now = Access::Clock::now();
+    std::unique_ptr<Access> access;
+
+    Accounts() {
+        open();
+        const auto first = log_in("administrator", access->first_password());
+        REQUIRE(first);
+        v1::UserChange change;
+        change.set_password(password);
+        change.set_current_password(access->first_password());
+        REQUIRE(access->change_user(first->who, "administrator", change));
+    }
+    void open() {
+        auto opened = Access::open({file, [this] { return now; }});
+        REQUIRE(opened);
+        access = std::move(*opened);
+    }
+    Result<Access::LoggedIn> log_in(const std::string& user, const std::string& with, const std::string& from = "127.0.0.1") {
+        v1::LogIn asked;
+        asked.set_user(user);
+        asked.set_password(with);
+        return access->log_in(asked, from);
+    }
+    Operator who(const std::string& secret) { return access->identify({"theme=dark; aeolis_session=" + secret, "", "127.0.0.1"}); }
+    void add(const std::string& user, const std::string& role) {
+        v1::NewUser wanted;
+        wanted.set_user(user);
+        wanted.set_role(role);
+        wanted.set_password("given by another");
+        REQUIRE(access->add_user(wanted));
+    }
+};
+
+} // namespace
+
+TEST_CASE("the first start makes one way in, which only lets its owner choose a password", "[access]") {
+    Accounts accounts;
+    CHECK(accounts.log_in("administrator", accounts.access->first_password()).error().message == "user or password is wrong");
+    const auto in = accounts.log_in("administrator", Accounts::password);
+    REQUIRE(in);
+    const auto who = accounts.who(in->secret);
+    CHECK(who.user == "administrator");
+    CHECK(may(who, Right::administer));
+    struct stat file {};
+    REQUIRE(::stat(accounts.file.c_str(), &file) == 0);
+    CHECK((file.st_mode & 0777) == 0600);
+    accounts.open(); // a second start finds its accounts, and no session
+    CHECK(accounts.access->first_password().empty());
+    CHECK_FALSE(accounts.who(in->secret).role);
+}
+
+TEST_CASE("no password and no secret stands in the file of accounts", "[access]") {
+    Accounts accounts;
+    v1::NewToken wanted;
+    wanted.set_name("exporter");
+    wanted.set_role("observer");
+    const auto token = accounts.access->add_token(wanted);
+    REQUIRE(token);
+    std::ifstream in{accounts.file};
+    const std::string text{std::istreambuf_iterator<char>{in}, {}};
+    CHECK_THAT(text, Catch::Contains("$argon2id$"));
+    CHECK_THAT(text, !Catch::Contains(Accounts::password) && !Catch::Contains(token->token()));
+}
+
+TEST_CASE("who guesses waits, longer each time, and the right password does not help until then", "[access]") {
+    Accounts accounts;
+    for (unsigned i = 0; i < Access::tries_of_user; ++i)
+        CHECK(accounts.log_in("administrator", "a wrong password").error().message == "user or password is wrong");
+    CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 30 s"));
+    CHECK(accounts.log_in("administrator", Accounts::password, "192.0.2.7")); // from elsewhere its owner gets in
+    accounts.now += std::chrono::seconds{31};
+    CHECK_FALSE(accounts.log_in("administrator", "a wrong password"));
+    CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 60 s"));
+    accounts.now += std::chrono::seconds{61};
+    CHECK(accounts.log_in("administrator", Accounts::password));
+}
+
+TEST_CASE("a log-in ends after a shift, by logging out, with its user, and when its password is changed elsewhere", "[access]") {
+    Accounts accounts;
+    accounts.add("dina", "director");
+    const auto administrator = accounts.log_in("administrator", Accounts::password)->who;
+    const auto shift = accounts.log_in("dina", "given by another");
+    REQUIRE(shift);
+    CHECK(accounts.who(shift->secret).choose_password);
+    CHECK_FALSE(may(accounts.who(shift->secret), Right::watch));
+    accounts.now += Access::session_length + std::chrono::seconds{1};
+    CHECK_FALSE(accounts.who(shift->secret).role);
+
+    const auto out = accounts.log_in("dina", "given by another");
+    accounts.access->log_out(accounts.who(out->secret));
+    CHECK_FALSE(accounts.who(out->secret).role);
+
+    const auto before = accounts.log_in("dina", "given by another");
+    v1::UserChange change;
+    change.set_password("given once more by another");
+    REQUIRE(accounts.access->change_user(administrator, "dina", change));
+    CHECK_FALSE(accounts.who(before->secret).role);
+
+    const auto last = accounts.log_in("dina", "given once more by another");
+    REQUIRE(last);
+    REQUIRE(accounts.access->remove_user("dina"));
+    CHECK_FALSE(accounts.who(last->secret).role);
+}
+
+TEST_CASE("nobody raises their own role, changes another's account, or takes the last administrator away", "[access]") {
+    Accounts accounts;
+    accounts.add("carl", "controller");
+    const auto administrator = accounts.log_in("administrator", Accounts::password)->who;
+    const auto carl = accounts.log_in("carl", "given by another")->who;
+    v1::UserChange change;
+    change.set_role("director");
+    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message, Catch::Contains("nobody changes their own"));
+    CHECK_THAT(accounts.access->change_user(carl, "administrator", change).error().message, Catch::Contains("only an administrator"));
+    CHECK_THAT(accounts.access->change_user(administrator, "administrator", change).error().message, Catch::Contains("nobody changes their own"));
+    CHECK(accounts.access->remove_user("administrator").error().message == "one administrator must remain");
+    change.set_role("pope");
+    CHECK_THAT(accounts.access->change_user(administrator, "carl", change).error().message, Catch::Contains("'pope'"));
+    change.set_role("");
+    change.set_password("short");
+    CHECK_THAT(accounts.access->change_user(administrator, "carl", change).error().message, Catch::Contains("12 to 128"));
+    change.set_password("long enough, but whose?");
+    change.set_current_password("a wrong password");
+    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message, Catch::StartsWith("current_password"));
+    CHECK_THAT(accounts.access->remove_user("nobody").error().message, Catch::Contains("'nobody'"));
+}
+
+TEST_CASE("a token lets a program in with its role, until it expires or is taken away", "[access]") {
+    Accounts accounts;
+    v1::NewToken wanted;
+    wanted.set_name("exporter");
+    wanted.set_role("observer");
+    wanted.set_days(3);
+    const auto token = accounts.access->add_token(wanted);
+    REQUIRE(token);
+    const auto who = [&] { return accounts.access->identify({"", "Bearer " + token->token(), "127.0.0.1"}); };
+    CHECK(who().user == "token exporter");
+    CHECK(may(who(), Right::watch));
+    CHECK_FALSE(may(who(), Right::command));
+    CHECK_FALSE(accounts.access->identify({"", "Bearer " + token->token() + "x", ""}).role);
+    CHECK_FALSE(accounts.access->identify({"", "Basic " + token->token(), ""}).role);
+    CHECK(accounts.access->add_token(wanted).error().message == "there is a token 'exporter' already");
+    accounts.now += std::chrono::hours{24 * 3} + std::chrono::seconds{1};
+    CHECK_FALSE(who().role);
+    CHECK(accounts.access->remove_token("exporter"));
+    CHECK_FALSE(accounts.access->remove_token("exporter"));
+}
+
+TEST_CASE("a server takes over what another program changed in the file, and keeps what it has when that is spoilt", "[access]") {
+    Accounts accounts;
+    auto changed = *read_accounts(accounts.file);
+    const auto password = reset_account(changed, "helper");
+    auto touch = [&, n = 0]() mutable {
+        std::filesystem::last_write_time(accounts.file, std::filesystem::file_time_type::clock::now() + std::chrono::seconds{++n});
+    };
+    REQUIRE(write_accounts(accounts.file, changed));
+    touch();
+    CHECK(accounts.log_in("helper", password));
+    std::ofstream{accounts.file} << R"({"accounts": [{"user": "x", "role": "pope"}]})";
+    touch();
+    CHECK(accounts.log_in("helper", password));
+    const auto opened = Access::open({accounts.file, Access::Clock::now});
+    REQUIRE_FALSE(opened);
+    CHECK_THAT(opened.error().message, Catch::Contains("accounts.json") && Catch::Contains("'pope'"));
+}
+
+TEST_CASE("without accounts everybody may do all but administer", "[access]") {
+    const auto access = Access::open({});
+    REQUIRE(access);
+    const auto who = (*access)->identify({"aeolis_session=x", "Bearer y", "127.0.0.1"});
+    for (const Right right : rights)
+        CHECK(may(who, right) == (right != Right::administer));
+    CHECK_FALSE((*access)->log_in({}, ""));
+    CHECK_FALSE((*access)->add_token({}));
+}
+
+TEST_CASE("names of users and tokens are plain", "[access]") {
+    for (const char* good : {"a", "dina.k", "ops-2", "x_y", "abcdefghijklmnopqrstuvwxyz012345"})
+        CHECK(check_name(good));
+    for (const char* bad : {"", "A", "2x", "a b", "a/b", "<b>", "ü", "abcdefghijklmnopqrstuvwxyz0123456", "-a"})
+        CHECK_FALSE(check_name(bad));
+}
+
+TEST_CASE("a password's hash matches that password only, and no hash matches nothing", "[access]") {
+    const auto hash = password_hash("correct horse battery");
+    CHECK(password_matches(hash, "correct horse battery"));
+    CHECK_FALSE(password_matches(hash, "correct horse batterx"));
+    CHECK_FALSE(password_matches("", ""));
+    CHECK_FALSE(password_matches("$argon2id$nonsense", "x"));
+    CHECK(new_secret() != new_secret());
+    CHECK(new_secret().size() == 43);
+    CHECK(secret_hash("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"); // FIPS 180-4, example B.1
+}

@@ -1,0 +1,197 @@
+#include "tests/server/running_server.hpp"
+#include "tests/server/web_client.hpp"
+
+#include <fstream>
+#include <map>
+#include <set>
+
+using namespace aeolis;
+using namespace aeolis::test;
+
+namespace {
+
+/// A server whose accounts are one of each role.
+struct Guarded {
+    static constexpr const char* password = "a password of my own";
+    RunningServer server{RunningServer::WithAccounts{}};
+    std::map<std::string, Headers> as; ///< headers by role; "nobody": none
+
+    Guarded() {
+        as["nobody"];
+        take_over("administrator", server.first_password());
+        for (const char* role : {"observer", "controller", "director"}) {
+            const auto body = std::string{R"({"user":")"} + role + R"(","role":")" + role + R"(","password":"given by another"})";
+            REQUIRE(ask("administrator", "POST", "/api/v1/users", body).status == 201);
+            take_over(role, "given by another");
+        }
+    }
+    /// Logs in and chooses a password.
+    void take_over(const std::string& user, const std::string& given) {
+        as[user] = log_in(user, given);
+        const auto body = std::string{R"({"password":")"} + password + R"(","current_password":")" + given + "\"}";
+        REQUIRE(ask(user, "PATCH", "/api/v1/users/" + user, body).status == 200);
+    }
+    Headers log_in(const std::string& user, const std::string& given) const {
+        const auto reply = web_request(server.port(), "POST", "/api/v1/session", R"({"user":")" + user + R"(","password":")" + given + "\"}");
+        REQUIRE(reply.status == 201);
+        CHECK_THAT(reply.set_cookie, Catch::Contains("HttpOnly") && Catch::Contains("SameSite=Strict"));
+        return {{"Cookie", reply.set_cookie.substr(0, reply.set_cookie.find(';'))}};
+    }
+    WebReply ask(const std::string& role, std::string_view method, std::string_view target, std::string_view body = {}) {
+        return web_request(server.port(), method, target, body, as.at(role));
+    }
+};
+
+/// What the outcome is for a role that has the right; any else gets 401 (nobody) or 403.
+struct Row {
+    const char* method;
+    const char* route; ///< as in Api::routes()
+    const char* least; ///< the role from which on; "nobody": open
+    const char* target;
+    const char* body;
+    unsigned status;
+};
+const Row rows[] = {
+    {"GET", "/api/v1/session", "nobody", "/api/v1/session", "", 200},
+    {"POST", "/api/v1/session", "nobody", "/api/v1/session", "{", 400},
+    {"DELETE", "/api/v1/session", "nobody", "/api/v1/session", "", 204},
+    {"GET", "/api/v1/users", "administrator", "/api/v1/users", "", 200},
+    {"POST", "/api/v1/users", "administrator", "/api/v1/users", "{", 400},
+    {"PATCH", "/api/v1/users/{user}", "administrator", "/api/v1/users/someone", R"({"role":"observer"})", 409},
+    {"DELETE", "/api/v1/users/{user}", "administrator", "/api/v1/users/someone", "", 409},
+    {"GET", "/api/v1/tokens", "administrator", "/api/v1/tokens", "", 200},
+    {"POST", "/api/v1/tokens", "administrator", "/api/v1/tokens", "{", 400},
+    {"DELETE", "/api/v1/tokens/{name}", "administrator", "/api/v1/tokens/none", "", 409},
+    {"GET", "/api/v1/audit", "administrator", "/api/v1/audit?limit=1", "", 200},
+    {"GET", "/api/v1/runs", "observer", "/api/v1/runs", "", 200},
+    {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})", 409},
+    {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
+    {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
+    {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
+    {"GET", "/api/v1/dictionary", "observer", "/api/v1/dictionary", "", 200},
+    {"GET", "/api/v1/openapi.yaml", "nobody", "/api/v1/openapi.yaml", "", 200},
+    {"GET", "/api/v1/rehearsals", "observer", "/api/v1/rehearsals", "", 200},
+    {"POST", "/api/v1/rehearsals", "director", "/api/v1/rehearsals", "{", 400},
+    {"GET", "/api/v1/rehearsals/current", "observer", "/api/v1/rehearsals/current", "", 404},
+    {"POST", "/api/v1/rehearsals/current", "director", "/api/v1/rehearsals/current", R"({"pause":true})", 409},
+    {"PATCH", "/api/v1/rehearsals/current", "director", "/api/v1/rehearsals/current", R"({"pause":true})", 409},
+    {"GET", "/api/v1/stream", "observer", "/api/v1/stream", "", 426},
+    {"GET", "/healthz", "nobody", "/healthz", "", 200},
+    {"GET", "/metrics", "observer", "/metrics", "", 200},
+};
+const char* const ladder[] = {"nobody", "observer", "controller", "director", "administrator"};
+
+} // namespace
+
+TEST_CASE("every route has its row in the table of authority, and its description", "[access][http]") {
+    std::ifstream in{AEOLIS_SOURCE_DIR "/server/api/openapi.yaml"};
+    const std::string openapi{std::istreambuf_iterator<char>{in}, {}};
+    std::set<std::string> served, tabled;
+    for (const auto& route : server::Api::routes()) {
+        served.insert(std::string{route.method} + ' ' + std::string{route.path});
+        INFO(route.method << ' ' << route.path);
+        if (route.path.find("{question}") == std::string_view::npos) { // each of those has its own path, below
+            const auto path = openapi.find("\n  " + std::string{route.path} + ":\n");
+            REQUIRE(path != std::string::npos);
+            auto end = openapi.find("\n  /", path + 4);
+            std::string method{route.method};
+            for (char& letter : method)
+                letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+            CHECK(openapi.substr(path, end - path).find("\n    " + method + ":\n") != std::string::npos);
+        }
+    }
+    for (const auto& row : rows)
+        tabled.insert(std::string{row.method} + ' ' + row.route);
+    CHECK(served == tabled);
+}
+
+TEST_CASE("each role gets what its rights give on every route, and nothing more", "[access][http]") {
+    Guarded guarded;
+    for (const auto& row : rows) {
+        if (std::string_view{row.route} == "/api/v1/session" && std::string_view{row.method} == "DELETE") continue; // it would end the log-ins
+        bool allowed = false;
+        for (const char* role : ladder) {
+            allowed = allowed || std::string_view{row.least} == role;
+            const unsigned wanted = allowed ? row.status : std::string_view{role} == "nobody" ? 401 : 403;
+            const auto reply = guarded.ask(role, row.method, row.target, row.body);
+            INFO(role << ": " << row.method << ' ' << row.target << " -> " << reply.body.substr(0, 300));
+            CHECK(reply.status == wanted);
+            CHECK_THAT(reply.security_policy, Catch::Contains("script-src 'self'"));
+        }
+    }
+}
+
+TEST_CASE("each role may send over the stream what it may send by HTTP", "[access][stream]") {
+    Guarded guarded;
+    CHECK(StreamClient{guarded.server.port(), "aeolis.v1.json"}.status() == 401);
+    struct Message {
+        const char* json;
+        const char* least;
+        const char* says; ///< what the rest of the server answers once the right is there
+    };
+    const Message messages[] = {
+        {R"({"command":{"command":"NO_OP","request":7}})", "controller", "no run goes on"},
+        {R"({"command":{"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"}})", "director", "no run goes on"},
+        {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
+    };
+    for (const auto& message : messages) {
+        bool allowed = false;
+        for (const char* role : ladder) {
+            allowed = allowed || std::string_view{message.least} == role;
+            if (std::string_view{role} == "nobody") continue;
+            StreamClient client{guarded.server.port(), "aeolis.v1.json", guarded.as.at(role)};
+            REQUIRE(client.open());
+            client.send(message.json, false);
+            const auto reply = client.receive();
+            INFO(role << ": " << message.json);
+            REQUIRE(reply);
+            CHECK_THAT(*reply, Catch::Contains(allowed ? message.says : "needs"));
+        }
+    }
+}
+
+TEST_CASE("a hazardous command by HTTP needs a director, and an account's own list binds it", "[access][http]") {
+    Guarded guarded;
+    REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users",
+                        R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})").status == 201);
+    guarded.take_over("nina", "given by another");
+    const auto send = [&](const char* role, const char* body) { return guarded.ask(role, "POST", "/api/v1/runs/latest/commands", body); };
+    const char* const landing = R"({"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"})";
+    CHECK(send("controller", landing).status == 403);
+    CHECK_THAT(send("controller", landing).body, Catch::Contains("EDL_DO_EDL is hazardous: it needs a director"));
+    CHECK(send("director", landing).status == 409); // no run goes on
+    CHECK_THAT(send("nina", landing).body, Catch::Contains("not among the commands"));
+    CHECK(send("nina", R"({"command":"NO_OP"})").status == 409);
+    CHECK(guarded.ask("administrator", "POST", "/api/v1/users",
+                      R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})").status == 422);
+}
+
+TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
+    Guarded guarded;
+    StreamClient client{guarded.server.port(), "aeolis.v1.json", guarded.as.at("observer")};
+    REQUIRE(client.open());
+    client.send(R"({"subscribe":{}})", false);
+    REQUIRE(client.receive());
+    CHECK(guarded.ask("observer", "DELETE", "/api/v1/session").status == 204);
+    CHECK(guarded.ask("observer", "GET", "/api/v1/runs").status == 401);
+    while (client.receive()) {
+    }
+    CHECK_THAT(client.close_words(), Catch::Contains("log in again"));
+}
+
+TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {
+    Guarded guarded;
+    guarded.ask("controller", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
+    guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
+    web_request(guarded.server.port(), "POST", "/api/v1/session", R"({"user":"director","password":"a wrong guess"})");
+    std::string audit;
+    for (int i = 0; i < 100 && audit.find("director\",\"outcome\":\"refused") == std::string::npos; ++i) {
+        audit = guarded.ask("administrator", "GET", "/api/v1/audit").body;
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    CHECK_THAT(audit, Catch::Contains(R"("who":"controller","from":"127.0.0.1","action":"rehearsal")") && Catch::Contains("refused (403)"));
+    CHECK_THAT(audit, Catch::Contains(R"("who":"director","from":"127.0.0.1","action":"rehearsal")"));
+    CHECK_THAT(audit, Catch::Contains("add 'observer' as observer"));
+    CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
+    CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) && !Catch::Contains("a wrong guess"));
+}

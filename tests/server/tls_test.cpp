@@ -1,0 +1,135 @@
+#include "tests/server/running_server.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ssl.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/ssl.hpp>
+#include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
+#include <openssl/pem.h>
+#include <openssl/x509v3.h>
+
+using namespace aeolis;
+using namespace aeolis::test;
+
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using tcp = asio::ip::tcp;
+
+/// A certificate for localhost, signed by itself, and its key.
+void write_certificate(const std::filesystem::path& certificate, const std::filesystem::path& key) {
+    EVP_PKEY* pair = EVP_EC_gen("P-256");
+    X509* made = X509_new();
+    X509_set_version(made, 2);
+    ASN1_INTEGER_set(X509_get_serialNumber(made), 1);
+    X509_gmtime_adj(X509_getm_notBefore(made), -60);
+    X509_gmtime_adj(X509_getm_notAfter(made), 3600);
+    X509_set_pubkey(made, pair);
+    const std::string host = "localhost";
+    X509_NAME_add_entry_by_txt(X509_get_subject_name(made), "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>(host.c_str()), -1, -1, 0);
+    X509_set_issuer_name(made, X509_get_subject_name(made));
+    auto* names = X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost");
+    X509_add_ext(made, names, -1);
+    REQUIRE(X509_sign(made, pair, EVP_sha256()) != 0);
+    const auto write = [](const std::filesystem::path& file, auto&& put) {
+        FILE* out = std::fopen(file.c_str(), "w");
+        REQUIRE(out != nullptr);
+        CHECK(put(out) == 1);
+        std::fclose(out);
+    };
+    write(certificate, [&](FILE* out) { return PEM_write_X509(out, made); });
+    write(key, [&](FILE* out) { return PEM_write_PrivateKey(out, pair, nullptr, nullptr, 0, nullptr, nullptr); });
+    X509_EXTENSION_free(names);
+    X509_free(made);
+    EVP_PKEY_free(pair);
+}
+
+struct SecureClient {
+    asio::io_context io;
+    asio::ssl::context context{asio::ssl::context::tls_client};
+    explicit SecureClient(const std::filesystem::path& trusted) {
+        context.load_verify_file(trusted.string());
+        context.set_verify_mode(asio::ssl::verify_peer);
+        context.set_verify_callback(asio::ssl::host_name_verification{"localhost"});
+    }
+    beast::ssl_stream<beast::tcp_stream> connect(std::uint16_t port) {
+        beast::ssl_stream<beast::tcp_stream> stream{io, context};
+        beast::get_lowest_layer(stream).connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), port});
+        stream.handshake(asio::ssl::stream_base::client);
+        return stream;
+    }
+};
+
+} // namespace
+
+TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and stream", "[access][http][stream]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    RunningServer server{RunningServer::Secure{folder / "cert.pem", folder / "key.pem"}};
+    SecureClient client{folder / "cert.pem"};
+    const auto host = "localhost:" + std::to_string(server.port());
+
+    auto stream = client.connect(server.port());
+    http::request<http::string_body> request{http::verb::post, "/api/v1/session", 11};
+    request.set(http::field::host, host);
+    request.set(http::field::origin, "https://" + host);
+    request.body() = R"({"user":"administrator","password":")" + server.first_password() + "\"}";
+    request.prepare_payload();
+    http::write(stream, request);
+    beast::flat_buffer buffer;
+    http::response<http::string_body> response;
+    http::read(stream, buffer, response);
+    CHECK(response.result_int() == 201);
+    const std::string cookie{response[http::field::set_cookie]};
+    CHECK_THAT(cookie, Catch::Contains("; Secure"));
+
+    request.set(http::field::origin, "http://" + host); // a page that was not loaded over TLS
+    http::write(stream, request);
+    response = {};
+    http::read(stream, buffer, response);
+    CHECK(response.result_int() == 403);
+
+    beast::websocket::stream<beast::ssl_stream<beast::tcp_stream>> socket{client.connect(server.port())};
+    socket.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& upgrade) {
+        upgrade.set(http::field::sec_websocket_protocol, "aeolis.v1.json");
+    }));
+    boost::system::error_code error;
+    beast::websocket::response_type refused;
+    socket.handshake(refused, host, "/api/v1/stream", error);
+    CHECK(refused.result_int() == 401);
+
+    asio::io_context plain;
+    beast::tcp_stream bare{plain};
+    bare.connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), server.port()});
+    http::write(bare, request, error);
+    response = {};
+    http::read(bare, buffer, response, error);
+    CHECK(error);
+}
+
+TEST_CASE("a certificate or key that cannot serve is named", "[access][http]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    write_certificate(folder / "other.pem", folder / "other-key.pem");
+    const auto refused = [&](const char* certificate, const char* key) {
+        server::ConsoleBackend::Settings settings;
+        settings.web_server.certificate = certificate[0] == '\0' ? std::filesystem::path{} : folder / certificate;
+        settings.web_server.key = key[0] == '\0' ? std::filesystem::path{} : folder / key;
+        settings.archive = folder / "a.db";
+        return server::ConsoleBackend::open(settings, tests::shipped_dictionary()).error().message;
+    };
+    CHECK_THAT(refused("cert.pem", ""), Catch::Contains("given together"));
+    CHECK_THAT(refused("none.pem", "key.pem"), Catch::Contains("none.pem"));
+    CHECK_THAT(refused("key.pem", "key.pem"), Catch::Contains("--tls-certificate"));
+    CHECK_THAT(refused("cert.pem", "cert.pem"), Catch::Contains("--tls-key"));
+    CHECK_THAT(refused("cert.pem", "other-key.pem"), Catch::Contains("other-key.pem: key values mismatch"));
+    server::ConsoleBackend::Settings open_to_all;
+    open_to_all.web_server = {.address = "0.0.0.0", .port = 0, .names = {}, .certificate = folder / "cert.pem", .key = folder / "key.pem"};
+    open_to_all.accounts = folder / "accounts.json";
+    open_to_all.archive = folder / "a.db";
+    CHECK_THAT(server::ConsoleBackend::open(open_to_all, tests::shipped_dictionary()).error().message, Catch::Contains("--host"));
+}
