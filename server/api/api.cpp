@@ -21,6 +21,7 @@ namespace {
 
 constexpr std::string_view api_prefix = "/api/v1/";
 constexpr std::size_t audit_detail_max = 2'000; ///< ours: of a request's body
+constexpr int sequence_max = 100;              ///< ours: commands in one command file
 constexpr std::size_t audit_outcome_max = 500;  ///< ours: of an answer's
 
 std::vector<std::string> split(std::string_view path) {
@@ -125,6 +126,7 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, ""},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, ""},
         {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command"},
+        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, "command"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, ""},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, ""},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, ""},
@@ -309,24 +311,67 @@ void Api::control_rehearsal(const Asked& asked) {
     if (!starts) asked.respond(json_response(current_run(), 202));
 }
 
-void Api::post_command(const Asked& asked) {
+namespace {
+
+/// What the path says of the run goes into the request, and who asks: both may not be said otherwise.
+Result<void> complete(const Asked& asked, v1::CommandRequest& command) {
     const auto& run = asked.parts[0];
+    const auto id = run_id(run);
+    if (id && command.run() != 0 && command.run() != id->value) return Error{fmt::format("run: the path says {}, the body {}", run, command.run())};
+    if (id) command.set_run(id->value);
+    if (asked.who.accounts) command.set_controller(asked.who.user);
+    return {};
+}
+
+HttpResponse no_such_run(const std::string& run) {
+    return error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run));
+}
+
+} // namespace
+
+void Api::post_command(const Asked& asked) {
     const auto& respond = asked.respond;
-    if (run != "latest" && !run_id(run))
-        return respond(error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
     v1::CommandRequest command;
     if (const auto parsed = from_json(asked.request.body, command); !parsed)
         return respond(error_response(400, parsed.error().message));
-    const auto id = run_id(run);
-    if (id && command.run() != 0 && command.run() != id->value)
-        return respond(error_response(400, fmt::format("run: the path says {}, the body {}", run, command.run())));
-    if (id) command.set_run(id->value);
-    if (asked.who.accounts) command.set_controller(asked.who.user);
+    if (const auto right = complete(asked, command); !right) return respond(error_response(400, right.error().message));
     if (const auto allowed = may_send(asked.who, parts_.dictionary, command); !allowed)
         return respond(error_response(403, allowed.error().message));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
     parts_.desk.command(std::move(command), [respond, refused](const v1::CommandReply& reply) {
         respond(json_response(reply, reply.accepted() ? 202 : refused));
+    });
+}
+
+void Api::post_sequence(const Asked& asked) {
+    const auto& respond = asked.respond;
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
+    v1::CommandSequence sequence;
+    if (const auto parsed = from_json(asked.request.body, sequence); !parsed)
+        return respond(error_response(400, parsed.error().message));
+    if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
+        return respond(error_response(400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
+    for (int i = 0; i < sequence.commands_size(); ++i) {
+        auto& command = *sequence.mutable_commands(i);
+        const auto at = [i](const std::string& error) { return fmt::format("commands[{}]: {}", i, error); };
+        if (command.dry_run() || !command.action().empty())
+            return respond(error_response(400, at("dry_run and action are not for a command of a sequence")));
+        if (const auto right = complete(asked, command); !right) return respond(error_response(400, at(right.error().message)));
+        if (const auto allowed = may_send(asked.who, parts_.dictionary, command); !allowed)
+            return respond(error_response(403, at(allowed.error().message)));
+    }
+    parts_.desk.sequence({sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), [respond](std::vector<v1::CommandReply> replies) {
+        v1::SequenceReply reply;
+        reply.set_accepted(true);
+        for (auto& each : replies) {
+            if (!each.accepted() && reply.accepted()) {
+                reply.set_accepted(false);
+                reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
+            }
+            *reply.add_commands() = std::move(each);
+        }
+        respond(json_response(reply, reply.accepted() ? 202 : 409));
     });
 }
 

@@ -76,6 +76,7 @@ class Api {
     void start_rehearsal(const Asked& asked);
     void control_rehearsal(const Asked& asked);
     void post_command(const Asked& asked);
+    void post_sequence(const Asked& asked);
     // access_routes.cpp
     void session(const Asked& asked);
     void log_in(const Asked& asked);

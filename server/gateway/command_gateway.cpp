@@ -137,8 +137,10 @@ v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert n
     auto prepared = prepare(request, now);
     if (!prepared) return refuse(prepared.error().message);
     tell(*prepared, now, reply);
-    const auto authorised =
-        commands::authorise(*prepared->command, {request.armed(), request.confirmation()}, prepared->preconditions);
+    // What waits is looked at when it leaves: a condition that fails now may hold then.
+    const bool waits = request.hold() || prepared->release_at;
+    const auto authorised = commands::authorise(*prepared->command, {request.armed(), request.confirmation()},
+                                                waits ? std::span<const commands::PreconditionState>{} : prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
     const auto approval = needs_approval(request);
     if (!approval) return refuse(approval.error().message);
@@ -264,7 +266,7 @@ void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& sta
                 failing += (failing.empty() ? "" : "; ") + condition.text;
         const auto service = command->wanted.value_or(link_.suitable(now));
         const auto taken = failing.empty() ? link_.send(number, command->packet, service)
-                                           : Result<void>{Error{"it must not be sent any more: " + failing}};
+                                           : Result<void>{Error{"it must not be sent now: " + failing}};
         changes_.clear();
         if (taken)
             command->lifecycle.ground_stage(

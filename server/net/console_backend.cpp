@@ -2,6 +2,7 @@
 
 #include "server/api/json.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -25,7 +26,7 @@ Result<void> check_reach(const ConsoleBackend::Settings& settings) {
 } // namespace
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
-    : settings_(std::move(settings)), dictionary_(dictionary), scenarios_(settings_.scenarios),
+    : settings_(std::move(settings)), dictionary_(dictionary), timeline_check_(dictionary), scenarios_(settings_.scenarios),
       console_(settings_.web) {}
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
@@ -67,6 +68,14 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {
             const bool taken = self->queries_->ask([run, done](archive::Reader& reader) { done(reader.cut_off(run)); });
+            if (!taken) done(Error{"too many questions wait: try again"});
+        },
+        [self](archive::RunId run, const std::vector<v1::CommandRequest>& requests, const auto& done) {
+            if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
+            const bool taken = self->queries_->ask([self, run, requests, done](archive::Reader& reader) {
+                const auto before = reader.commands(run);
+                done(before ? self->timeline_check_.check(*before, requests) : Result<std::string>{before.error()});
+            });
             if (!taken) done(Error{"too many questions wait: try again"});
         },
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },

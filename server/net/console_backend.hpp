@@ -4,6 +4,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
 #include "server/downlink/downlink_follower.hpp"
+#include "server/gateway/timeline_check.hpp"
 #include "server/net/web_server.hpp"
 
 #include <filesystem>
@@ -48,6 +49,7 @@ class ConsoleBackend {
 
     Settings settings_;
     const dictionary::Dictionary& dictionary_;
+    TimelineCheck timeline_check_;
     ScenarioLibrary scenarios_;
     StaticFiles console_;
     std::unique_ptr<Access> access_;

@@ -19,9 +19,10 @@ Result<double> checked_pace(double pace) {
 } // namespace
 
 RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, Callbacks callbacks)
+                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, CheckTimeline check_timeline,
+                             Callbacks callbacks)
     : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
-      read_cut_off_(std::move(read_cut_off)), callbacks_(std::move(callbacks)) {}
+      read_cut_off_(std::move(read_cut_off)), check_timeline_(std::move(check_timeline)), callbacks_(std::move(callbacks)) {}
 
 RehearsalDesk::~RehearsalDesk() = default;
 
@@ -122,17 +123,38 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
 }
 
 void RehearsalDesk::command(v1::CommandRequest request, RehearsalRunner::Reply reply) {
-    v1::CommandReply refusal;
-    refusal.set_request(request.request());
-    if (!going_on())
-        refusal.set_reason("no run goes on: nothing listens");
-    else if (request.run() != 0 && request.run() != state_.run())
-        refusal.set_reason(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
-    else
-        return runner_->submit(std::move(request), [this, reply = std::move(reply)](v1::CommandReply answer) {
-            post_([reply, answer = std::move(answer)] { reply(answer); });
+    const bool only_check = request.dry_run();
+    std::vector<v1::CommandRequest> one;
+    one.push_back(std::move(request));
+    sequence(std::move(one), only_check, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+}
+
+void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies) {
+    const auto refuse = [requests, replies](const std::string& reason) {
+        std::vector<v1::CommandReply> refusals;
+        for (const auto& request : requests) {
+            auto& refusal = refusals.emplace_back();
+            refusal.set_request(request.request());
+            refusal.set_reason(reason);
+        }
+        replies(std::move(refusals));
+    };
+    if (!going_on()) return refuse("no run goes on: nothing listens");
+    for (const auto& request : requests)
+        if (request.run() != 0 && request.run() != state_.run())
+            return refuse(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
+    const auto run = state_.run();
+    check_timeline_(archive::RunId{static_cast<std::uint32_t>(run)}, requests, [this, run, requests, only_check, replies, refuse](Result<std::string> timeline) {
+        post_([this, run, requests, only_check, replies, refuse, timeline = std::move(timeline)] {
+            if (!timeline) return refuse(timeline.error().message);
+            if (!going_on() || state_.run() != run) return refuse("no run goes on: nothing listens");
+            runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
+                for (auto& answer : answers)
+                    answer.set_timeline(says);
+                post_([replies, answers = std::move(answers)] { replies(answers); });
+            });
         });
-    reply(std::move(refusal));
+    });
 }
 
 } // namespace aeolis::server

@@ -25,9 +25,12 @@ class RehearsalDesk {
     /// Brings a run that was cut off, on any thread; an Error when it was not.
     using ReadCutOff = std::function<void(archive::RunId, std::function<void(Result<archive::CutOffRun>)>)>;
     using Began = std::function<void(Result<v1::RunState>)>;
+    /// Says, on any thread, what becomes of the timeline when these commands are taken; empty: none changes it. An Error refuses them.
+    using CheckTimeline = std::function<void(archive::RunId, const std::vector<v1::CommandRequest>&, std::function<void(Result<std::string>)>)>;
+    using Replies = RehearsalRunner::Replies;
 
     RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
-                  Post post, ReadCutOff read_cut_off, Callbacks callbacks);
+                  Post post, ReadCutOff read_cut_off, CheckTimeline check_timeline, Callbacks callbacks);
     ~RehearsalDesk();
 
     /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
@@ -36,6 +39,8 @@ class RehearsalDesk {
     void start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
     void command(v1::CommandRequest request, RehearsalRunner::Reply reply);
+    /// A command file: all or none.
+    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies);
 
     /// From now on none can be started, because of `reason`.
     void close(std::string reason) { closed_ = std::move(reason); }
@@ -52,6 +57,7 @@ class RehearsalDesk {
     PipelineThread& pipeline_;
     Post post_;
     ReadCutOff read_cut_off_;
+    CheckTimeline check_timeline_;
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;

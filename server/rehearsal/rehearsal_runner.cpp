@@ -23,6 +23,18 @@ constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pac
 constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
 constexpr std::uint64_t cycles_between_looks = 64; // while flying again: as far as a run may go on before its pace counts
 
+constexpr const char* over_reason = "the run is over: nothing listens on board";
+
+void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const RehearsalRunner::Replies& replies) {
+    std::vector<v1::CommandReply> refusals;
+    for (const auto& request : requests) {
+        auto& refusal = refusals.emplace_back();
+        refusal.set_request(request.request());
+        refusal.set_reason(reason);
+    }
+    replies(std::move(refusals));
+}
+
 } // namespace
 
 RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
@@ -70,22 +82,29 @@ void RehearsalRunner::stop() {
 }
 
 void RehearsalRunner::submit(v1::CommandRequest request, Reply reply) {
-    v1::CommandReply refusal;
-    refusal.set_request(request.request());
+    const bool only_check = request.dry_run();
+    std::vector<v1::CommandRequest> one;
+    one.push_back(std::move(request));
+    submit(std::move(one), only_check, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+}
+
+void RehearsalRunner::submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies) {
+    Order order{std::move(sequence), only_check, std::move(replies)};
+    std::string reason;
     {
         const std::scoped_lock lock{mutex_};
         if (over_ || control_.stop) {
-            refusal.set_reason("the run is over: nothing listens on board");
-        } else if (control_.requests.size() >= requests_max) {
-            refusal.set_reason(fmt::format("{} commands wait already", requests_max));
+            reason = over_reason;
+        } else if (control_.orders.size() >= requests_max) {
+            reason = fmt::format("{} commands wait already", requests_max);
         } else {
-            control_.requests.emplace_back(std::move(request), std::move(reply));
+            control_.orders.push_back(std::move(order));
             control_.changed = true;
             changed_.notify_one();
             return;
         }
     }
-    reply(std::move(refusal));
+    refuse_all(order.requests, reason, order.replies);
 }
 
 bool RehearsalRunner::over() const {
@@ -102,18 +121,14 @@ void RehearsalRunner::run() {
     } else {
         callbacks_.on_begun(begun.error());
     }
-    std::vector<std::pair<v1::CommandRequest, Reply>> late;
+    std::vector<Order> late;
     {
         const std::scoped_lock lock{mutex_};
         over_ = true;
-        late.swap(control_.requests);
+        late.swap(control_.orders);
     }
-    for (auto& [request, reply] : late) {
-        v1::CommandReply refusal;
-        refusal.set_request(request.request());
-        refusal.set_reason("the run is over: nothing listens on board");
-        reply(std::move(refusal));
-    }
+    for (const auto& order : late)
+        refuse_all(order.requests, over_reason, order.replies);
 }
 
 Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
@@ -187,7 +202,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
             control.stop = control_.stop;
             control.pace = control_.pace;
             control.changed = std::exchange(control_.changed, false);
-            control.requests.swap(control_.requests);
+            control.orders.swap(control_.orders);
         }
         now = Clock::now();
         if (control.changed) {
@@ -195,7 +210,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
             paused_ = control.paused;
             pace_ = control.pace;
             stopped_ = control.stop;
-            send_requests(rehearsal, std::move(control.requests));
+            carry_out(rehearsal, std::move(control.orders));
             if (different) {
                 anchor = now;
                 anchor_cycles = rehearsal.cycles();
@@ -228,27 +243,46 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
     tell(rehearsal, Clock::now(), true);
 }
 
-void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests) {
-    for (auto& [request, reply] : requests) {
-        std::string text;
-        google::protobuf::TextFormat::PrintToString(request, &text);
-        auto answer = rehearsal.submit(request);
-        if (request.dry_run()) { // a console asks each second while it shows what would be sent
-            reply(std::move(answer));
+std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const Order& order) {
+    std::vector<v1::CommandReply> replies;
+    if (!order.only_check && order.requests.size() == 1) return replies; // the one look at it comes when it is taken
+    bool all = true;
+    for (auto request : order.requests) {
+        request.set_dry_run(true);
+        replies.push_back(rehearsal.submit(request));
+        all = all && replies.back().accepted();
+    }
+    if (all && !order.only_check) replies.clear();
+    return replies;
+}
+
+void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders) {
+    for (auto& order : orders) {
+        auto replies = look_at(rehearsal, order);
+        if (!replies.empty()) {
+            order.replies(std::move(replies));
             continue;
         }
-        const auto what = request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
-        spdlog::info("run {}: command {} {}", run_id_.value, what,
-                     answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
-        if (!answer.accepted()) {
-            reply(std::move(answer));
-            continue;
+        bool any = false;
+        for (const auto& request : order.requests) {
+            auto answer = rehearsal.submit(request);
+            const auto what = request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+            spdlog::info("run {}: command {} {}", run_id_.value, what,
+                         answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
+            if (answer.accepted()) {
+                any = true;
+                std::string text;
+                google::protobuf::TextFormat::PrintToString(request, &text);
+                delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
+                for (auto& stage : rehearsal.take_stages())
+                    delivery_.entries.emplace_back(std::move(stage));
+            }
+            replies.push_back(std::move(answer));
         }
-        delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
-        for (auto& stage : rehearsal.take_stages())
-            delivery_.entries.emplace_back(std::move(stage));
-        delivery_.when_durable.push_back(
-            [give = std::move(reply), given = std::move(answer)]() mutable { give(std::move(given)); });
+        if (any)
+            delivery_.when_durable.push_back([give = std::move(order.replies), given = std::move(replies)]() mutable { give(std::move(given)); });
+        else
+            order.replies(std::move(replies));
     }
     if (!delivery_.when_durable.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
 }

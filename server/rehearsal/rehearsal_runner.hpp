@@ -63,14 +63,23 @@ class RehearsalRunner {
     void stop();
     /// The reply comes on the pipeline's thread once the command's stages are durable; a refusal at once.
     void submit(v1::CommandRequest request, Reply reply);
+    /// A command file: all are checked before the first is taken, and when one is refused none is. Replies as of submit(); with
+    /// `only_check`, and when one is refused, they are those of a dry run.
+    using Replies = std::function<void(std::vector<v1::CommandReply>)>;
+    void submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies);
     bool over() const; ///< the thread has nothing more to do
 
   private:
     using Clock = std::chrono::steady_clock;
+    struct Order {
+        std::vector<v1::CommandRequest> requests;
+        bool only_check = false;
+        Replies replies;
+    };
     struct Control {
         bool paused = false, stop = false, changed = false;
         double pace = 1.0;
-        std::vector<std::pair<v1::CommandRequest, Reply>> requests;
+        std::vector<Order> orders;
     };
 
     void run();
@@ -79,7 +88,9 @@ class RehearsalRunner {
     Result<void> catch_up(Rehearsal& rehearsal);
     bool stop_wanted() const;
     void fly(Rehearsal& rehearsal);
-    void send_requests(Rehearsal& rehearsal, std::vector<std::pair<v1::CommandRequest, Reply>> requests);
+    void carry_out(Rehearsal& rehearsal, std::vector<Order> orders);
+    /// @return the replies of those that were refused, or of all in a dry run; empty: each may be taken
+    static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const Order& order);
     void collect(Rehearsal& rehearsal, const simulation::CycleReport& report);
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);

@@ -65,6 +65,7 @@ const Row rows[] = {
     {"GET", "/api/v1/audit", "administrator", "/api/v1/audit?limit=1", "", 200},
     {"GET", "/api/v1/runs", "observer", "/api/v1/runs", "", 200},
     {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})", 409},
+    {"POST", "/api/v1/runs/{run}/sequences", "controller", "/api/v1/runs/latest/sequences", R"({"commands":[{"command":"NO_OP"}]})", 409},
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
@@ -160,6 +161,8 @@ TEST_CASE("a hazardous command by HTTP needs a director, and an account's own li
     CHECK(send("controller", landing).status == 403);
     CHECK_THAT(send("controller", landing).body, Catch::Contains("EDL_DO_EDL is hazardous: it needs a director"));
     CHECK(send("director", landing).status == 409); // no run goes on
+    const auto file = std::string{R"({"commands":[{"command":"NO_OP"},)"} + landing + "]}";
+    CHECK_THAT(guarded.ask("controller", "POST", "/api/v1/runs/latest/sequences", file).body, Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
     CHECK_THAT(send("nina", landing).body, Catch::Contains("not among the commands"));
     CHECK(send("nina", R"({"command":"NO_OP"})").status == 409);
     CHECK(guarded.ask("administrator", "POST", "/api/v1/users",

@@ -1,6 +1,8 @@
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
+#include <algorithm>
+#include <fmt/format.h>
 #include <fstream>
 
 using namespace aeolis;
@@ -118,6 +120,48 @@ TEST_CASE("what was acknowledged is durable: the command is in the archive when 
     REQUIRE(commands);
     REQUIRE(commands->commands_size() == 1);
     CHECK(commands->commands(0).stages_size() >= 4);
+}
+
+TEST_CASE("a command file goes whole or not at all, and names the command that is refused", "[http][R44]") {
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    const auto post = [&](std::string_view body) { return web_request(server.port(), "POST", "/api/v1/runs/latest/sequences", body); };
+    WebReply reply;
+    for (int i = 0; i < 200 && reply.status != 202; ++i) {
+        reply = post(R"({"dry_run":true,"commands":[{"command":"NO_OP"},{"command":"NO_OP"}]})");
+        if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    CHECK_THAT(reply.body, Catch::StartsWith(R"({"accepted":true)") && Catch::Contains(R"("dry_run":true)"));
+    const auto spoilt = post(R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})");
+    CHECK(spoilt.status == 409);
+    CHECK_THAT(spoilt.body, Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body, Catch::StartsWith(R"({"commands":[])"));
+    const auto taken = post(R"({"commands":[{"command":"NO_OP","request":"5"},{"command":"NO_OP","hold":true}]})");
+    CHECK(taken.status == 202);
+    CHECK_THAT(taken.body, Catch::Contains(R"("request":"5","command":"1")") && Catch::Contains(R"("command":"2")"));
+    CHECK(post(R"({"commands":[]})").status == 400);
+    CHECK_THAT(post(R"({"commands":[{"command":"NO_OP","dry_run":true}]})").body, Catch::Contains("commands[0]: dry_run"));
+}
+
+TEST_CASE("a command that would break a constraint of the timeline is refused before it is sent, and the constraint is named", "[http][R19]") {
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    const auto& timeline = tests::shipped_dictionary().timeline;
+    const auto row = std::ranges::find(timeline, "cruise_stage_separation", &dictionary::TimelineRow::name) - timeline.begin();
+    const auto ask = [&](double desired_s, double minimum_s, bool dry_run) {
+        const auto body = fmt::format(R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","dry_run":{},"arguments":[{{"name":"timepoint","value":{}}},)"
+                                      R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
+                                      dry_run, row, desired_s, minimum_s);
+        return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", body);
+    };
+    WebReply reply;
+    for (int i = 0; i < 200 && reply.status != 202; ++i) {
+        reply = ask(-600.0, 2.0, true);
+        if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    CHECK_THAT(reply.body, Catch::Contains("bounds of constraints.csv hold on the changed timeline"));
+    const auto broken = ask(-620.0, 0.0, false); // at once behind the cutters, which need their two seconds
+    INFO(broken.body);
+    CHECK(broken.status == 409);
+    CHECK_THAT(broken.body, Catch::Contains("breaks a constraint") && Catch::Contains("cruise_stage_separation") && Catch::Contains("constraints.csv:"));
 }
 
 TEST_CASE("a page of another site, or a name bound to this address, gets nothing", "[http]") {
