@@ -11,7 +11,7 @@
 namespace aeolis::archive {
 
 inline constexpr std::int32_t application_id = 0x41454F4C; ///< "AEOL": what file(1) and we know the file by
-inline constexpr std::int32_t schema_version = 4;          ///< PRAGMA user_version
+inline constexpr std::int32_t schema_version = 5;          ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///
@@ -38,6 +38,9 @@ class Archive {
 
     /// All of `batch` or none of it; durable when it returns. With `batch.end` the run is finished.
     Result<void> append(RunId run, const Batch& batch);
+
+    /// Adds to a run that does not go on, as its last item; durable when it returns. @return with its number
+    Result<Annotation> annotate(RunId run, Annotation annotation);
 
     /// Runs that open() found cut off.
     const std::vector<RunId>& interrupted() const;

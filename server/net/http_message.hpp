@@ -1,6 +1,8 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace aeolis::server {
@@ -10,6 +12,7 @@ struct HttpRequest {
     std::string path;  ///< decoded, without the query
     std::string query; ///< as it stands after '?', still percent-encoded
     std::string body;
+    std::shared_ptr<std::atomic<bool>> gone{}; ///< true once who asked has left: what still works on it may stop; null: never told
 };
 
 struct HttpResponse {

@@ -20,13 +20,15 @@ namespace aeolis::server {
 struct Delivery {
     using Entry =
         std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord,
-                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState>;
+                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState, pipeline::EarthTime>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links; ///< empty: as told before
     std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
 
     void add(const simulation::CycleReport& report);
+    /// Once a second of the run: that time goes on.
+    void pass(std::uint64_t cycles, Ert now);
 };
 
 /// The only writer of the archive: takes deliveries, commits, publishes.
@@ -57,6 +59,10 @@ class PipelineThread {
     bool deliver(Delivery delivery);
     /// Waits until everything delivered is durable and the run is marked finished.
     Result<void> finish(const archive::RunEnd& end);
+
+    /// Adds to any run what a person says; `done` comes on this thread when it is durable. False, and nothing done, when too
+    /// much waits.
+    bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Given up, or held right now; empty when all is well.

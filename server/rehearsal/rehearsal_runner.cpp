@@ -255,6 +255,7 @@ void RehearsalRunner::send_requests(Rehearsal& rehearsal, std::vector<std::pair<
 
 void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
     delivery_.add(report);
+    delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     for (auto& stage : rehearsal.take_stages())
         delivery_.entries.emplace_back(std::move(stage));
 }
