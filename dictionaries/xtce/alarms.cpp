@@ -104,7 +104,7 @@ std::vector<ContextAlarms> read_contexts(const Symbols& symbols, const Parameter
             for (const pugi::xml_node comparison : all.children("Comparison"))
                 if (auto condition = read_comparison(symbols, parameters, of.scope, comparison, name, report))
                     context.push_back(std::move(*condition));
-        if (!match.first_child()) report.fault(element, name + ": a context alarm without ContextMatch");
+        if (!match.first_child()) report.fault(match ? match : element, name + ": a context alarm without ContextMatch");
     }
     return contexts;
 }

@@ -110,6 +110,7 @@ std::optional<Precondition> read_comparison(const Symbols& symbols, const Parame
     Precondition condition{*parameter.channel, comparison.attribute("comparisonOperator").as_string("=="), 0.0, {}};
     if (std::ranges::find(comparisons, condition.comparison) == comparisons.end())
         return fault("comparison " + in_quotes(condition.comparison) + " is unknown");
+    if (!parameter.type) return std::nullopt; // that has been told
     const std::string word = comparison.attribute("value").value();
     const auto value = value_of(parameter, word);
     if (!value) return fault("value " + in_quotes(word) + " is neither a number nor a label");

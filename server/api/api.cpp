@@ -1,10 +1,12 @@
 #include "server/api/api.hpp"
 
+#include "server/api/annotations.hpp"
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/json.hpp"
 #include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/archive/items.hpp"
 
 #include <charconv>
 #include <fmt/format.h>
@@ -39,6 +41,13 @@ HttpResponse json_response(const google::protobuf::Message& message, unsigned st
     response.status = status;
     response.body = to_json(message);
     return response;
+}
+
+/// Answers with the item that something became, once it is durable.
+std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
+    return [respond](const Result<archive::Annotation>& annotation) {
+        respond(annotation ? json_response(archive::to_item(*annotation), 201) : error_response(503, annotation.error().message));
+    };
 }
 
 HttpResponse wrong_method(const HttpRequest& request, std::string_view right) {
@@ -107,12 +116,14 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
         return respond(
             error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
     if (what == "commands" && request.method == "POST") return post_command(request, run, respond);
+    if (what == "alarms" && request.method == "POST") return post_alarm(request, run, {}, respond);
+    if (what == "notes" && request.method == "POST") return post_note(request, run, {}, respond);
     const auto* question = run_question(what);
     if (question == nullptr)
         return respond(error_response(
             404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
     if (request.method != "GET" && request.method != "HEAD")
-        return respond(wrong_method(request, what == "commands" ? "GET and POST" : "GET"));
+        return respond(wrong_method(request, what == "commands" || what == "alarms" || what == "notes" ? "GET and POST" : "GET"));
     auto query = QueryText::parse(request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error().message));
     const auto& dictionary = parts_.dictionary;
@@ -121,14 +132,20 @@ void Api::handle_run(const HttpRequest& request, const std::string& run, const s
     if (what.empty() && current.run() != 0 && (run == "latest" || run_id(run)->value == current.run()))
         return respond(json_response(current));
     ask(
-        run, std::move(*query),
-        [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
-            return answer(dictionary, reader, id, asked);
+        request, run, std::move(*query),
+        [&dictionary, clock = clock(), answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked) {
+            return answer({dictionary, clock(id)}, reader, id, asked);
         },
         respond);
 }
 
-void Api::ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond) {
+std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
+    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](archive::RunId run) {
+        return run.value == current ? now : std::nullopt;
+    };
+}
+
+void Api::ask(const HttpRequest& request, const std::string& run, QueryText query, RunQuestion question, const Respond& respond) {
     const auto job = [run, query = std::move(query), question = std::move(question), respond](archive::Reader& reader) {
         auto id = run_id(run);
         if (!id) {
@@ -139,9 +156,14 @@ void Api::ask(const std::string& run, QueryText query, RunQuestion question, con
         } else if (const auto known = reader.run(*id); !known) {
             return respond(error_response(404, known.error().message));
         }
-        respond(question(reader, *id, query));
+        auto response = question(reader, *id, query);
+        if (!response) return;
+        if (reader.stopped())
+            response = error_response(503, fmt::format("the question was stopped after {} s: ask for less, by from and to, points or limit",
+                                                       QueryThreads::question_seconds_max.count()));
+        respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job)) respond(error_response(503, "too many questions wait: try again"));
+    if (!parts_.queries.ask(job, request.gone)) respond(error_response(503, "too many questions wait: try again"));
 }
 
 void Api::list_runs(const Respond& respond) {
@@ -207,6 +229,38 @@ void Api::post_command(const HttpRequest& request, const std::string& run, const
     parts_.desk.command(std::move(command), [respond, refused](const v1::CommandReply& reply) {
         respond(json_response(reply, reply.accepted() ? 202 : refused));
     });
+}
+
+void Api::post_note(const HttpRequest& request, const std::string& run, const std::optional<std::string>& by, const Respond& respond) {
+    v1::NoteRequest asked;
+    if (const auto parsed = from_json(request.body, asked); !parsed) return respond(error_response(400, parsed.error().message));
+    const auto question = [this, asked, by = by.value_or(asked.by()), clock = clock(), respond](
+                              archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
+        const auto newest = reader.newest_ert(id);
+        if (!newest) return error_response(500, newest.error().message);
+        auto note = note_of(asked, by, clock(id).value_or(*newest));
+        if (!note) return error_response(422, note.error().message);
+        if (parts_.pipeline.annotate(id, std::move(*note), added(respond))) return {};
+        return error_response(503, "too much waits to be stored: try again");
+    };
+    ask(request, run, {}, question, respond);
+}
+
+void Api::post_alarm(const HttpRequest& request, const std::string& run, const std::optional<std::string>& by, const Respond& respond) {
+    v1::AlarmRequest asked;
+    if (const auto parsed = from_json(request.body, asked); !parsed) return respond(error_response(400, parsed.error().message));
+    const auto question = [this, asked, by = by.value_or(asked.by()), clock = clock(), respond](
+                              archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
+        const auto newest = reader.newest_ert(id);
+        if (!newest) return error_response(500, newest.error().message);
+        auto action = alarm_action_of(asked, parts_.dictionary, by, clock(id).value_or(*newest));
+        if (!action) return error_response(422, action.error().message);
+        const auto act = telemetry::alarm_act(action->action);
+        if (auto may = reader.may(id, action->alarm, *act, action->at); !may) return error_response(409, may.error().message);
+        if (parts_.pipeline.annotate(id, std::move(*action), added(respond))) return {};
+        return error_response(503, "too much waits to be stored: try again");
+    };
+    ask(request, run, {}, question, respond);
 }
 
 v1::RunState Api::current_run() const {

@@ -11,6 +11,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace aeolis::server {
@@ -29,15 +30,15 @@ class Api {
         QueryThreads& queries;
         RehearsalDesk& desk;
         StreamHub& hub;
-        const PipelineThread& pipeline;
+        PipelineThread& pipeline;
         const StaticFiles& console;
         std::function<std::size_t()> connections;
     };
     explicit Api(Parts parts);
 
     void handle(const HttpRequest& request, const Respond& respond);
-    /// `respond` is called on whatever thread has the answer.
-    using RunQuestion = std::function<HttpResponse(archive::Reader&, archive::RunId, const QueryText&)>;
+    /// None: it will be given later. `respond` is called on whatever thread has the answer.
+    using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
   private:
     void handle_api(const HttpRequest& request, const Respond& respond);
@@ -47,7 +48,12 @@ class Api {
     void list_scenarios(const Respond& respond);
     void rehearsals(const HttpRequest& request, bool current, const Respond& respond);
     void post_command(const HttpRequest& request, const std::string& run, const Respond& respond);
-    void ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
+    /// @param by  who asks, where that is known; else the request says so itself
+    void post_alarm(const HttpRequest& request, const std::string& run, const std::optional<std::string>& by, const Respond& respond);
+    void post_note(const HttpRequest& request, const std::string& run, const std::optional<std::string>& by, const Respond& respond);
+    void ask(const HttpRequest& request, const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
+    /// The time on Earth in a run that goes on; none in others.
+    std::function<std::optional<Ert>(archive::RunId)> clock() const;
     v1::RunState current_run() const; ///< with what only the stream knows; run 0: none since the server started
     HttpResponse metrics() const;
 

@@ -128,6 +128,10 @@ class Reader {
 
     /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
+    /// A formula of channels as one series, at the times of the first channel in it; of each other channel the newest
+    /// value up to then counts. Exact, or thinned to the least and the largest of equal intervals; takes the same memory
+    /// however many samples there are. What is undefined (NaN) is left out.
+    Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range, std::optional<std::size_t> points);
     /// All samples of the channels in a range, in order of SCLK, some thousands at a time; takes the same memory for a
     /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;

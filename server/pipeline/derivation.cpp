@@ -326,7 +326,6 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
             continue;
         }
         const auto of_run = "run " + std::to_string(run.run.value);
-        const std::int64_t first_key = archive::item_key(run.run, 0), last_key = archive::item_key(run.run, archive::sequence_max);
         auto scratch = Scratch::open(scratch_file, file);
         if (!scratch) return scratch.error();
         {
@@ -343,11 +342,6 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         const auto replaced = [&]() -> Result<std::vector<std::string>> {
             auto transaction = sqlite::Transaction::begin_write(database);
             if (!transaction) return transaction.error();
-            // The index finds what it must forget in the rows themselves: they go after it, and come back before it.
-            auto forgotten = database.prepare("DELETE FROM search WHERE rowid BETWEEN ?1 AND ?2");
-            if (!forgotten) return forgotten.error();
-            forgotten->bind(1, first_key).bind(2, last_key);
-            if (auto done = forgotten->run(); !done) return done.error();
             for (const archive::RunTable& table : archive::run_tables) {
                 if (!table.derived) continue;
                 auto taken = database.prepare((std::string("DELETE FROM main.") + table.name + " WHERE " + table.rows).c_str());
@@ -357,10 +351,6 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
                 const auto put = std::string("INSERT INTO main.") + table.name + " SELECT * FROM fresh." + table.name;
                 if (auto done = database.execute(put.c_str()); !done) return done.error();
             }
-            auto found_again = database.prepare(archive::add_to_search_sql);
-            if (!found_again) return found_again.error();
-            found_again->bind(1, first_key).bind(2, last_key);
-            if (auto done = found_again->run(); !done) return done.error();
             auto faults = archive::sequence_faults(database, run.run, "main.", 1);
             if (!faults || !faults->empty()) return faults;
             if (auto done = transaction->commit(); !done) return done.error();
@@ -373,6 +363,9 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         else
             rebuilt.left.push_back(of_run + ": its units now say something else, and its items would get other numbers (" + replaced->front() + ")");
     }
+    // The whole index: what it should forget of rows that were damaged nobody knows.
+    if (!rebuilt.runs.empty())
+        if (auto done = database.execute("INSERT INTO search (search) VALUES ('rebuild')"); !done) return done.error();
     return rebuilt;
 }
 
