@@ -11,6 +11,7 @@ namespace aeolis::archive {
 
 namespace {
 
+constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON
 constexpr std::size_t window_samples = 100'000; ///< ours: that each_sample has in hand; at most four times as many
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
@@ -153,9 +154,14 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
     const auto channels = find_channels(state_->dictionary, query.channels);
     if (!channels) return channels.error();
     v1::ChannelSeriesList list;
+    std::size_t given = 0;
     for (const auto* channel : *channels) {
         auto series = one_series(*state_, *info, *channel, *range, query.points);
         if (!series) return series.error();
+        given += static_cast<std::size_t>(series->sclk_size());
+        if (given > exact_samples_of_all_max)
+            return Error{"the channels have more than " + std::to_string(exact_samples_of_all_max) +
+                         " samples in the range: ask for points, or less; aeolis export gives any number"};
         *list.add_channels() = std::move(series).value();
     }
     return list;
