@@ -8,16 +8,6 @@ namespace {
 
 using State = PreconditionState::State;
 
-bool compare(double left, const std::string& comparison, double right) {
-    if (comparison == "==") return left == right;
-    if (comparison == "!=") return left != right;
-    if (comparison == "<") return left < right;
-    if (comparison == "<=") return left <= right;
-    if (comparison == ">") return left > right;
-    AEOLIS_CHECK(comparison == ">="); // the loader admits no other
-    return left >= right;
-}
-
 } // namespace
 
 const char* name_of(PreconditionState::State state) {
@@ -49,7 +39,7 @@ std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, c
             state.text = sentence + ": not known, the last value, " + shortest_text(*now.value) + ", is " +
                          std::to_string(static_cast<long long>(now.age_s)) + " s old";
         } else {
-            state.state = compare(*now.value, condition.comparison, condition.value) ? State::holds : State::fails;
+            state.state = condition.holds(*now.value) ? State::holds : State::fails;
             state.text = sentence + ": is " + shortest_text(*now.value);
         }
         states.push_back(std::move(state));

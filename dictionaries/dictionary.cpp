@@ -1,5 +1,7 @@
 #include "dictionaries/dictionary.hpp"
 
+#include "common/check.hpp"
+
 #include <algorithm>
 
 namespace aeolis::dictionary {
@@ -12,6 +14,16 @@ const T* first(const std::vector<T>& all, Fits fits) {
 }
 
 } // namespace
+
+bool Precondition::holds(double latest) const {
+    if (comparison == "==") return latest == value;
+    if (comparison == "!=") return latest != value;
+    if (comparison == "<") return latest < value;
+    if (comparison == "<=") return latest <= value;
+    if (comparison == ">") return latest > value;
+    AEOLIS_CHECK(comparison == ">="); // the loader admits no other
+    return latest >= value;
+}
 
 const Channel* Dictionary::channel(std::string_view name_or_alias) const {
     return first(channels, [&](const Channel& c) { return c.name == name_or_alias || c.alias == name_or_alias; });

@@ -41,10 +41,29 @@ struct EnumAlarm {
     Severity severity = Severity::none;
     std::int64_t value = 0;
 };
+/// A condition on a channel's latest value: for a command to be released, for the alarms of a context to count.
+struct Precondition {
+    ChannelId channel;
+    std::string comparison;  ///< "==", "!=", "<", "<=", ">", ">="
+    double value = 0.0;
+    std::string text;
+
+    bool holds(double latest) const;
+};
+
+struct ContextAlarms;
 struct Alarms {
     std::vector<AlarmRange> ranges;  ///< nested, least severe first
     std::vector<EnumAlarm> values;
-    std::uint32_t min_violations = 1;  ///< samples in a row before the alarm is raised
+    std::uint32_t min_violations = 1;   ///< samples in a row before the alarm is raised
+    std::uint32_t min_conformance = 1;  ///< samples in a row before it is cleared
+    bool latches = false;               ///< cleared, it stays until someone resets it
+    std::vector<ContextAlarms> contexts; ///< of a channel: the first that holds takes the place of the above
+};
+/// What the limits are while something else is so: in a phase of EDL.
+struct ContextAlarms {
+    std::vector<Precondition> context;  ///< all of them
+    Alarms alarms;
 };
 
 /// How one number stands in a packet or a command, and what it means.
@@ -122,14 +141,6 @@ struct Argument {
 };
 
 enum class Significance { none, watch, warning, distress, critical, severe };
-
-/// A condition on a channel's latest value that must hold before the command may be released.
-struct Precondition {
-    ChannelId channel;
-    std::string comparison;  ///< "==", "!=", "<", "<=", ">", ">="
-    double value = 0.0;
-    std::string text;
-};
 
 /// What shows that a stage was reached: an event whose `opcode` field equals the command's.
 struct Verifier {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 // telemetry_plan.csv: what of the recording goes to ground in real time, by the state of the vehicle. R30
 namespace aeolis::dictionary {
@@ -16,6 +17,13 @@ inline constexpr std::array<std::string_view, 4> telemetry_priority_words{"low",
 
 /// The states of the vehicle that a plan tells apart: columns of the sheet.
 inline constexpr std::array<std::string_view, 4> telemetry_state_columns{"before_entry", "entry", "descent", "landed"};
+
+/// The phases of EDL, labels of the XTCE enumeration EdlPhase, and the column that each belongs to.
+inline constexpr std::array<std::pair<std::string_view, std::size_t>, 13> telemetry_state_of_phase{
+    {{"pre_edl", 0}, {"late_cruise", 0}, {"exo_atmospheric", 0},
+     {"wait_for_guidance", 1}, {"range_control", 1}, {"heading_alignment", 1}, {"straighten_up", 1}, {"wait_for_parachute", 1},
+     {"parachute_descent", 2}, {"powered_descent", 2}, {"sky_crane", 2}, {"flyaway", 2},
+     {"landed", 3}}};
 
 /// One packet in one plan.
 struct TelemetryPlanRow {

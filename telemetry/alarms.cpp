@@ -3,6 +3,7 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace aeolis::telemetry {
 namespace {
@@ -14,19 +15,19 @@ bool breaks(const dictionary::AlarmRange& range, double value) {
 }
 
 /// Of the most severe limit that `value` breaks.
-Severity worst(const dictionary::Type& type, double value) {
+Severity worst(const dictionary::Alarms& alarms, double value) {
     Severity worst = Severity::none;
-    for (const dictionary::AlarmRange& range : type.alarms.ranges)
+    for (const dictionary::AlarmRange& range : alarms.ranges)
         if (range.severity > worst && breaks(range, value)) worst = range.severity;
-    for (const dictionary::EnumAlarm& alarm : type.alarms.values)
+    for (const dictionary::EnumAlarm& alarm : alarms.values)
         if (alarm.severity > worst && value == static_cast<double>(alarm.value)) worst = alarm.severity;
     return worst;
 }
 
 /// The limit that `value` breaks, in words: the one of `severity`, or, where that one guards the other side only, any.
-std::string limit_text(const dictionary::Type& type, Severity severity, double value) {
+std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& alarms, Severity severity, double value) {
     std::string text;
-    for (const dictionary::AlarmRange& range : type.alarms.ranges) {
+    for (const dictionary::AlarmRange& range : alarms.ranges) {
         if (!breaks(range, value) || (!text.empty() && range.severity != severity)) continue;
         const bool low = range.below && value < *range.below;
         text = (low ? "< " : "> ") + value_text(type, low ? range.below : range.above);
@@ -54,26 +55,70 @@ const char* name_of(Severity severity) {
     return "";
 }
 
+std::optional<Severity> severity_of(std::string_view word) {
+    for (const Severity severity :
+         {Severity::none, Severity::watch, Severity::warning, Severity::distress, Severity::critical, Severity::severe})
+        if (word == name_of(severity)) return severity;
+    return {};
+}
+
+std::string context_text(const dictionary::Dictionary& dictionary, const std::vector<dictionary::Precondition>& context) {
+    std::string text;
+    for (const dictionary::Precondition& condition : context) {
+        const dictionary::Channel& channel = dictionary.channels[condition.channel.value];
+        const std::string value = value_text(channel.type, condition.value);
+        if (context.size() == 1 && condition.comparison == "==") return value;
+        text += (text.empty() ? "" : " and ") + channel.name + " " + condition.comparison + " " + value;
+    }
+    return text;
+}
+
+bool latches(const dictionary::Alarms& alarms) {
+    return alarms.latches || std::ranges::any_of(alarms.contexts, [](const auto& each) { return each.alarms.latches; });
+}
+
 AlarmMonitor::AlarmMonitor(const dictionary::Dictionary& dictionary)
-    : dictionary_(dictionary), states_(dictionary.channels.size()) {}
+    : dictionary_(dictionary), states_(dictionary.channels.size()), latest_(dictionary.channels.size()) {}
+
+const dictionary::ContextAlarms* AlarmMonitor::context_of(const dictionary::Alarms& alarms) const {
+    const auto holds = [this](const dictionary::Precondition& condition) {
+        const auto& latest = latest_[condition.channel.value];
+        return latest && condition.holds(*latest);
+    };
+    const auto found = std::ranges::find_if(alarms.contexts, [&](const auto& each) { return std::ranges::all_of(each.context, holds); });
+    return found == alarms.contexts.end() ? nullptr : &*found;
+}
 
 void AlarmMonitor::sample(ChannelId channel, double value, Sclk sclk, std::vector<AlarmChange>& out) {
     AEOLIS_CHECK(channel.value < states_.size());
+    latest_[channel.value] = value;
     const dictionary::Type& type = dictionary_.channels[channel.value].type;
-    if (type.alarms.ranges.empty() && type.alarms.values.empty()) return;
+    if (type.alarms.ranges.empty() && type.alarms.values.empty() && type.alarms.contexts.empty()) return;
 
     State& state = states_[channel.value];
-    const auto broken = static_cast<std::size_t>(worst(type, value));
-    const std::uint32_t needed = std::max(type.alarms.min_violations, 1U);
+    const auto* const context = context_of(type.alarms);
+    if (context != std::exchange(state.context, context))
+        for (Level& level : state.levels)
+            level.violations = level.conformances = 0;
+    const dictionary::Alarms& alarms = context != nullptr ? context->alarms : type.alarms;
+    const auto broken = static_cast<std::size_t>(worst(alarms, value));
     Severity now = Severity::none;
-    for (std::size_t level = 1; level < severities; ++level) {
-        std::uint32_t& in_a_row = state.in_a_row[level];
-        in_a_row = broken < level ? 0 : std::min(in_a_row + 1, needed);
-        if (in_a_row == needed) now = static_cast<Severity>(level);
+    for (std::size_t severity = 1; severity < severities; ++severity) {
+        Level& level = state.levels[severity];
+        const bool violates = broken >= severity;
+        level.violations = violates ? std::min(level.violations + 1, alarms.min_violations) : 0;
+        level.conformances = violates ? 0 : std::min(level.conformances + 1, alarms.min_conformance);
+        if (level.violations == alarms.min_violations) level.stands = true;
+        if (level.conformances == alarms.min_conformance) level.stands = false;
+        if (level.stands) now = static_cast<Severity>(severity);
     }
     if (now == state.now) return;
-    out.push_back(
-        {channel, now, state.now, value, sclk, now == Severity::none ? std::string{} : limit_text(type, now, value)});
+    std::string limit;
+    if (now != Severity::none) {
+        limit = limit_text(type, alarms, now, value);
+        if (context != nullptr) limit += " in " + context_text(dictionary_, context->context);
+    }
+    out.push_back({channel, now, state.now, value, sclk, std::move(limit)});
     state.now = now;
 }
 

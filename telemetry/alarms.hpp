@@ -4,7 +4,9 @@
 #include "dictionaries/dictionary.hpp"
 
 #include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace aeolis::telemetry {
@@ -15,17 +17,25 @@ struct AlarmChange {
     dictionary::Severity before{};
     double value = 0.0;
     Sclk sclk;
-    std::string limit; ///< what the value broke: "> 14.5 g", "= failed"; empty when cleared
+    std::string limit; ///< what the value broke: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
 };
 const char* name_of(dictionary::Severity severity);
+/// None for a word that is no severity's.
+std::optional<dictionary::Severity> severity_of(std::string_view word);
+/// "sky_crane" where one state of one channel is asked for; else the conditions in words.
+std::string context_text(const dictionary::Dictionary& dictionary, const std::vector<dictionary::Precondition>& context);
+/// Whether an alarm of the channel stays until it is reset: in any context.
+bool latches(const dictionary::Alarms& alarms);
 
 /// Tells when a channel goes into, out of, or from one to another severity of alarm.
 ///
 /// In       samples of each channel in the order of SCLK, one source only (real time, or the recording)
 /// Out      changes, appended to `out`
-/// Rule     a severity stands when the last `min_violations` samples all were at least that severe; one sample within
-///          the limits clears. [xtce-1.2] MinViolations
-/// Memory   32 octets a channel, made at the start
+/// Rule     a severity is raised when `min_violations` samples in a row were at least that severe, and cleared when
+///          `min_conformance` in a row were less. [xtce-1.2] minViolations, minConformance. The limits are those of the
+///          first context that holds by the latest values of the channels it compares, else the default ones;
+///          counting begins again when the context changes.
+/// Memory   64 octets a channel, made at the start
 class AlarmMonitor {
   public:
     /// The dictionary must outlive this.
@@ -37,12 +47,19 @@ class AlarmMonitor {
 
   private:
     static constexpr std::size_t severities = 6;
+    struct Level {
+        std::uint32_t violations = 0, conformances = 0; ///< samples in a row up to the last, at least this severe or less
+        bool stands = false;
+    };
     struct State {
-        std::array<std::uint32_t, severities> in_a_row{}; ///< samples at least this severe, up to the last
+        std::array<Level, severities> levels{};
+        const dictionary::ContextAlarms* context = nullptr; ///< none: the default limits
         dictionary::Severity now = dictionary::Severity::none;
     };
+    const dictionary::ContextAlarms* context_of(const dictionary::Alarms& alarms) const;
     const dictionary::Dictionary& dictionary_;
     std::vector<State> states_;
+    std::vector<std::optional<double>> latest_; ///< by channel
 };
 
 } // namespace aeolis::telemetry

@@ -20,8 +20,6 @@ constexpr std::array significances{
     std::pair{"vital", Significance::warning},     std::pair{"user2", Significance::distress},
     std::pair{"critical", Significance::critical}, std::pair{"forbidden", Significance::severe}};
 
-constexpr std::array comparisons{"==", "!=", "<", "<=", ">", ">="};
-
 /// xs:duration in days, hours, minutes and seconds: "PT10S", "P1DT2H30M".
 std::optional<double> to_seconds(std::string_view word) {
     if (!word.starts_with("P") || word.size() < 3) return std::nullopt;
@@ -216,37 +214,8 @@ class CommandReader {
     }
 
     void read_precondition(const Symbol& symbol, pugi::xml_node comparison, Command& command) {
-        report_.expect(comparison, {}, {"parameterRef", "value", "comparisonOperator", "useCalibratedValue"});
-        const std::string reference = comparison.attribute("parameterRef").value();
-        const Symbol* found = symbols_.find(Kind::parameter, symbol.scope, reference);
-        if (found == nullptr) return fault(comparison, command, "there is no parameter " + in_quotes(reference));
-        const Parameter& parameter = parameters_.by_path.at(found->path);
-        if (!parameter.channel)
-            return fault(comparison, command, in_quotes(reference) + " is no channel: its value is not known");
-        Precondition condition{*parameter.channel, comparison.attribute("comparisonOperator").as_string("=="), 0.0, {}};
-        if (std::ranges::find(comparisons, condition.comparison) == comparisons.end())
-            return fault(comparison, command, "comparison " + in_quotes(condition.comparison) + " is unknown");
-        const std::string word = comparison.attribute("value").value();
-        const auto value = value_of(parameter, word);
-        if (!value) return fault(comparison, command, "value " + in_quotes(word) + " is neither a number nor a label");
-        condition.value = *value;
-        condition.text = text_of(parameter, condition, word);
-        command.preconditions.push_back(std::move(condition));
-    }
-
-    static std::optional<double> value_of(const Parameter& parameter, const std::string& word) {
-        if (parameter.type)
-            for (const EnumValue& entry : parameter.type->enumeration)
-                if (entry.label == word) return static_cast<double>(entry.value);
-        return to_number(word);
-    }
-
-    static std::string text_of(const Parameter& parameter, const Precondition& condition, const std::string& word) {
-        const std::string what = parameter.element.attribute("shortDescription").as_string(parameter.name.c_str());
-        const bool is_flag = parameter.type && parameter.type->kind == ValueKind::boolean;
-        if (!is_flag) return what + " must be " + condition.comparison + " " + word;
-        const bool wanted = (condition.value != 0.0) == (condition.comparison == "==");
-        return what + " must be " + (wanted ? "true" : "false");
+        auto condition = read_comparison(symbols_, parameters_, symbol.scope, comparison, "command " + in_quotes(command.name), report_);
+        if (condition) command.preconditions.push_back(std::move(*condition));
     }
 
     void read_verifiers(const Symbol& symbol, Command& command) {

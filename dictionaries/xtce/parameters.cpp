@@ -2,10 +2,30 @@
 
 #include "dictionaries/words.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace aeolis::dictionary::xtce {
 namespace {
 
 constexpr std::size_t channels_max = 4096; // ours
+constexpr std::array comparisons{"==", "!=", "<", "<=", ">", ">="};
+
+/// A label of the parameter's enumeration, or a number.
+std::optional<double> value_of(const Parameter& parameter, const std::string& word) {
+    if (parameter.type)
+        for (const EnumValue& entry : parameter.type->enumeration)
+            if (entry.label == word) return static_cast<double>(entry.value);
+    return to_number(word);
+}
+
+std::string text_of(const Parameter& parameter, const Precondition& condition, const std::string& word) {
+    const std::string what = parameter.element.attribute("shortDescription").as_string(parameter.name.c_str());
+    const bool is_flag = parameter.type && parameter.type->kind == ValueKind::boolean;
+    if (!is_flag) return what + " must be " + condition.comparison + " " + word;
+    const bool wanted = (condition.value != 0.0) == (condition.comparison == "==");
+    return what + " must be " + (wanted ? "true" : "false");
+}
 
 std::string channel_alias(pugi::xml_node parameter, Reporter& report) {
     const pugi::xml_node set = parameter.child("AliasSet");
@@ -74,6 +94,30 @@ class Channels {
 };
 
 } // namespace
+
+std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters, const std::string& scope,
+                                            pugi::xml_node comparison, const std::string& of, Reporter& report) {
+    report.expect(comparison, {}, {"parameterRef", "value", "comparisonOperator", "useCalibratedValue"});
+    const auto fault = [&](const std::string& message) {
+        report.fault(comparison, of + ": " + message);
+        return std::nullopt;
+    };
+    const std::string reference = comparison.attribute("parameterRef").value();
+    const Symbol* found = symbols.find(Kind::parameter, scope, reference);
+    if (found == nullptr) return fault("there is no parameter " + in_quotes(reference));
+    const Parameter& parameter = parameters.by_path.at(found->path);
+    if (!parameter.channel) return fault(in_quotes(reference) + " is no channel: its value is not known");
+    Precondition condition{*parameter.channel, comparison.attribute("comparisonOperator").as_string("=="), 0.0, {}};
+    if (std::ranges::find(comparisons, condition.comparison) == comparisons.end())
+        return fault("comparison " + in_quotes(condition.comparison) + " is unknown");
+    if (!parameter.type) return std::nullopt; // that has been told
+    const std::string word = comparison.attribute("value").value();
+    const auto value = value_of(parameter, word);
+    if (!value) return fault("value " + in_quotes(word) + " is neither a number nor a label");
+    condition.value = *value;
+    condition.text = text_of(parameter, condition, word);
+    return condition;
+}
 
 Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter& report) {
     Parameters parameters;

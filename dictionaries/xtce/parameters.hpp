@@ -25,6 +25,11 @@ struct Parameters {
     std::vector<pugi::xml_node> channel_elements;
 };
 
+/// A Comparison of a channel with a number or a label; none, with a finding that begins with `of`, when it is wrong.
+/// @param scope  path of the SpaceSystem in which it stands
+std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters, const std::string& scope,
+                                            pugi::xml_node comparison, const std::string& of, Reporter& report);
+
 Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter& report);
 
 } // namespace aeolis::dictionary::xtce

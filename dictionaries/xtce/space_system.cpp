@@ -1,5 +1,6 @@
 #include "dictionaries/xtce/space_system.hpp"
 
+#include "dictionaries/xtce/alarms.hpp"
 #include "dictionaries/xtce/commands.hpp"
 
 namespace aeolis::dictionary::xtce {
@@ -30,7 +31,8 @@ std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& 
     Reporter report{*document, findings};
     const Symbols symbols{*document, report};
     const Types types{symbols, report};
-    const Parameters parameters = read_parameters(symbols, types, report);
+    Parameters parameters = read_parameters(symbols, types, report);
+    read_context_alarms(symbols, parameters, report);
     const Layouts layouts{symbols, parameters, report};
     Packets packets = read_packets(symbols, parameters, layouts, report);
     check_channels_carried(parameters, symbols, layouts, report);

@@ -51,7 +51,7 @@ class TypeReader {
         }
         report_.expect(element_,
                        {"LongDescription", "UnitSet", "IntegerDataEncoding", "FloatDataEncoding", "EnumerationList",
-                        "ValidRange", "ValidRangeSet", "DefaultAlarm"},
+                        "ValidRange", "ValidRangeSet", "DefaultAlarm", "ContextAlarmList"},
                        {"name", "shortDescription", "sizeInBits", "signed", "zeroStringValue", "oneStringValue"});
         type_.name = name_of(element_);
         type_.kind = *kind;

@@ -1,10 +1,12 @@
 #include "server/api/api.hpp"
 
+#include "server/api/annotations.hpp"
 #include "server/api/dictionary_reply.hpp"
 #include "server/api/json.hpp"
 #include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/archive/items.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 
 #include "commands/authorise.hpp"
@@ -127,6 +129,8 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, ""},
         {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command"},
         {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, "command"},
+        {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, "alarm"},
+        {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, ""},
         {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, ""},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, ""},
@@ -213,16 +217,20 @@ void Api::run_question(const Asked& asked) {
     const auto current = current_run();
     if (what.empty() && current.run() != 0 && (run == "latest" || run_id(run)->value == current.run()))
         return respond(json_response(current));
-    ask(
-        run, std::move(*query),
-        [&dictionary, answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
-            return answer(dictionary, reader, id, asked_of);
-        },
-        respond);
+    ask(asked, std::move(*query),
+        [&dictionary, clock = clock(), answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
+            return answer({dictionary, clock(id)}, reader, id, asked_of);
+        });
 }
 
-void Api::ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond) {
-    const auto job = [run, query = std::move(query), question = std::move(question), respond](archive::Reader& reader) {
+std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
+    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](archive::RunId run) {
+        return run.value == current ? now : std::nullopt;
+    };
+}
+
+void Api::ask(const Asked& asked, QueryText query, RunQuestion question) {
+    const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question), respond = asked.respond](archive::Reader& reader) {
         auto id = run_id(run);
         if (!id) {
             const auto runs = reader.runs();
@@ -232,9 +240,14 @@ void Api::ask(const std::string& run, QueryText query, RunQuestion question, con
         } else if (const auto known = reader.run(*id); !known) {
             return respond(error_response(404, known.error().message));
         }
-        respond(question(reader, *id, query));
+        auto response = question(reader, *id, query);
+        if (!response) return;
+        if (reader.stopped())
+            response = error_response(503, fmt::format("the question was stopped after {} s: ask for less, by from and to, points or limit",
+                                                       QueryThreads::question_seconds_max.count()));
+        respond(std::move(*response));
     };
-    if (!parts_.queries.ask(job)) respond(error_response(503, "too many questions wait: try again"));
+    if (!parts_.queries.ask(job, asked.request.gone)) asked.respond(error_response(503, "too many questions wait: try again"));
 }
 
 void Api::list_runs(const Asked& asked) {
@@ -373,6 +386,55 @@ void Api::post_sequence(const Asked& asked) {
         }
         respond(json_response(reply, reply.accepted() ? 202 : 409));
     });
+}
+
+namespace {
+
+/// Answers with the item that something became, once it is durable.
+std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
+    return [respond](const Result<archive::Annotation>& annotation) {
+        respond(annotation ? json_response(archive::to_item(*annotation), 201) : error_response(503, annotation.error().message));
+    };
+}
+
+} // namespace
+
+void Api::post_note(const Asked& asked) {
+    const auto& respond = asked.respond;
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
+    v1::NoteRequest wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return respond(error_response(400, parsed.error().message));
+    if (asked.who.accounts) wanted.set_by(asked.who.user);
+    const auto question = [this, wanted, clock = clock(), respond](archive::Reader& reader, archive::RunId id,
+                                                                   const QueryText&) -> std::optional<HttpResponse> {
+        const auto newest = reader.newest_ert(id);
+        if (!newest) return error_response(500, newest.error().message);
+        auto note = note_of(wanted, wanted.by(), clock(id).value_or(*newest));
+        if (!note) return error_response(422, note.error().message);
+        if (parts_.pipeline.annotate(id, std::move(*note), added(respond))) return {};
+        return error_response(503, "too much waits to be stored: try again");
+    };
+    ask(asked, {}, question);
+}
+
+void Api::post_alarm(const Asked& asked) {
+    const auto& respond = asked.respond;
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
+    v1::AlarmRequest wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return respond(error_response(400, parsed.error().message));
+    if (asked.who.accounts) wanted.set_by(asked.who.user);
+    const auto question = [this, wanted, clock = clock(), respond](archive::Reader& reader, archive::RunId id,
+                                                                   const QueryText&) -> std::optional<HttpResponse> {
+        const auto newest = reader.newest_ert(id);
+        if (!newest) return error_response(500, newest.error().message);
+        auto action = alarm_action_of(wanted, parts_.dictionary, wanted.by(), clock(id).value_or(*newest));
+        if (!action) return error_response(422, action.error().message);
+        const auto act = telemetry::alarm_act(action->action);
+        if (auto may = reader.may(id, action->alarm, *act, action->at); !may) return error_response(409, may.error().message);
+        if (parts_.pipeline.annotate(id, std::move(*action), added(respond))) return {};
+        return error_response(503, "too much waits to be stored: try again");
+    };
+    ask(asked, {}, question);
 }
 
 v1::RunState Api::current_run() const {

@@ -12,6 +12,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -49,8 +50,8 @@ class Api {
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& respond);
-    /// `respond` is called on whatever thread has the answer.
-    using RunQuestion = std::function<HttpResponse(archive::Reader&, archive::RunId, const QueryText&)>;
+    /// None: it will be given later. `respond` is called on whatever thread has the answer.
+    using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
     struct Route {
         std::string_view method; ///< GET answers HEAD, too
@@ -77,6 +78,8 @@ class Api {
     void control_rehearsal(const Asked& asked);
     void post_command(const Asked& asked);
     void post_sequence(const Asked& asked);
+    void post_alarm(const Asked& asked);
+    void post_note(const Asked& asked);
     // access_routes.cpp
     void session(const Asked& asked);
     void log_in(const Asked& asked);
@@ -94,8 +97,10 @@ class Api {
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answered on a query thread; 503 when too much waits.
     void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer);
-    void ask(const std::string& run, QueryText query, RunQuestion question, const Respond& respond);
-    v1::RunState current_run() const;
+    void ask(const Asked& asked, QueryText query, RunQuestion question);
+    /// The time on Earth in a run that goes on; none in others.
+    std::function<std::optional<Ert>(archive::RunId)> clock() const;
+    v1::RunState current_run() const; ///< with what only the stream knows; run 0: none since the server started
 
     Parts parts_;
     std::string dictionary_json_;

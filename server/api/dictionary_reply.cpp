@@ -47,7 +47,18 @@ const char* name_of(dictionary::ToneSet set) {
     return "spare";
 }
 
-void add_channel(const dictionary::Channel& channel, const dictionary::Packet* packet, v1::DictionaryReply& reply) {
+void add_limits(const dictionary::Alarms& alarms, const std::string& context, v1::DictionaryChannel& added) {
+    for (const auto& range : alarms.ranges) {
+        auto& limit = *added.add_limits();
+        limit.set_severity(telemetry::name_of(range.severity));
+        if (range.below) limit.set_below(*range.below);
+        if (range.above) limit.set_above(*range.above);
+        limit.set_context(context);
+    }
+}
+
+void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Channel& channel, const dictionary::Packet* packet,
+                 v1::DictionaryReply& reply) {
     auto& added = *reply.add_channels();
     added.set_id(channel.id.value);
     added.set_name(channel.name);
@@ -55,12 +66,9 @@ void add_channel(const dictionary::Channel& channel, const dictionary::Packet* p
     added.set_unit(channel.type.unit);
     added.set_text(channel.text);
     add_labels(channel.type, *added.mutable_labels());
-    for (const auto& range : channel.type.alarms.ranges) {
-        auto& limit = *added.add_limits();
-        limit.set_severity(telemetry::name_of(range.severity));
-        if (range.below) limit.set_below(*range.below);
-        if (range.above) limit.set_above(*range.above);
-    }
+    add_limits(channel.type.alarms, "", added);
+    for (const auto& [context, alarms] : channel.type.alarms.contexts)
+        add_limits(alarms, telemetry::context_text(dictionary, context), added);
     if (packet == nullptr) return;
     added.set_packet(packet->name);
     added.set_expected_rate_hz(packet->expected_rate_hz.value_or(0.0));
@@ -109,7 +117,7 @@ v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
             if (field.channel) carriers.emplace(*field.channel, &packet);
     for (const auto& channel : dictionary.channels) {
         const auto carrier = carriers.find(channel.id);
-        add_channel(channel, carrier == carriers.end() ? nullptr : carrier->second, reply);
+        add_channel(dictionary, channel, carrier == carriers.end() ? nullptr : carrier->second, reply);
     }
     for (const auto& command : dictionary.commands)
         add_command(dictionary, command, reply);

@@ -17,9 +17,16 @@ Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::
 QueryThreads::QueryThreads(std::vector<archive::Reader> readers) : readers_(std::move(readers)) {
     for (auto& reader : readers_)
         threads_.emplace_back([this, &reader] {
-            while (auto job = jobs_.pop())
-                (*job)(reader);
+            while (const auto asked = jobs_.pop())
+                answer(*asked, reader);
         });
+}
+
+void QueryThreads::answer(const Asked& asked, archive::Reader& reader) {
+    const auto deadline = std::chrono::steady_clock::now() + question_seconds_max;
+    reader.stop_when([deadline, gone = asked.gone] { return (gone && *gone) || std::chrono::steady_clock::now() > deadline; });
+    asked.job(reader);
+    reader.stop_when({});
 }
 
 QueryThreads::~QueryThreads() {
@@ -28,8 +35,8 @@ QueryThreads::~QueryThreads() {
         thread.join();
 }
 
-bool QueryThreads::ask(Job job) {
-    if (!jobs_.try_push(std::move(job))) return false;
+bool QueryThreads::ask(Job job, std::shared_ptr<std::atomic<bool>> gone) {
+    if (!jobs_.try_push({std::move(job), std::move(gone)})) return false;
     ++asked_;
     return true;
 }

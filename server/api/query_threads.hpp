@@ -5,8 +5,10 @@
 #include "server/rehearsal/bounded_queue.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -27,14 +29,22 @@ class QueryThreads {
                                                       const telemetry::OtherMission* other = nullptr);
     ~QueryThreads(); ///< does what waits, then ends
 
+    /// A question that takes longer, or whose asker has gone, is stopped: its reader then says stopped().
+    static constexpr std::chrono::seconds question_seconds_max{20}; ///< ours: proof() of a whole landing takes one
+
     /// False, and nothing done, when too much waits.
-    bool ask(Job job);
+    bool ask(Job job, std::shared_ptr<std::atomic<bool>> gone = {});
     std::uint64_t asked() const { return asked_; }
     std::size_t waiting() const { return jobs_.size(); }
 
   private:
     explicit QueryThreads(std::vector<archive::Reader> readers);
-    BoundedQueue<Job> jobs_{waiting_max};
+    struct Asked {
+        Job job;
+        std::shared_ptr<std::atomic<bool>> gone; ///< null: never told
+    };
+    static void answer(const Asked& asked, archive::Reader& reader);
+    BoundedQueue<Asked> jobs_{waiting_max};
     std::vector<archive::Reader> readers_;
     std::atomic<std::uint64_t> asked_{0};
     std::vector<std::thread> threads_;

@@ -52,25 +52,38 @@ Result<bool> flag_of(const QueryText& query, std::string_view name) {
     return Error{fmt::format("{}: '{}' is neither true nor false", name, text)};
 }
 
-HttpResponse run_itself(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse run_itself(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.run(run));
 }
 
 /// A row a sample; the reader of a spreadsheet or of a script wants no JSON.
 std::string csv_of(const v1::ChannelSeriesList& list) {
     std::string csv = "channel,unit,sclk_s,value,source\n";
-    for (const auto& series : list.channels())
+    for (const auto& series : list.channels()) {
+        const auto name = series.name().find(',') == std::string::npos ? series.name() : '"' + series.name() + '"'; // a formula may have commas
         for (int i = 0; i < series.sclk_size(); ++i)
-            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", series.name(), series.unit(), series.sclk(i),
+            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, series.unit(), series.sclk(i),
                            series.value(i), series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
+    }
     return csv;
 }
 
-HttpResponse channels(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+Result<v1::ChannelSeriesList> derived(archive::Reader& reader, archive::RunId run, const std::string& expression,
+                                      const archive::SeriesQuery& query) {
+    auto series = reader.derived(run, expression, query.range, query.points);
+    if (!series) return series.error();
+    v1::ChannelSeriesList list;
+    *list.add_channels() = std::move(*series);
+    return list;
+}
+
+HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run,
                       const QueryText& query) {
     archive::SeriesQuery series;
     series.channels = query.list("names");
-    if (series.channels.empty()) return error_response(400, "names: which channels? names=altitude_m,speed_mps");
+    const auto expression = query.text("expression");
+    if (expression && !series.channels.empty()) return error_response(400, "names and expression: one of them, not both");
+    if (!expression && series.channels.empty()) return error_response(400, "names: which channels? names=altitude_m,speed_mps");
     if (series.channels.size() > archive::channels_max)
         return error_response(
             400, fmt::format("names: {} channels, at most {} at once", series.channels.size(), archive::channels_max));
@@ -82,13 +95,13 @@ HttpResponse channels(const dictionary::Dictionary&, archive::Reader& reader, ar
     if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
     if (*points) series.points = static_cast<std::size_t>(**points);
     const auto format = query.text("format").value_or("json");
-    const auto result = reader.series(run, series);
+    const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
     if (format == "json" || !result) return answer(result);
     if (format != "csv") return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
     return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
 }
 
-HttpResponse packets(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
+HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::RunId run,
                      const QueryText& query) {
     archive::PacketQuery packets;
     packets.name = query.text("name");
@@ -97,7 +110,7 @@ HttpResponse packets(const dictionary::Dictionary& dictionary, archive::Reader& 
     if (*apid) {
         if (packets.name) return error_response(400, "apid and name: one of them, not both");
         std::vector<std::string> names;
-        for (const auto& packet : dictionary.packets)
+        for (const auto& packet : ground.dictionary.packets)
             if (packet.apid.value == **apid) names.push_back(packet.name);
         if (names.empty()) return error_response(400, fmt::format("apid: no packet has APID {}", **apid));
         if (names.size() > 1)
@@ -119,7 +132,7 @@ HttpResponse packets(const dictionary::Dictionary& dictionary, archive::Reader& 
     return answer(reader.packets(run, packets));
 }
 
-HttpResponse events(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run,
+HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
                     const QueryText& query) {
     archive::EventQuery events;
     events.levels = query.list("level");
@@ -152,11 +165,11 @@ bool is_decision(const dictionary::Dictionary& dictionary, std::string_view name
                                         [&](const dictionary::EnumValue& value) { return value.label == name; });
 }
 
-HttpResponse explanations(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
+HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive::RunId run,
                           const QueryText& query) {
     archive::ExplanationQuery explanations;
     explanations.decision = query.text("decision").value_or("");
-    if (!explanations.decision.empty() && !is_decision(dictionary, explanations.decision))
+    if (!explanations.decision.empty() && !is_decision(ground.dictionary, explanations.decision))
         return error_response(400, fmt::format("decision: flight explains none called '{}'", explanations.decision));
     const auto range = range_of(query);
     if (!range) return error_response(400, range.error().message);
@@ -164,6 +177,7 @@ HttpResponse explanations(const dictionary::Dictionary& dictionary, archive::Rea
     if (!page) return error_response(400, page.error().message);
     const auto duplicates = flag_of(query, "duplicates");
     if (!duplicates) return error_response(400, duplicates.error().message);
+    explanations.text = query.text("text").value_or("");
     explanations.range = *range;
     explanations.after = page->after;
     explanations.limit = page->limit;
@@ -171,21 +185,37 @@ HttpResponse explanations(const dictionary::Dictionary& dictionary, archive::Rea
     return answer(reader.explanations(run, explanations));
 }
 
-HttpResponse tones(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query);
     if (!range) return error_response(400, range.error().message);
     return answer(reader.tones(run, *range));
 }
 
-HttpResponse commands(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
-    return answer(reader.commands(run));
+HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    return answer(reader.commands(run, query.text("text").value_or("")));
 }
 
-HttpResponse timepoints(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+/// What happened to alarms; or how they stand now.
+HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    if (!page) return error_response(400, page.error().message);
+    const auto state = query.text("state");
+    if (!state) return answer(reader.alarms(run, page->after, page->limit));
+    if (*state != "current") return error_response(400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
+    return answer(reader.alarm_states(run, ground.now));
+}
+
+HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto page = page_of(query, 1'000, archive::rows_page_max);
+    if (!page) return error_response(400, page.error().message);
+    return answer(reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}));
+}
+
+HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.timepoints(run));
 }
 
-HttpResponse recording(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.recording(run));
 }
 
@@ -202,7 +232,7 @@ std::string csv_of(const v1::ProofReport& report) {
     return csv;
 }
 
-HttpResponse proof(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+HttpResponse proof(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto format = query.text("format").value_or("json");
     if (format != "json" && format != "csv")
         return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
@@ -211,12 +241,12 @@ HttpResponse proof(const dictionary::Dictionary&, archive::Reader& reader, archi
     return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
 }
 
-HttpResponse report(const dictionary::Dictionary&, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.as_flown(run));
 }
 
 /// The newest value of every channel at an instant: a series of one sample each.
-HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& reader, archive::RunId run,
+HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId run,
                    const QueryText& query) {
     const auto at = query.number("at");
     if (!at) return error_response(400, at.error().message);
@@ -224,7 +254,7 @@ HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& re
     if (!values) return error_response(400, values.error().message);
     v1::ChannelSeriesList list;
     for (const auto& value : *values) {
-        const auto& channel = dictionary.channels[value.channel.value];
+        const auto& channel = ground.dictionary.channels[value.channel.value];
         auto& series = *list.add_channels();
         series.set_id(channel.id.value);
         series.set_name(channel.name);
@@ -241,13 +271,15 @@ HttpResponse state(const dictionary::Dictionary& dictionary, archive::Reader& re
 
 const std::array questions{
     RunQuestionEntry{"", {}, run_itself},
-    RunQuestionEntry{"channels", {"names", "from", "to", "points", "format"}, channels},
+    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "format"}, channels},
     RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit"}, packets},
     RunQuestionEntry{"tones", {"from", "to"}, tones},
     RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates"}, events},
-    RunQuestionEntry{"commands", {}, commands},
+    RunQuestionEntry{"commands", {"text"}, commands},
+    RunQuestionEntry{"alarms", {"state", "after", "limit"}, alarms},
+    RunQuestionEntry{"notes", {"text", "after", "limit"}, notes},
     RunQuestionEntry{"timepoints", {}, timepoints},
-    RunQuestionEntry{"explanations", {"decision", "from", "to", "after", "limit", "duplicates"}, explanations},
+    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates"}, explanations},
     RunQuestionEntry{"recording", {}, recording},
     RunQuestionEntry{"proof", {"format"}, proof},
     RunQuestionEntry{"report", {}, report},

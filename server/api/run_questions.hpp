@@ -7,11 +7,17 @@
 
 namespace aeolis::server {
 
+/// What an answer may need besides the archive.
+struct Ground {
+    const dictionary::Dictionary& dictionary;
+    std::optional<Ert> now; ///< of a run that goes on
+};
+
 /// A question to one run: the last part of its path, the parameters it knows, and how it is answered.
 struct RunQuestionEntry {
     std::string_view name; ///< "events" of /api/v1/runs/{run}/events; "" for the run itself
     std::initializer_list<std::string_view> parameters;
-    HttpResponse (*answer)(const dictionary::Dictionary&, archive::Reader&, archive::RunId, const QueryText&);
+    HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
 /// Null when there is no such question.

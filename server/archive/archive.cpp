@@ -208,6 +208,31 @@ Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
     return transaction->commit();
 }
 
+Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
+    auto transaction = sqlite::Transaction::begin_write(state_->database);
+    if (!transaction) return transaction.error();
+    auto& last_key = state_->last_key;
+    last_key.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    auto found = last_key.step();
+    if (!found) return found.error();
+    const Sequence seq = last_key.is_null(0) ? 1 : sequence_of(last_key.integer(0)) + 1;
+    last_key.reset();
+    std::visit([seq](auto& record) { record.seq = seq; }, annotation);
+    Batch batch;
+    batch.first_seq = batch.last_seq = seq;
+    batch.add(annotation);
+    if (auto done = state_->rows.write(run, batch); !done) return done.error();
+    auto row = state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING run");
+    if (!row) return row.error();
+    row->bind(1, std::int64_t{run.value}).bind(2, number(seq));
+    auto updated = row->step();
+    if (!updated) return updated.error();
+    if (!*updated) return Error{"run " + std::to_string(run.value) + ": there is none that is over"};
+    row->reset();
+    if (auto done = transaction->commit(); !done) return done.error();
+    return annotation;
+}
+
 Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last_seq) {
     last_key.bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
     auto found = last_key.step();

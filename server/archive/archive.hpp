@@ -42,6 +42,8 @@ class Archive {
 
     /// All of it or none, durable when it returns.
     Result<void> append_audit(std::span<const AuditRecord> records);
+    /// Adds to a run that does not go on, as its last item; durable when it returns. @return with its number
+    Result<Annotation> annotate(RunId run, Annotation annotation);
 
     /// Runs that open() found cut off.
     const std::vector<RunId>& interrupted() const;

@@ -163,4 +163,42 @@ v1::Item to_item(const AlarmRecord& record) {
     return item;
 }
 
+v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& staleness = *item.mutable_staleness();
+    if (dictionary != nullptr) staleness.set_packet(dictionary->packets[record.packet].name);
+    staleness.set_stale(record.stale);
+    staleness.set_silent_s(record.silent_s);
+    staleness.set_expected_s(record.expected_s);
+    staleness.set_reason(record.reason);
+    staleness.set_ert(day_of_year_text(record.ert));
+    return item;
+}
+
+v1::Item to_item(const AlarmActionRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& action = *item.mutable_alarm_action();
+    action.set_alarm(record.alarm);
+    action.set_action(record.action);
+    if (record.until > record.at) action.set_until(day_of_year_text(record.until));
+    action.set_note(record.note);
+    action.set_by(record.by);
+    action.set_at(day_of_year_text(record.at));
+    return item;
+}
+
+v1::Item to_item(const NoteRecord& record) {
+    v1::Item item;
+    item.set_seq(record.seq);
+    auto& note = *item.mutable_note();
+    note.set_text(record.text);
+    note.set_by(record.by);
+    note.set_at(day_of_year_text(record.at));
+    note.set_written(record.written);
+    if (record.sclk_s) note.set_sclk(*record.sclk_s);
+    return item;
+}
+
 } // namespace aeolis::archive

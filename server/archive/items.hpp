@@ -21,5 +21,13 @@ v1::Item to_item(const FiringRecord& record);
 v1::Item to_item(const ExplanationRecord& record);
 v1::Item to_item(const LinkRecord& record);
 v1::Item to_item(const AlarmRecord& record);
+/// Without a dictionary the packet has no name.
+v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
+v1::Item to_item(const AlarmActionRecord& record);
+v1::Item to_item(const NoteRecord& record);
+
+inline v1::Item to_item(const Annotation& annotation) {
+    return std::visit([](const auto& record) { return to_item(record); }, annotation);
+}
 
 } // namespace aeolis::archive

@@ -3,6 +3,8 @@
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 
@@ -34,6 +36,25 @@ Result<Reader> Reader::open(const std::filesystem::path& file, const dictionary:
     if (!database) return database.error();
     if (auto done = check_for_reading(*database); !done) return done.error();
     return Reader(std::make_unique<State>(std::move(database).value(), dictionary, other));
+}
+
+void Reader::stop_when(std::function<bool()> stop) {
+    state_->database.stop_when(std::move(stop));
+}
+bool Reader::stopped() const {
+    return state_->database.stopped();
+}
+
+std::string search_words(std::string_view text) {
+    const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80; };
+    std::string words;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto begin = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), in_word);
+        const auto end = std::find_if_not(begin, text.end(), in_word);
+        if (begin != end) words += (words.empty() ? "\"" : " \"") + std::string(begin, end) + "\"*";
+        at = static_cast<std::size_t>(end - text.begin());
+    }
+    return words;
 }
 
 Result<Query> Reader::State::query(const char* sql) {
@@ -96,7 +117,7 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     if (!*found) return Error{"no run " + std::to_string(run.value)};
     if (row.text(0) != "interrupted")
         return Error{"run " + std::to_string(run.value) + " was not cut off: it is " + std::string(row.text(0))};
-    CutOffRun cut{run, std::string(row.text(1)), std::string(row.text(2)), static_cast<std::uint64_t>(row.integer(3)), 0, {}};
+    CutOffRun cut{run, std::string(row.text(1)), std::string(row.text(2)), static_cast<std::uint64_t>(row.integer(3)), 0, {}, {}};
     if (auto same = state_->same_dictionary({run, false, static_cast<std::uint16_t>(row.integer(4)), {}}); !same)
         return same.error();
     auto last = state_->last_seq(run);
@@ -108,8 +129,19 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     for (;;) {
         auto one = (*requests)->step();
         if (!one) return one.error();
-        if (!*one) return cut;
+        if (!*one) break;
         cut.requests.push_back({static_cast<std::uint64_t>((*requests)->integer(0)), std::string((*requests)->text(1))});
+    }
+    static constexpr char annotations_sql[] = "SELECT key FROM notes WHERE key BETWEEN ?1 AND ?2 UNION ALL"
+                                              " SELECT key FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
+    auto annotations = state_->query(annotations_sql);
+    if (!annotations) return annotations.error();
+    (*annotations)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    for (;;) {
+        auto one = (*annotations)->step();
+        if (!one) return one.error();
+        if (!*one) return cut;
+        cut.annotations.push_back(sequence_of((*annotations)->integer(0)));
     }
 }
 

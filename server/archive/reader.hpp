@@ -6,6 +6,7 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/audit.hpp"
 #include "server/archive/records.hpp"
+#include "telemetry/alarm_desk.hpp"
 #include "telemetry/other_mission.hpp"
 
 #include <array>
@@ -60,7 +61,7 @@ struct PacketQuery {
 struct EventQuery {
     SclkRange range;
     std::vector<std::string> levels; ///< empty: all
-    std::string text;                ///< part of name or text, any case; empty: all
+    std::string text;                ///< words of name or text, or their beginnings, in any order and case; empty: all
     bool duplicates = false;         ///< also those of the recording that were seen in real time
     Sequence after = 0;
     std::size_t limit = 1'000;
@@ -69,7 +70,14 @@ struct EventQuery {
 struct ExplanationQuery {
     SclkRange range;
     std::string decision; ///< empty: all
+    std::string text;     ///< words, as in EventQuery
     bool duplicates = false;
+    Sequence after = 0;
+    std::size_t limit = 1'000;
+};
+
+struct NoteQuery {
+    std::string text; ///< words, as in EventQuery
     Sequence after = 0;
     std::size_t limit = 1'000;
 };
@@ -98,6 +106,11 @@ class Reader {
     Reader& operator=(Reader&&) noexcept;
     ~Reader();
 
+    /// A question that is being answered ends with an Error soon after `stop` says so. Null: never.
+    void stop_when(std::function<bool()> stop);
+    /// Whether that has happened since.
+    bool stopped() const;
+
     /// All runs, newest first. A run that goes on is `running`; pace and clocks are the rehearsal's to fill in.
     Result<v1::RunList> runs();
     Result<v1::RunState> run(RunId run);
@@ -116,6 +129,10 @@ class Reader {
 
     /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
+    /// A formula of channels as one series, at the times of the first channel in it; of each other channel the newest
+    /// value up to then counts. Exact, or thinned to the least and the largest of equal intervals; takes the same memory
+    /// however many samples there are. What is undefined (NaN) is left out.
+    Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range, std::optional<std::size_t> points);
     /// All samples of the channels in a range, in order of SCLK, some thousands at a time; takes the same memory for a
     /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
@@ -127,7 +144,18 @@ class Reader {
     Result<v1::EventList> events(RunId run, const EventQuery& query);
     Result<v1::ToneList> tones(RunId run, SclkRange range);
     Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);
-    Result<v1::CommandList> commands(RunId run);
+    /// @param text  words, as in EventQuery, of a stage; empty: all commands
+    Result<v1::CommandList> commands(RunId run, const std::string& text = {});
+    /// What changed about alarms, and what was done about them, a page at a time.
+    Result<v1::AlarmList> alarms(RunId run, Sequence after, std::size_t limit);
+    /// All alarms that are not normal, the most severe first. Refused for a run of another dictionary.
+    /// @param now  on Earth; none: when the run's newest unit came
+    Result<v1::AlarmList> alarm_states(RunId run, std::optional<Ert> now);
+    /// An Error says why `act` may not be done about the alarm of that name.
+    Result<void> may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now);
+    /// When the run's newest unit came.
+    Result<Ert> newest_ert(RunId run);
+    Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
     Result<v1::TimepointList> timepoints(RunId run);
     Result<v1::RecordingSummary> recording(RunId run);
     /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
@@ -145,6 +173,7 @@ class Reader {
     Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
     Result<void> add_counters(RunId run, v1::ProofReport& report);
     Result<void> add_silences(RunId run, v1::AsFlownReport& report);
+    Result<telemetry::AlarmDesk> alarm_desk(RunId run, std::vector<v1::Item>& changes);
     std::unique_ptr<State> state_;
 };
 

@@ -41,6 +41,31 @@ Result<void> collect(Reader::State& reader, const char* sql, Page& page, Read re
     return {};
 }
 
+/// In order, and no more than is complete.
+void finish(Page& page) {
+    std::sort(page.items.begin(), page.items.end(), [](const auto& a, const auto& b) { return a.seq() < b.seq(); });
+    while (!page.items.empty() && page.items.back().seq() > page.through)
+        page.items.pop_back();
+    if (page.items.size() <= page.limit) return;
+    page.items.resize(page.limit);
+    page.through = page.items.back().seq();
+}
+
+template <typename Read>
+auto as_item(Read read) {
+    return [read](const sqlite::Statement& row) -> Result<v1::Item> { return to_item(read(row)); };
+}
+
+Result<void> collect_alarms(Reader::State& reader, const RunInfo& info, Page& page) {
+    const auto staleness = [words = reader.words_of(info)](const sqlite::Statement& row) -> Result<v1::Item> {
+        return to_item(row::staleness(row), words);
+    };
+    auto done = collect(reader, row::alarm_rows, page, as_item(row::alarm));
+    if (done) done = collect(reader, row::staleness_rows, page, staleness);
+    if (done) done = collect(reader, row::alarm_action_rows, page, as_item(row::alarm_action));
+    return done;
+}
+
 /// A unit's row stands for one or two items: itself and, sampled, the next number. The page may begin between them.
 Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& page, Reader::ItemKinds kinds) {
     auto rows = reader.query(row::unit_rows);
@@ -94,9 +119,6 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     Page page{run, after, *last, limit, {}};
     if (kinds.units || kinds.samples)
         if (auto done = collect_units(*state_, *info, page, kinds); !done) return done.error();
-    const auto as_item = [](auto read) {
-        return [read](const sqlite::Statement& row) -> Result<v1::Item> { return to_item(read(row)); };
-    };
     const auto explanation = [this](const sqlite::Statement& row) { return state_->explanation_item(row); };
     const auto tone = [this](const sqlite::Statement& row) { return state_->tone_item(row); };
     auto done = collect(*state_, row::event_rows, page, as_item(row::event));
@@ -105,17 +127,27 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     if (done) done = collect(*state_, row::firing_rows, page, as_item(row::firing));
     if (done) done = collect(*state_, row::explanation_rows, page, explanation);
     if (done) done = collect(*state_, row::link_rows, page, as_item(row::link));
-    if (done) done = collect(*state_, row::alarm_rows, page, as_item(row::alarm));
+    if (done) done = collect(*state_, row::note_rows, page, as_item(row::note));
+    if (done) done = collect_alarms(*state_, *info, page);
     if (!done) return done.error();
-
-    std::sort(page.items.begin(), page.items.end(), [](const auto& a, const auto& b) { return a.seq() < b.seq(); });
-    while (!page.items.empty() && page.items.back().seq() > page.through)
-        page.items.pop_back();
-    if (page.items.size() > limit) {
-        page.items.resize(limit);
-        page.through = page.items.back().seq();
-    }
+    finish(page);
     return ItemPage{std::move(page.items), page.through, page.through < *last};
+}
+
+Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limit) {
+    if (auto fits = check_limit(limit, rows_page_max); !fits) return fits.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    const auto info = state_->info(run);
+    if (!info) return info.error();
+    Page page{run, std::min(after, sequence_max - 1), sequence_max, limit, {}};
+    if (auto done = collect_alarms(*state_, *info, page); !done) return done.error();
+    finish(page);
+    v1::AlarmList list;
+    for (auto& item : page.items)
+        *list.add_changes() = std::move(item);
+    list.set_next_after(page.through == sequence_max ? 0 : page.through);
+    return list;
 }
 
 Result<v1::Item> Reader::State::tone_item(const sqlite::Statement& row) {

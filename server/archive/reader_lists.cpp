@@ -7,7 +7,7 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <set>
 
 namespace aeolis::archive {
 
@@ -24,22 +24,37 @@ std::string hex(std::span<const std::uint8_t> octets) {
     return text;
 }
 
-std::string lower(std::string_view text) {
-    std::string lowered(text);
-    for (char& c : lowered)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return lowered;
-}
+// The same questions, of those rows alone in which words are found: ?4.
+constexpr char found_events[] =
+    "SELECT key, unit, event, name, level, text, sclk, ert_us, source, duplicate FROM events WHERE key IN"
+    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
+constexpr char found_explanations[] =
+    "SELECT key, unit, sclk, decision, verdict, subject, text, source, duplicate FROM explanations WHERE key IN"
+    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
+constexpr char found_stages[] =
+    "SELECT key, command, name, stage, status, evidence, at_us, arguments, count FROM command_stages WHERE key IN"
+    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
+constexpr char found_notes[] = "SELECT key, text, author, at_us, written, sclk FROM notes WHERE key IN"
+                               " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
+
+/// What is asked for in words, as FTS5 wants it.
+struct Wanted {
+    explicit Wanted(const std::string& text) : asked(!text.empty()), words(search_words(text)) {}
+    bool asked;
+    std::string words;
+    bool nothing() const { return asked && words.empty(); } ///< only signs: no row has them
+};
 
 /// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
 /// more.
 template <typename Take>
-Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take) {
+Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take, const std::string& words = {}) {
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, item_key(run, std::min(after, sequence_max - 1) + 1)).bind(2, item_key(run, sequence_max));
     row.bind(3, static_cast<std::int64_t>(rows_scanned_max));
+    if (!words.empty()) row.bind(4, std::string_view(words));
     Sequence last = 0;
     for (std::size_t scanned = 0;; ++scanned) {
         auto found = row.step();
@@ -125,20 +140,19 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     if (const auto info = state_->info(run); !info) return info.error();
-    const auto text = lower(query.text);
+    const Wanted wanted(query.text);
     v1::EventList list;
-    const auto next = scan(*state_, row::event_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+    if (wanted.nothing()) return list;
+    const char* sql = wanted.asked ? found_events : row::event_rows;
+    const auto next = scan(*state_, sql, run, query.after, [&](const auto& row) -> Result<bool> {
         const auto event = row::event(row);
         if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
         if (!query.levels.empty() &&
             std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
             return false;
-        if (!text.empty() && lower(event.name).find(text) == std::string::npos &&
-            lower(event.text).find(text) == std::string::npos)
-            return false;
         *list.add_events() = to_item(event);
         return static_cast<std::size_t>(list.events_size()) == query.limit;
-    });
+    }, wanted.words);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
@@ -168,8 +182,10 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     if (const auto info = state_->info(run); !info) return info.error();
+    const Wanted wanted(query.text);
     v1::ExplanationList list;
-    const auto next = scan(*state_, row::explanation_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+    if (wanted.nothing()) return list;
+    const auto next = scan(*state_, wanted.asked ? found_explanations : row::explanation_rows, run, query.after, [&](const auto& row) -> Result<bool> {
         const auto record = row::explanation(row);
         if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
         if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
@@ -177,13 +193,30 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
         if (!item) return item.error();
         *list.add_explanations() = std::move(item).value();
         return static_cast<std::size_t>(list.explanations_size()) == query.limit;
-    });
+    }, wanted.words);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
 }
 
-Result<v1::CommandList> Reader::commands(RunId run) {
+Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    if (const auto info = state_->info(run); !info) return info.error();
+    const Wanted wanted(query.text);
+    v1::NoteList list;
+    if (wanted.nothing()) return list;
+    const auto next = scan(*state_, wanted.asked ? found_notes : row::note_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+        *list.add_notes() = to_item(row::note(row));
+        return static_cast<std::size_t>(list.notes_size()) == query.limit;
+    }, wanted.words);
+    if (!next) return next.error();
+    list.set_next_after(*next);
+    return list;
+}
+
+Result<v1::CommandList> Reader::commands(RunId run, const std::string& text) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     if (const auto info = state_->info(run); !info) return info.error();
@@ -200,6 +233,17 @@ Result<v1::CommandList> Reader::commands(RunId run) {
         return false;
     });
     if (!done) return done.error();
+    if (const Wanted wanted(text); wanted.asked) {
+        std::set<std::uint64_t> found;
+        if (!wanted.nothing()) {
+            const auto looked = scan(*state_, found_stages, run, 0, [&](const auto& row) -> Result<bool> {
+                found.insert(row::stage(row).command);
+                return false;
+            }, wanted.words);
+            if (!looked) return looked.error();
+        }
+        std::erase_if(histories, [&](const auto& history) { return !found.contains(history.first); });
+    }
     static constexpr char octets_sql[] = "SELECT command, octets FROM commands WHERE run = ?1";
     auto rows = state_->query(octets_sql);
     if (!rows) return rows.error();
@@ -209,7 +253,8 @@ Result<v1::CommandList> Reader::commands(RunId run) {
         auto found = row.step();
         if (!found) return found.error();
         if (!*found) break;
-        histories[static_cast<std::uint64_t>(row.integer(0))].set_octets(hex(row.octets(1)));
+        if (const auto history = histories.find(static_cast<std::uint64_t>(row.integer(0))); history != histories.end())
+            history->second.set_octets(hex(row.octets(1)));
     }
     v1::CommandList list;
     for (auto& [number, history] : histories)

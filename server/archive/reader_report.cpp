@@ -63,6 +63,11 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));
     report.set_tones_erased(static_cast<std::uint64_t>(heard->tones_size() - decoded));
     if (auto done = add_silences(run, report); !done) return done.error();
+    NoteQuery all;
+    all.limit = rows_page_max;
+    auto written = notes(run, all);
+    if (!written) return written.error();
+    *report.mutable_notes() = std::move(*written->mutable_notes());
     *report.mutable_run() = std::move(*state);
     *report.mutable_commands() = std::move(*sent->mutable_commands());
     *report.mutable_proof() = std::move(*proven);

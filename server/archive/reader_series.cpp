@@ -1,14 +1,17 @@
+#include "server/archive/expression.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_query.hpp"
 #include "server/archive/schema.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace aeolis::archive {
 
 namespace {
 
+constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON
 constexpr std::size_t window_samples = 100'000; ///< ours: that each_sample has in hand; at most four times as many
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
@@ -151,12 +154,111 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
     const auto channels = find_channels(state_->dictionary, query.channels);
     if (!channels) return channels.error();
     v1::ChannelSeriesList list;
+    std::size_t given = 0;
     for (const auto* channel : *channels) {
         auto series = one_series(*state_, *info, *channel, *range, query.points);
         if (!series) return series.error();
+        given += static_cast<std::size_t>(series->sclk_size());
+        if (given > exact_samples_of_all_max)
+            return Error{"the channels have more than " + std::to_string(exact_samples_of_all_max) +
+                         " samples in the range: ask for points, or less; aeolis export gives any number"};
         *list.add_channels() = std::move(series).value();
     }
     return list;
+}
+
+namespace {
+
+/// Values at ascending times, as they are, or the least and the largest of each of equal intervals.
+class Thinning {
+  public:
+    /// @param points  none: all values; an Error when there are more than an exact answer may have
+    Thinning(ClosedRange range, std::optional<std::size_t> points) : range_(range), intervals_(points ? *points / 2 : 0) {}
+
+    Result<void> add(const Sample& sample) {
+        ++count_;
+        if (intervals_ == 0) {
+            if (count_ > exact_samples_max)
+                return Error{"the range holds more than " + std::to_string(exact_samples_max) + " values: ask for points, or less"};
+            all_.push_back(sample);
+            return {};
+        }
+        const double part = (sample.sclk_s - range_.from_s) / std::max(range_.to_s - range_.from_s, seconds_per_tick);
+        const auto interval = std::min(static_cast<std::size_t>(part * static_cast<double>(intervals_)), intervals_ - 1);
+        if (interval != interval_ || !least_) flush();
+        interval_ = interval;
+        if (!least_ || sample.value < least_->value) least_ = sample;
+        if (!largest_ || sample.value > largest_->value) largest_ = sample;
+        return {};
+    }
+    /// After the last value.
+    std::span<const Sample> points() {
+        flush();
+        return all_;
+    }
+    std::uint64_t count() const { return count_; }
+
+  private:
+    void flush() {
+        if (!least_) return;
+        const bool least_first = least_->sclk_s <= largest_->sclk_s;
+        all_.push_back(least_first ? *least_ : *largest_);
+        if (least_->sclk_s != largest_->sclk_s) all_.push_back(least_first ? *largest_ : *least_);
+        least_.reset();
+        largest_.reset();
+    }
+    ClosedRange range_;
+    std::size_t intervals_, interval_ = 0;
+    std::uint64_t count_ = 0;
+    std::optional<Sample> least_, largest_; ///< of the interval
+    std::vector<Sample> all_;
+};
+
+} // namespace
+
+Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, const SclkRange& asked, std::optional<std::size_t> points) {
+    auto expression = Expression::parse(text);
+    if (!expression) return expression.error();
+    if (points && (*points < 2 || *points > thinned_points_max))
+        return Error{"points " + std::to_string(*points) + " is not 2 … " + std::to_string(thinned_points_max)};
+    const auto range = closed(asked);
+    if (!range) return range.error();
+    const auto& names = expression->channels();
+    const auto channels = find_channels(state_->dictionary, names);
+    if (!channels) return channels.error();
+    ClosedRange within = *range;
+    {
+        auto snapshot = sqlite::Transaction::begin_read(state_->database);
+        if (!snapshot) return snapshot.error();
+        const auto info = state_->info(run);
+        if (!info) return info.error();
+        const auto span = sample_span(*state_, *info);
+        if (!span) return span.error();
+        within = {std::max(within.from_s, span->range.from_s), std::min(within.to_s, span->range.to_s)};
+    }
+    // The first channel's sample comes last of those of one instant: by then all others are known.
+    const std::vector<std::string> in_order(names.rbegin(), names.rend());
+    std::vector<double> values(names.size(), std::numeric_limits<double>::quiet_NaN());
+    Thinning thinning(within, points);
+    const auto take = [&](std::span<const ChannelValue> samples) -> Result<void> {
+        for (const ChannelValue& sample : samples) {
+            for (std::size_t i = 0; i < names.size(); ++i)
+                if ((*channels)[i]->id == sample.channel) values[i] = sample.value;
+            if (sample.channel != channels->front()->id || std::ranges::any_of(values, [](double value) { return std::isnan(value); })) continue;
+            const double value = expression->value(values);
+            if (std::isnan(value)) continue;
+            if (auto done = thinning.add({sample.sclk.seconds, value, sample.source}); !done) return done;
+        }
+        return {};
+    };
+    if (auto done = each_sample(run, in_order, asked, take); !done) return done.error();
+    v1::ChannelSeries series;
+    series.set_name(text);
+    const auto given = thinning.points();
+    series.set_samples(thinning.count());
+    series.set_thinned(given.size() < thinning.count());
+    write(series, given);
+    return series;
 }
 
 Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {

@@ -44,6 +44,10 @@ Result<ClosedRange> closed(const SclkRange& range);
 /// 1 … `most`, or an Error that says so.
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
+/// What FTS5 looks for when people type words: each as it begins, all of them, whatever signs stand between. Empty when
+/// there is no word in it.
+std::string search_words(std::string_view text);
+
 struct Sample {
     double sclk_s = 0.0;
     double value = 0.0;

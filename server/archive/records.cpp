@@ -15,6 +15,13 @@ void Extremes::add(const Extremes& later) {
     defined += later.defined;
 }
 
+void Batch::add(Annotation annotation) {
+    if (auto* note = std::get_if<NoteRecord>(&annotation))
+        notes.push_back(std::move(*note));
+    else
+        alarm_actions.push_back(std::move(std::get<AlarmActionRecord>(annotation)));
+}
+
 void Batch::clear() {
     first_seq = last_seq = 0;
     octets.clear();
@@ -28,6 +35,9 @@ void Batch::clear() {
     explanations.clear();
     links.clear();
     alarms.clear();
+    staleness.clear();
+    alarm_actions.clear();
+    notes.clear();
     segments.clear();
     requests.clear();
     pyramid.clear();

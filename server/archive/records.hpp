@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 // What the archive keeps, as plain values: one struct a table. A batch of them is committed whole or not at all.
@@ -137,6 +138,32 @@ struct AlarmRecord {
     std::string limit;
 };
 
+/// A packet that should come in real time and does not, or comes again.
+struct StalenessRecord {
+    Sequence seq = 0;
+    std::uint16_t packet = 0; ///< index in the dictionary's packets
+    bool stale = false;
+    double silent_s = 0.0, expected_s = 0.0;
+    std::string reason;
+    Ert ert;
+};
+
+/// What someone did about an alarm, by the alarm's name.
+struct AlarmActionRecord {
+    Sequence seq = 0;
+    std::string alarm, action, note, by;
+    Ert at, until; ///< `until` of shelve only
+};
+
+/// A line of the shift log, or a remark at an instant.
+struct NoteRecord {
+    Sequence seq = 0;
+    std::string text, by;
+    Ert at;
+    std::string written; ///< wall clock, ISO 8601
+    std::optional<double> sclk_s;
+};
+
 inline constexpr std::size_t segment_samples = 1024; ///< of a full segment; limits.md
 
 /// Samples of one packet and source, column by column. Written once, when full or when the run ends: only the last of a
@@ -221,7 +248,11 @@ struct CutOffRun {
     std::uint64_t seed = 0;
     Sequence last_seq = 0; ///< durable, and perhaps published
     std::vector<RequestRecord> requests; ///< as they were taken
+    std::vector<Sequence> annotations;   ///< items that people made: they do not come again by flying
 };
+
+/// What a person adds to a run: to the one that goes on, or to one that is over.
+using Annotation = std::variant<NoteRecord, AlarmActionRecord>;
 
 /// What becomes durable together.
 struct Batch {
@@ -237,6 +268,9 @@ struct Batch {
     std::vector<ExplanationRecord> explanations;
     std::vector<LinkRecord> links;
     std::vector<AlarmRecord> alarms;
+    std::vector<StalenessRecord> staleness;
+    std::vector<AlarmActionRecord> alarm_actions;
+    std::vector<NoteRecord> notes;
     std::vector<SegmentRecord> segments;
     std::vector<RequestRecord> requests;
     std::vector<PyramidRecord> pyramid;
@@ -247,6 +281,7 @@ struct Batch {
     bool empty() const {
         return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && !end;
     }
+    void add(Annotation annotation);
     void clear(); ///< keeps capacity
 };
 

@@ -141,4 +141,18 @@ AlarmRecord alarm(const sqlite::Statement& row) {
             text(row, 6)};
 }
 
+StalenessRecord staleness(const sqlite::Statement& row) {
+    return {seq(row),    static_cast<std::uint16_t>(row.integer(1)), row.integer(2) != 0, row.real(3), row.real(4),
+            text(row, 5), Ert{row.integer(6)}};
+}
+
+AlarmActionRecord alarm_action(const sqlite::Statement& row) {
+    return {seq(row), text(row, 1), text(row, 2), text(row, 3), text(row, 4), Ert{row.integer(5)}, Ert{row.integer(6)}};
+}
+
+NoteRecord note(const sqlite::Statement& row) {
+    return {seq(row), text(row, 1), text(row, 2), Ert{row.integer(3)}, text(row, 4),
+            row.is_null(5) ? std::nullopt : std::optional(row.real(5))};
+}
+
 } // namespace aeolis::archive::row

@@ -53,4 +53,16 @@ inline constexpr char alarm_rows[] = "SELECT key, unit, channel, severity, value
                                      " FROM alarms WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 AlarmRecord alarm(const sqlite::Statement& row);
 
+inline constexpr char staleness_rows[] = "SELECT key, packet, stale, silent_s, expected_s, reason, ert_us"
+                                         " FROM staleness WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+StalenessRecord staleness(const sqlite::Statement& row);
+
+inline constexpr char alarm_action_rows[] = "SELECT key, alarm, action, note, author, at_us, until_us"
+                                            " FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+AlarmActionRecord alarm_action(const sqlite::Statement& row);
+
+inline constexpr char note_rows[] = "SELECT key, text, author, at_us, written, sclk"
+                                    " FROM notes WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+NoteRecord note(const sqlite::Statement& row);
+
 } // namespace aeolis::archive::row

@@ -46,6 +46,10 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::condition_, "INSERT INTO explanation_conditions VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::link_, "INSERT INTO link_changes VALUES (?,?,?,?,?)"},
         {&RowWriter::alarm_, "INSERT INTO alarms VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::staleness_, "INSERT INTO staleness VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::alarm_action_, "INSERT INTO alarm_actions VALUES (?,?,?,?,?,?,?)"},
+        {&RowWriter::note_, "INSERT INTO notes VALUES (?,?,?,?,?,?)"},
+        {&RowWriter::search_, add_to_search_sql},
         {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
         {&RowWriter::segment_, "INSERT INTO segments (segment, run, packet, source, position, first_unit, last_unit,"
                                " samples, first_sclk, last_sclk, sclk, packed) VALUES (?,?,?,?,?,?,?,?,?,?,?,1)"},
@@ -76,6 +80,13 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.explanations, [&](const auto& r) { return explanation(run, r); }); !done) return done;
     if (auto done = each(batch.links, [&](const auto& r) { return link(run, r); }); !done) return done;
     if (auto done = each(batch.alarms, [&](const auto& r) { return alarm(run, r); }); !done) return done;
+    if (auto done = each(batch.staleness, [&](const auto& r) { return staleness(run, r); }); !done) return done;
+    if (auto done = each(batch.alarm_actions, [&](const auto& r) { return alarm_action(run, r); }); !done) return done;
+    if (auto done = each(batch.notes, [&](const auto& r) { return note(run, r); }); !done) return done;
+    if (!batch.events.empty() || !batch.explanations.empty() || !batch.stages.empty() || !batch.notes.empty() || !batch.alarm_actions.empty()) {
+        search_.bind(1, item_key(run, batch.first_seq)).bind(2, item_key(run, batch.last_seq));
+        if (auto done = search_.run(); !done) return done;
+    }
     if (!batch.segments.empty()) {
         auto next = next_number(run, segment_number_);
         if (!next) return next.error();
@@ -253,6 +264,41 @@ Result<void> RowWriter::alarm(RunId run, const AlarmRecord& record) {
     bind_number(alarm_, 5, record.value);
     alarm_.bind(6, record.sclk.seconds).bind(7, std::string_view(record.limit));
     return alarm_.run();
+}
+
+Result<void> RowWriter::staleness(RunId run, const StalenessRecord& record) {
+    staleness_.bind(1, item_key(run, record.seq))
+        .bind(2, std::int64_t{record.packet})
+        .bind(3, std::int64_t{record.stale})
+        .bind(4, record.silent_s)
+        .bind(5, record.expected_s)
+        .bind(6, std::string_view(record.reason))
+        .bind(7, record.ert.microseconds);
+    return staleness_.run();
+}
+
+Result<void> RowWriter::alarm_action(RunId run, const AlarmActionRecord& record) {
+    alarm_action_.bind(1, item_key(run, record.seq))
+        .bind(2, std::string_view(record.alarm))
+        .bind(3, std::string_view(record.action))
+        .bind(4, std::string_view(record.note))
+        .bind(5, std::string_view(record.by))
+        .bind(6, record.at.microseconds)
+        .bind(7, record.until.microseconds);
+    return alarm_action_.run();
+}
+
+Result<void> RowWriter::note(RunId run, const NoteRecord& record) {
+    note_.bind(1, item_key(run, record.seq))
+        .bind(2, std::string_view(record.text))
+        .bind(3, std::string_view(record.by))
+        .bind(4, record.at.microseconds)
+        .bind(5, std::string_view(record.written));
+    if (record.sclk_s)
+        note_.bind(6, *record.sclk_s);
+    else
+        note_.bind_null(6);
+    return note_.run();
 }
 
 Result<std::int64_t> RowWriter::next_number(RunId run, sqlite::Statement& largest) {

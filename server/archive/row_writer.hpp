@@ -26,6 +26,9 @@ class RowWriter {
     Result<void> explanation(RunId run, const ExplanationRecord& record);
     Result<void> link(RunId run, const LinkRecord& record);
     Result<void> alarm(RunId run, const AlarmRecord& record);
+    Result<void> staleness(RunId run, const StalenessRecord& record);
+    Result<void> alarm_action(RunId run, const AlarmActionRecord& record);
+    Result<void> note(RunId run, const NoteRecord& record);
     /// Of a run's next segment or block, by the question for the largest so far.
     static Result<std::int64_t> next_number(RunId run, sqlite::Statement& largest);
     Result<void> segment(RunId run, const SegmentRecord& record, std::int64_t number);
@@ -36,6 +39,7 @@ class RowWriter {
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
     sqlite::Statement unit_, event_, tone_, command_, stage_, firing_, explanation_, condition_, link_, alarm_,
+        staleness_, alarm_action_, note_, search_,
         segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_, link_word_, totals_, link_totals_,
         request_, tone_evidence_, tone_likelihood_;
     ColumnCodec codec_;

@@ -15,7 +15,10 @@ SELECT max(key) FROM (
     UNION ALL SELECT max(key) FROM timepoint_firings WHERE key BETWEEN ?1 AND ?2
     UNION ALL SELECT max(key) FROM explanations WHERE key BETWEEN ?1 AND ?2
     UNION ALL SELECT max(key) FROM link_changes WHERE key BETWEEN ?1 AND ?2
-    UNION ALL SELECT max(key) FROM alarms WHERE key BETWEEN ?1 AND ?2)
+    UNION ALL SELECT max(key) FROM alarms WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM staleness WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM alarm_actions WHERE key BETWEEN ?1 AND ?2
+    UNION ALL SELECT max(key) FROM notes WHERE key BETWEEN ?1 AND ?2)
 )sql";
 
 namespace {
@@ -227,6 +230,50 @@ CREATE TABLE audit (
     detail TEXT NOT NULL, outcome TEXT NOT NULL, hash TEXT NOT NULL) STRICT;
 )sql",
      nullptr},
+    // "search" indexes the words of search_text and keeps no text itself: rows leave it before they leave their table.
+    {5, R"sql(
+CREATE TABLE staleness (
+    key INTEGER PRIMARY KEY, packet INTEGER NOT NULL, stale INTEGER NOT NULL, silent_s REAL NOT NULL,
+    expected_s REAL NOT NULL, reason TEXT NOT NULL, ert_us INTEGER NOT NULL) STRICT;
+CREATE TABLE alarm_actions (
+    key INTEGER PRIMARY KEY, alarm TEXT NOT NULL, action TEXT NOT NULL, note TEXT NOT NULL, author TEXT NOT NULL,
+    at_us INTEGER NOT NULL, until_us INTEGER NOT NULL) STRICT;
+CREATE TABLE notes (
+    key INTEGER PRIMARY KEY, text TEXT NOT NULL, author TEXT NOT NULL, at_us INTEGER NOT NULL, written TEXT NOT NULL,
+    sclk REAL) STRICT;
+CREATE VIEW staleness_log AS
+    SELECT s.key >> 40 AS run, s.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', s.ert_us / 1e6 + 946728000, 'unixepoch') AS ert, p.name AS packet, s.stale,
+           s.silent_s, s.expected_s, s.reason
+    FROM staleness s JOIN runs r ON r.run = s.key >> 40
+    JOIN dictionary_packets p ON p.dictionary = r.dictionary AND p.packet = s.packet;
+CREATE VIEW alarm_action_log AS
+    SELECT a.key >> 40 AS run, a.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', a.at_us / 1e6 + 946728000, 'unixepoch') AS at, a.alarm, a.action, a.author, a.note,
+           CASE WHEN a.until_us > a.at_us THEN strftime('%Y-%jT%H:%M:%f', a.until_us / 1e6 + 946728000, 'unixepoch') END AS until
+    FROM alarm_actions a;
+CREATE VIEW shift_log AS
+    SELECT n.key >> 40 AS run, n.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', n.at_us / 1e6 + 946728000, 'unixepoch') AS at, n.written, n.author, n.sclk,
+           n.sclk - r.entry_sclk AS e_s, n.text
+    FROM notes n JOIN runs r ON r.run = n.key >> 40;
+CREATE VIEW search_text AS
+    SELECT key, name || ' ' || text AS text FROM events
+    UNION ALL SELECT key, decision || ' ' || verdict || ' ' || text FROM explanations
+    UNION ALL SELECT key, name || ' ' || stage || ' ' || status || ' ' || evidence || ' ' || arguments FROM command_stages
+    UNION ALL SELECT key, author || ' ' || text FROM notes
+    UNION ALL SELECT key, alarm || ' ' || action || ' ' || author || ' ' || note FROM alarm_actions;
+CREATE VIRTUAL TABLE search USING fts5(text, content = 'search_text', content_rowid = 'key');
+INSERT INTO search (search) VALUES ('rebuild');
+)sql",
+     R"sql(
+CREATE TEMP TABLE staleness (
+    key INTEGER PRIMARY KEY, packet INTEGER, stale INTEGER, silent_s REAL, expected_s REAL, reason TEXT, ert_us INTEGER);
+CREATE TEMP TABLE alarm_actions (
+    key INTEGER PRIMARY KEY, alarm TEXT, action TEXT, note TEXT, author TEXT, at_us INTEGER, until_us INTEGER);
+CREATE TEMP TABLE notes (key INTEGER PRIMARY KEY, text TEXT, author TEXT, at_us INTEGER, written TEXT, sclk REAL);
+CREATE VIRTUAL TABLE temp.search USING fts5(text, content = '');
+)sql"},
 };
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
@@ -236,7 +283,9 @@ constexpr char by_segment[] =
     "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF OR key IN (SELECT c.key FROM segments s JOIN segment_columns c"
     " ON c.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535 WHERE s.run = ?1)";
 constexpr char by_block[] = "key BETWEEN ?1 << 39 AND (?1 << 39) + 0x7FFFFFFFFF";
+constexpr char by_rowid[] = "rowid BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 constexpr RunTable tables_of_runs[] = {
+    {"search", by_rowid, false},
     {"segment_columns", by_segment, true},
     {"segments", by_run, true},
     {"pyramid_columns", by_block, true},
@@ -255,6 +304,9 @@ constexpr RunTable tables_of_runs[] = {
     {"commands", by_run, false},
     {"link_changes", by_key, false},
     {"link_totals", by_run, false},
+    {"staleness", by_key, false},
+    {"alarm_actions", by_key, false},
+    {"notes", by_key, false},
     {"requests", by_run, false},
     {"run_solution", by_run, false},
     {"runs", by_run, false},

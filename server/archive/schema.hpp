@@ -45,6 +45,11 @@ struct RunTable {
 /// In an order in which they can be emptied. All tables but those of dictionaries and words.
 extern const std::span<const RunTable> run_tables;
 
+/// Puts the words of items into the index that finds them (the table "search"), as SQL over ?1, ?2 = their first and last
+/// key. They must not be in it already.
+inline constexpr char add_to_search_sql[] =
+    "INSERT INTO search (rowid, text) SELECT key, text FROM search_text WHERE key BETWEEN ?1 AND ?2";
+
 /// The last sequence number of each of the tables, as SQL over ?1 = item_key(run, 0), ?2 = item_key(run, max).
 extern const char* const last_key_sql;
 

@@ -11,6 +11,7 @@ namespace {
 
 /// A reader never waits; a writer only for a checkpoint of another connection.
 constexpr int busy_timeout_ms = 250;
+constexpr int operations_between_looks = 1000; ///< of SQLite's machine: some 20 us
 
 } // namespace
 
@@ -160,6 +161,23 @@ Result<void> Database::copy_to(Database& empty) const {
     const int finished = sqlite3_backup_finish(backup);
     if (stepped == SQLITE_DONE && finished == SQLITE_OK) return {};
     return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped)};
+}
+
+void Database::stop_when(std::function<bool()> stop) {
+    stop_ = std::make_unique<Stop>(Stop{std::move(stop), false});
+    const auto look = [](void* given) {
+        auto& asked = *static_cast<Stop*>(given);
+        asked.happened = asked.happened || asked.wanted();
+        return asked.happened ? 1 : 0;
+    };
+    if (stop_->wanted)
+        sqlite3_progress_handler(database_.get(), operations_between_looks, look, stop_.get());
+    else
+        sqlite3_progress_handler(database_.get(), 0, nullptr, nullptr);
+}
+
+bool Database::stopped() const {
+    return stop_ != nullptr && stop_->happened;
 }
 
 bool Database::autocommit() const {

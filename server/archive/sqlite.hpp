@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -66,6 +67,11 @@ class Database {
     /// All of this database, as it is now, into an empty one. Writers of this one go on meanwhile.
     Result<void> copy_to(Database& empty) const;
 
+    /// From now on what runs here ends with an Error soon after `stop` says so. Null: never.
+    void stop_when(std::function<bool()> stop);
+    /// Whether that has happened since.
+    bool stopped() const;
+
     /// False while a transaction is open.
     bool autocommit() const;
     Error error(std::string_view doing) const;
@@ -76,7 +82,12 @@ class Database {
     struct Close {
         void operator()(sqlite3* database) const;
     };
+    struct Stop {
+        std::function<bool()> wanted;
+        bool happened = false;
+    };
     std::string file_;
+    std::unique_ptr<Stop> stop_; ///< SQLite holds its address
     std::unique_ptr<sqlite3, Close> database_;
 };
 

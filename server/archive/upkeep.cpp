@@ -12,12 +12,15 @@ namespace aeolis::archive {
 
 namespace {
 
-/// Every number that an item of the run has.
-std::string item_keys_sql(const std::string& schema) {
+/// Every number that an item of the run has. An archive that is only read has the tables of its own schema.
+std::string item_keys_sql(const std::string& schema, bool since_five) {
     std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " + schema +
                       "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
     for (const char* table : {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes", "alarms"})
         sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
+    if (since_five)
+        for (const char* table : {"staleness", "alarm_actions", "notes"})
+            sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
     return sql;
 }
 
@@ -130,8 +133,11 @@ Result<std::vector<std::string>> integrity_faults(sqlite::Database& database) {
 }
 
 Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema, std::size_t most) {
+    auto notes = database.integer_of(("SELECT count(*) FROM " + schema + "sqlite_schema WHERE name = 'notes'").c_str());
+    if (!notes) return notes.error();
+    const bool since_five = *notes != 0;
     const std::string sql = "SELECT before, key FROM (SELECT lag(key, 1, ?1) OVER (ORDER BY key) AS before, key FROM (" +
-                            item_keys_sql(schema) + ")) WHERE key <> before + 1 LIMIT ?3";
+                            item_keys_sql(schema, since_five) + ")) WHERE key <> before + 1 LIMIT ?3";
     auto rows = database.prepare(sql.c_str());
     if (!rows) return rows.error();
     rows->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, static_cast<std::int64_t>(most));
@@ -148,7 +154,7 @@ Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, Run
             faults.push_back(of_run + "no item has the number" + (next == before + 2 ? " " : "s ") + std::to_string(before + 1) +
                              (next == before + 2 ? "" : " to " + std::to_string(next - 1)));
     }
-    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema) + ")) FROM " + schema +
+    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema, since_five) + ")) FROM " + schema +
                                   "runs WHERE run = ?3 AND last_seq IS NOT NULL")
                                      .c_str());
     if (!last) return last.error();

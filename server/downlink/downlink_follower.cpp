@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::chrono::milliseconds connect_limit{10'000}; // ours
 constexpr std::chrono::milliseconds receive_limit{1'000};
+constexpr std::int64_t pass_interval_us = 1'000'000;
 constexpr std::int64_t unix_to_2000_s = 946'728'000; // 1970-01-01 to 2000-01-01T12:00:00
 
 Ert now_on_earth() {
@@ -92,6 +93,7 @@ void DownlinkFollower::receive_until_end() {
             stop_ = true;
             return;
         }
+        pass();
         if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
         take(std::span{piece}.first(received.octets));
@@ -153,6 +155,16 @@ void DownlinkFollower::deliver_packets() {
     if (delivery.entries.empty()) return;
     packets_ += delivery.entries.size();
     wait_ = settings_.retry_first;
+    if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
+}
+
+/// Time goes on, also while nothing comes.
+void DownlinkFollower::pass() {
+    const Ert now = now_on_earth();
+    if (now.microseconds - passed_.microseconds < pass_interval_us) return;
+    passed_ = now;
+    Delivery delivery;
+    delivery.entries.emplace_back(pipeline::EarthTime{now});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 

@@ -51,6 +51,7 @@ class DownlinkFollower {
     void take(std::span<const std::uint8_t> octets);
     bool recognise(std::span<const std::uint8_t> octets);
     void end_of_stream();
+    void pass();
     void deliver_packets();
     void say(bool up, const std::string& reason);
     v1::RunState state(const std::string& word) const;
@@ -67,6 +68,7 @@ class DownlinkFollower {
     std::size_t tried_octets_ = 0;
     std::string said_;                    ///< so that a fault that lasts is said once
     std::uint64_t packets_ = 0;
+    Ert passed_; ///< until then time has been told
     std::chrono::milliseconds wait_; ///< before the next attempt to connect; short again when packets have come
     bool stop_ = false, lost_ = false;
     std::thread thread_;

@@ -2,7 +2,9 @@
 
 #include "server/access/access.hpp"
 
+#include <atomic>
 #include <functional>
+#include <memory>
 #include <string>
 
 namespace aeolis::server {
@@ -13,6 +15,7 @@ struct HttpRequest {
     std::string query; ///< as it stands after '?', still percent-encoded
     std::string body;
     Credentials credentials{};
+    std::shared_ptr<std::atomic<bool>> gone{}; ///< true once who asked has left: what still works on it may stop; null: never told
 };
 
 struct HttpResponse {

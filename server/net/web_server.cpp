@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
@@ -25,6 +26,7 @@
 #include <deque>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <sys/socket.h>
 
 namespace aeolis::server {
 namespace {
@@ -97,6 +99,16 @@ Response error_reply(const Request& request, http::status status, const std::str
     response.body() = to_json(reply);
     response.prepare_payload();
     return response;
+}
+
+/// True once the peer has closed. What it sends meanwhile is left to be read; over TLS its farewell is such a thing, and not seen.
+std::shared_ptr<std::atomic<bool>> watch_peer(Socket& socket) {
+    auto gone = std::make_shared<std::atomic<bool>>(false);
+    socket.async_wait(Socket::wait_read, [gone, descriptor = socket.native_handle()](error_code error) {
+        char first = 0;
+        if (!error && ::recv(descriptor, &first, 1, MSG_PEEK | MSG_DONTWAIT) == 0) *gone = true;
+    });
+    return gone;
 }
 
 /// Of certificate and key, or what is wrong with them; none: no TLS.
@@ -297,8 +309,9 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
             lowest.expires_never();
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
             HttpRequest asked{std::string{plain(request.method_string())}, target->path(),
-                              std::string{target->encoded_query()}, std::move(request.body()), std::move(credentials)};
+                              std::string{target->encoded_query()}, std::move(request.body()), std::move(credentials), watch_peer(lowest.socket())};
             auto answered = co_await answer(std::move(asked));
+            lowest.socket().cancel(error); // the watch on the peer: nothing else waits
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
             response.set(http::field::cache_control, answered.cache_control);

@@ -371,6 +371,9 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         else
             rebuilt.left.push_back(of_run + ": its units now say something else, and its items would get other numbers (" + replaced->front() + ")");
     }
+    // The whole index: what it should forget of rows that were damaged nobody knows.
+    if (!rebuilt.runs.empty())
+        if (auto done = database.execute("INSERT INTO search (search) VALUES ('rebuild')"); !done) return done.error();
     return rebuilt;
 }
 

@@ -18,17 +18,25 @@ namespace aeolis::pipeline {
 /// Hands out sequence numbers, and notes them in the batch that will make them durable.
 class Numbering {
   public:
-    explicit Numbering(Sequence first = 1) : next_(first) {}
+    /// @param taken  numbers, ascending, of items that are stored already and do not come again
+    explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}) : next_(first), taken_(std::move(taken)) { pass_taken(); }
 
     Sequence next(archive::Batch& batch) {
         batch.last_seq = next_++;
         if (batch.first_seq == 0) batch.first_seq = batch.last_seq;
+        pass_taken();
         return batch.last_seq;
     }
     Sequence last() const { return next_ - 1; }
 
   private:
+    void pass_taken() {
+        for (; passed_ < taken_.size() && taken_[passed_] == next_; ++passed_)
+            ++next_;
+    }
     Sequence next_;
+    std::vector<Sequence> taken_;
+    std::size_t passed_ = 0;
 };
 
 /// One run's packets as they come, on either path: what each is, whether it was seen before, and all that it says.

@@ -3,6 +3,8 @@
 #include "server/archive/items.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/pipeline/packet_intake.hpp"
+#include "telemetry/staleness.hpp"
+#include "telemetry/text.hpp"
 
 #include <algorithm>
 
@@ -10,16 +12,18 @@ namespace aeolis::pipeline {
 
 struct Pipeline::State {
     State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
-        : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in) {}
+        : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in), phase(dictionary_in.channel("edl_phase")) {}
 
     /// All that belongs to the run that goes on.
     struct Run {
-        Run(RunId id_in, archive::RunStart start_in, const State& state)
-            : id(id_in), start(std::move(start_in)), intake(state.dictionary, state.columns, state.other) {}
+        Run(RunId id_in, archive::RunStart start_in, const State& state, std::vector<Sequence> taken)
+            : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)), intake(state.dictionary, state.columns, state.other),
+              staleness(state.dictionary) {}
         RunId id;
         archive::RunStart start;
         Numbering numbering;
         PacketIntake intake;
+        telemetry::StalenessMonitor staleness;
         archive::Batch pending;
         double progress = 0.0, durable_progress = 0.0; ///< of the recording
         Sequence last_durable = 0;
@@ -37,11 +41,14 @@ struct Pipeline::State {
 
     Result<void> room();
     void take(const simulation::ReceivedPacket& packet);
+    /// The newest unit of the batch was heard.
+    void heard();
+    void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
     void take(const simulation::ReceivedTone& tone);
     void take(const simulation::LinkState& link);
     void hold_against_archive();
     Result<void> go_on_where_it_was_cut_off();
-    std::shared_ptr<const PublishedBatch> published(bool built) const;
+    std::shared_ptr<const PublishedBatch> published(RunId of, const archive::Batch& batch, bool built) const;
 
     archive::Archive& archive;
     const dictionary::Dictionary& dictionary;
@@ -52,6 +59,7 @@ struct Pipeline::State {
     bool items_wanted = true;
     std::optional<Run> run;
     std::chrono::steady_clock::time_point last_commit{};
+    const dictionary::Channel* phase = nullptr; ///< of EDL; none: not of this mission
 };
 
 Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other)
@@ -85,14 +93,15 @@ Result<RunId> Pipeline::begin(const archive::RunStart& start) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     auto id = state_->archive.begin_run(start, state_->dictionary);
     if (!id) return id.error();
-    state_->run.emplace(*id, start, *state_);
+    state_->run.emplace(*id, start, *state_, std::vector<Sequence>{});
     return *id;
 }
 
-Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare) {
+Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
+                              std::vector<Sequence> annotations) {
     if (state_->run) return Error{"run " + std::to_string(state_->run->id.value) + " still goes on"};
     AEOLIS_CHECK(compare != nullptr);
-    state_->run.emplace(run, start, *state_);
+    state_->run.emplace(run, start, *state_, std::move(annotations));
     state_->run->repeat_until = durable;
     state_->run->last_durable = durable;
     state_->run->compare = std::move(compare);
@@ -105,7 +114,7 @@ void Pipeline::State::hold_against_archive() {
         run->differs = Error{"what came with item " + std::to_string(run->repeat_until) + ", the last that is stored, now has " +
                              std::to_string(run->pending.last_seq - run->repeat_until) + " more items"};
     if (!run->differs && run->pending.last_seq != 0)
-        if (auto same = run->compare(*published(true)); !same) run->differs = same.error();
+        if (auto same = run->compare(*published(run->id, run->pending, true)); !same) run->differs = same.error();
     run->pending.clear();
 }
 
@@ -176,6 +185,7 @@ Result<void> Pipeline::accept(const DownlinkPacket& packet) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
     run.intake.take(packet, run.numbering, run.pending);
+    state_->heard();
     return {};
 }
 
@@ -183,7 +193,36 @@ Result<void> Pipeline::accept(const DownlinkState& state) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
     run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert});
+    std::vector<telemetry::StalenessChange> changes;
+    run.staleness.link("downlink", state.up, state.reason, state.ert, changes);
+    state_->add(changes, state.ert);
     return {};
+}
+
+Result<void> Pipeline::accept(const EarthTime& time) {
+    if (auto room = state_->room(); !room) return room;
+    std::vector<telemetry::StalenessChange> changes;
+    state_->run->staleness.pass(time.now, changes);
+    state_->add(changes, time.now);
+    return {};
+}
+
+Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation annotation) {
+    if (!state_->run || state_->run->id != run) {
+        auto added = state_->archive.annotate(run, std::move(annotation));
+        if (!added || !state_->publish) return added;
+        archive::Batch batch;
+        batch.first_seq = batch.last_seq = std::visit([](const auto& record) { return record.seq; }, *added);
+        batch.add(*added);
+        state_->publish(state_->published(run, batch, true));
+        return added;
+    }
+    if (state_->run->repeats()) return Error{"run " + std::to_string(run.value) + " is flown again up to where it was cut off: try again when it goes on"};
+    if (auto room = state_->room(); !room) return room.error();
+    auto& current = *state_->run;
+    std::visit([&](auto& record) { record.seq = current.numbering.next(current.pending); }, annotation);
+    current.pending.add(annotation);
+    return annotation;
 }
 
 Result<void> Pipeline::accept(archive::RequestRecord request) {
@@ -202,10 +241,33 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
 
 void Pipeline::State::take(const simulation::ReceivedPacket& packet) {
     run->intake.take(packet, run->numbering, run->pending, observer);
+    if (!packet.link.recorded) heard();
+}
+
+void Pipeline::State::heard() {
+    const auto& unit = run->pending.units.back();
+    if (!unit.packet) return;
+    const Ert ert = unit.ert;
+    std::vector<telemetry::StalenessChange> changes;
+    run->staleness.heard(*unit.packet, ert, changes);
+    if (phase != nullptr)
+        if (const auto& latest = run->intake.latest()[phase->id.value]; latest && latest->value)
+            run->staleness.phase(telemetry::value_text(phase->type, latest->value), ert, changes);
+    add(changes, ert);
+}
+
+void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, Ert ert) {
+    for (const auto& change : changes)
+        run->pending.staleness.push_back({run->numbering.next(run->pending), static_cast<std::uint16_t>(change.packet), change.stale,
+                                          change.silent_s, change.expected_s, change.reason, ert});
 }
 
 void Pipeline::State::take(const simulation::LinkState& link) {
     run->pending.links.push_back({run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert});
+    if (link.link.recorded) return;
+    std::vector<telemetry::StalenessChange> changes;
+    run->staleness.link(link.link.name, link.up, link.reason, link.ert, changes);
+    add(changes, link.ert);
 }
 
 void Pipeline::State::take(const simulation::ReceivedTone& tone) {
@@ -278,7 +340,7 @@ Result<void> Pipeline::commit() {
     if (run.pending.empty()) return {};
     if (auto done = state_->archive.append(run.id, run.pending); !done) return done;
     run.durable_progress = run.progress;
-    const auto batch = state_->published(state_->items_wanted);
+    const auto batch = state_->published(run.id, run.pending, state_->items_wanted);
     run.pending.clear();
     if (!batch) return {};
     run.last_durable = batch->last_seq;
@@ -296,11 +358,10 @@ Result<void> Pipeline::finish(const archive::RunEnd& end) {
     return {};
 }
 
-std::shared_ptr<const PublishedBatch> Pipeline::State::published(bool built) const {
-    const auto& batch = run->pending;
+std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const archive::Batch& batch, bool built) const {
     if (batch.last_seq == 0) return nullptr;
     auto made = std::make_shared<PublishedBatch>();
-    made->run = run->id;
+    made->run = of;
     made->first_seq = batch.first_seq;
     made->last_seq = batch.last_seq;
     made->built = built;
@@ -326,6 +387,10 @@ std::shared_ptr<const PublishedBatch> Pipeline::State::published(bool built) con
     place_all(batch.explanations);
     place_all(batch.links);
     place_all(batch.alarms);
+    place_all(batch.alarm_actions);
+    place_all(batch.notes);
+    for (const auto& record : batch.staleness)
+        place(archive::to_item(record, &dictionary));
     return made;
 }
 

@@ -60,6 +60,11 @@ struct DownlinkState {
     Ert ert;
 };
 
+/// Time goes on at the station: what does not come is told by nothing else.
+struct EarthTime {
+    Ert now;
+};
+
 /// Turns what one run's links and gateway deliver into numbered items: commits them to the archive, then publishes.
 ///
 /// In       received packets, tones, link changes, command stages; the caller's steady clock
@@ -87,7 +92,8 @@ class Pipeline {
 
     /// A run that was cut off is flown again from its beginning: items up to `durable` are neither stored nor published again
     /// but held against the archive by `compare`. After the last of them it goes on as any run. One at a time, as begin().
-    Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare);
+    /// @param annotations  numbers of what people added: it does not come again, and keeps its numbers
+    Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare, std::vector<Sequence> annotations = {});
     /// Compares what waits. True once all that was durable has come again; an Error for good when something else came, or
     /// the run cannot be marked as running again.
     Result<bool> caught_up();
@@ -103,6 +109,11 @@ class Pipeline {
     Result<void> accept(const DownlinkState& state);
     /// `stage.seq` is given here.
     Result<void> accept(archive::StageRecord stage);
+    /// Once a second of the run or so: tells what has become stale.
+    Result<void> accept(const EarthTime& time);
+    /// What a person adds to any run: to the one that goes on, durable with the next commit; to another, durable and
+    /// published when it returns. @return with its number
+    Result<archive::Annotation> annotate(RunId run, archive::Annotation annotation);
     /// 0 … 1 of the recording that has come down; durable with the next commit.
     void relay_progress(double progress);
     /// Counters of links, stored with the next commit.

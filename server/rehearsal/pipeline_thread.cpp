@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::chrono::milliseconds retry_interval{500}; // ours: a full disk does not empty faster
 constexpr std::size_t words_of_difference = 200;         // of an item: enough to see which it is
+constexpr std::uint64_t cycles_a_second = 64;
 constexpr int retries_when_closing = 4;                  // then the last commit is given up, and said so
 
 /// Whether a run's items that came again are those that the archive has; an Error names the first that is not.
@@ -22,6 +23,10 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
         if (!page) return page.error();
         for (const auto& before : page->items) {
             if (item == again.items.end()) break;
+            if (item->item_case() == v1::Item::ITEM_NOT_SET) { // someone added what is stored here: it does not come again
+                ++item;
+                continue;
+            }
             if (before.SerializeAsString() != item->SerializeAsString())
                 return Error{fmt::format("run {}: flown again, item {} is not what it was ({})", again.run.value, before.seq(),
                                          item->ShortDebugString().substr(0, words_of_difference))};
@@ -39,6 +44,10 @@ void Delivery::add(const simulation::CycleReport& report) {
     entries.insert(entries.end(), report.packets.begin(), report.packets.end());
     entries.insert(entries.end(), report.tones.begin(), report.tones.end());
     entries.insert(entries.end(), report.links.begin(), report.links.end());
+}
+
+void Delivery::pass(std::uint64_t cycles, Ert now) {
+    if (cycles % cycles_a_second == 0) entries.emplace_back(pipeline::EarthTime{now});
 }
 
 PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
@@ -80,7 +89,7 @@ Result<void> PipelineThread::resume(const archive::CutOffRun& cut, const archive
     auto stored = std::make_shared<archive::Reader>(std::move(*reader));
     const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
     Result<void> result = Error{"the archive is closing"};
-    perform([&] { result = pipeline_.resume(cut.run, start, cut.last_seq, compare); });
+    perform([&] { result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations); });
     return result;
 }
 
@@ -126,6 +135,14 @@ Result<void> PipelineThread::finish(const archive::RunEnd& end) {
     auto done = job.done.get_future();
     if (!jobs_.push(std::move(job))) return Error{"the archive is closing"};
     return done.get();
+}
+
+bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done) {
+    return jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
+        auto added = pipeline_.annotate(run, annotation);
+        if (added && !insist([this] { return pipeline_.commit(); })) added = Error{fault()};
+        done(std::move(added));
+    }});
 }
 
 std::string PipelineThread::fault() const {

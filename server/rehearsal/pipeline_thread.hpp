@@ -20,13 +20,15 @@ namespace aeolis::server {
 struct Delivery {
     using Entry =
         std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord,
-                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState>;
+                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState, pipeline::EarthTime>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links; ///< empty: as told before
     std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
 
     void add(const simulation::CycleReport& report);
+    /// Once a second of the run: that time goes on.
+    void pass(std::uint64_t cycles, Ert now);
 };
 
 /// The only writer of the archive: takes deliveries, commits, publishes.
@@ -63,6 +65,9 @@ class PipelineThread {
     void audit(archive::AuditRecord record);
     /// False while so much of the audit waits for a failing disk that nothing more may be done that belongs into it.
     bool audit_has_room() const;
+    /// Adds to any run what a person says; `done` comes on this thread when it is durable. False, and nothing done, when too
+    /// much waits.
+    bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Given up, or held right now; empty when all is well.

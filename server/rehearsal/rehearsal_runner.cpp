@@ -289,6 +289,7 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
 
 void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
     delivery_.add(report);
+    delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     for (auto& stage : rehearsal.take_stages())
         delivery_.entries.emplace_back(std::move(stage));
 }

@@ -51,6 +51,14 @@ TEST_CASE("each broken rule of types gives one line, and nothing is loaded", "[d
          "parameterTypeRef=\"product_content\"><AliasSet><Alias nameSpace=\"channel\" alias=\"X-1\"/></AliasSet>"
          "</Parameter>",
          "parameter 'content': binary data are no channel"},
+        {"alarm context of no channel", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"", "parameterRef=\"edl_place\" value=\"sky_crane\"",
+         "type 'deceleration_g_f32': there is no parameter 'edl_place'"},
+        {"alarm context of no label", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"", "parameterRef=\"edl_phase\" value=\"sky_hook\"",
+         "value 'sky_hook' is neither a number nor a label"},
+        {"alarm without its context", msl, "<ContextMatch><Comparison parameterRef=\"edl_phase\" value=\"sky_crane\"/></ContextMatch>",
+         "<ContextMatch/>", "a context alarm without ContextMatch"},
+        {"latch", msl, "<AncillaryData name=\"latch\">true<", "<AncillaryData name=\"latch\">yes<", "latch 'yes' is neither true nor false"},
+        {"minConformance", msl, "minConformance=\"4\"", "minConformance=\"0\"", "minConformance '0'"},
         {"misspelt attribute", msl, "minViolations=\"8\"", "minviolations=\"8\"", "attribute 'minviolations'"},
     });
 }

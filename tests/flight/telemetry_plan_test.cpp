@@ -42,6 +42,18 @@ TEST_CASE("what flight plans is what the sheet says, packet by packet and state 
     }
 }
 
+TEST_CASE("ground tells the state of the vehicle from the phase as flight does", "[telemetry_plan][R30]") {
+    const TelemetryPlanRow::Every by_column{0, 1, 2, 3};
+    const auto& phase = tests::shipped_dictionary().channel("edl_phase")->type;
+    REQUIRE(phase.enumeration.size() == dictionary::telemetry_state_of_phase.size());
+    for (const auto& [label, column] : dictionary::telemetry_state_of_phase) {
+        INFO(label);
+        const auto found = std::ranges::find(phase.enumeration, label, &dictionary::EnumValue::label);
+        REQUIRE(found != phase.enumeration.end());
+        CHECK(every_in(by_column, static_cast<EdlPhase>(found->value)) == column);
+    }
+}
+
 TEST_CASE("a packet that no plan knows is recorded only", "[telemetry_plan][R30]") {
     CHECK(every(Plan::mission, EdlPhase::range_control, Apid{0x7FE}) == 0);
     CHECK(planned(Plan::mission, Apid{0x7FE}).priority == TelemetryPriority::low);

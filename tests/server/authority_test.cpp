@@ -66,6 +66,8 @@ const Row rows[] = {
     {"GET", "/api/v1/runs", "observer", "/api/v1/runs", "", 200},
     {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})", 409},
     {"POST", "/api/v1/runs/{run}/sequences", "controller", "/api/v1/runs/latest/sequences", R"({"commands":[{"command":"NO_OP"}]})", 409},
+    {"POST", "/api/v1/runs/{run}/alarms", "controller", "/api/v1/runs/latest/alarms", "{", 400},
+    {"POST", "/api/v1/runs/{run}/notes", "controller", "/api/v1/runs/latest/notes", "{", 400},
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},

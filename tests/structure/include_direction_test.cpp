@@ -93,6 +93,7 @@ const std::vector<Home>& homes() {
         {"aeolis/v1/", with_effects, "Protobuf is at home in server/"},
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
         {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
+        {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
         {"openssl/", with_effects, "OpenSSL is at home in server/"},
         {"spdlog/", with_effects, "only server/ logs"},

@@ -1,6 +1,7 @@
 #include "telemetry/alarms.hpp"
 
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
 using namespace aeolis;
@@ -80,4 +81,70 @@ TEST_CASE("a channel without limits never alarms", "[alarms]") {
     mission.channel = mission.dictionary.channel("altitude_m")->id;
     CHECK(mission.after(-1e30) == Severity::none);
     CHECK(mission.changes.empty());
+}
+
+TEST_CASE("an alarm that asks for conformance clears only after as many samples within the limits", "[alarms]") {
+    Speed speed;
+    speed.dictionary.channels[speed.channel.value].type.alarms.min_conformance = 3;
+    speed.after(650.0);
+    CHECK(speed.after(650.0) == Severity::warning);
+    CHECK(speed.after(500.0) == Severity::warning);
+    CHECK(speed.after(500.0) == Severity::warning);
+    CHECK(speed.after(601.0) == Severity::warning); // begins again
+    CHECK(speed.after(500.0) == Severity::warning);
+    CHECK(speed.after(500.0) == Severity::warning);
+    CHECK(speed.after(500.0) == Severity::none);
+    CHECK(speed.changes.size() == 2);
+}
+
+namespace {
+
+// Under the parachute the speed is limited to 200 m/s, two samples in a row; else as in Speed.
+struct InContext : Speed {
+    ChannelId phase = dictionary.channel("edl_phase")->id;
+    InContext() {
+        dictionary::ContextAlarms under_parachute;
+        under_parachute.context = {{phase, "==", 1.0, ""}};
+        under_parachute.alarms.ranges = {{Severity::critical, {}, 200.0}};
+        under_parachute.alarms.min_violations = 2;
+        dictionary.channels[channel.value].type.alarms.contexts = {under_parachute};
+    }
+    void enter(double value) { monitor.sample(phase, value, Sclk{sclk}, changes); }
+};
+
+} // namespace
+
+TEST_CASE("limits are those of the phase: what is right in one is an alarm in the next", "[alarms]") {
+    InContext mission;
+    CHECK(mission.after(400.0) == Severity::none);
+    CHECK(mission.after(400.0) == Severity::none);
+    mission.enter(1.0);
+    CHECK(mission.after(400.0) == Severity::none); // counting begins with the context
+    CHECK(mission.after(400.0) == Severity::critical);
+    CHECK(mission.changes.back().limit == "> 200.0 m/s in parachute_descent");
+    mission.enter(0.0);
+    CHECK(mission.after(400.0) == Severity::none);
+    CHECK(mission.after(650.0) == Severity::none);
+    CHECK(mission.after(650.0) == Severity::warning);
+    CHECK(mission.changes.back().limit == "> 600.0 m/s");
+}
+
+TEST_CASE("before the phase is known the default limits count", "[alarms]") {
+    InContext mission;
+    mission.after(650.0);
+    CHECK(mission.after(650.0) == Severity::warning);
+}
+
+TEST_CASE("the shipped dictionary has limits by phase for load and descent rate, and the load's latches", "[alarms][dictionary]") {
+    const auto& shipped = tests::shipped_dictionary();
+    const auto phases_of = [&](const char* name) {
+        std::string phases;
+        for (const auto& [context, alarms] : shipped.channel(name)->type.alarms.contexts)
+            phases += context_text(shipped, context) + " ";
+        return phases;
+    };
+    CHECK(phases_of("sensed_deceleration_g") == "parachute_descent powered_descent sky_crane ");
+    CHECK(phases_of("descent_rate_mps") == "parachute_descent powered_descent sky_crane ");
+    CHECK(latches(shipped.channel("sensed_deceleration_g")->type.alarms));
+    CHECK_FALSE(latches(shipped.channel("descent_rate_mps")->type.alarms));
 }

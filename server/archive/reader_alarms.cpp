@@ -1,0 +1,123 @@
+#include "server/archive/reader.hpp"
+#include "server/archive/reader_state.hpp"
+#include "server/archive/schema.hpp"
+#include "telemetry/alarm_desk.hpp"
+#include "telemetry/alarms.hpp"
+#include "telemetry/staleness.hpp"
+
+#include <algorithm>
+
+// How alarms stand: told from what changed and what was done, each time it is asked.
+namespace aeolis::archive {
+
+namespace {
+
+Ert ert_of(const std::string& day_of_year) {
+    return ert_from_day_of_year(day_of_year).value_or(Ert{});
+}
+
+const std::string& name_of_alarm(const v1::Item& item, const dictionary::Dictionary& dictionary) {
+    if (item.has_alarm()) return dictionary.channels[item.alarm().channel()].name;
+    return item.has_staleness() ? item.staleness().packet() : item.alarm_action().alarm();
+}
+
+void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telemetry::AlarmDesk& desk) {
+    using dictionary::Severity;
+    const std::string& name = name_of_alarm(item, dictionary);
+    if (item.has_alarm()) {
+        const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
+        desk.change(name, telemetry::severity_of(item.alarm().severity()).value_or(Severity::none), telemetry::latches(alarms));
+    } else if (item.has_staleness()) {
+        desk.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
+    } else if (const auto act = telemetry::alarm_act(item.alarm_action().action())) {
+        desk.act(name, *act, ert_of(item.alarm_action().at()), ert_of(item.alarm_action().until()));
+    }
+}
+
+/// What the last item of each kind says about one alarm.
+void describe(const v1::Item& item, v1::AlarmState& state) {
+    state.set_seq(item.seq());
+    if (item.has_alarm()) {
+        state.set_kind("limit");
+        if (!item.alarm().limit().empty()) state.set_limit(item.alarm().limit());
+        state.set_value(item.alarm().value());
+        state.set_sclk(item.alarm().sclk());
+    } else if (item.has_staleness()) {
+        state.set_kind("staleness");
+        state.set_value(item.staleness().silent_s());
+    } else {
+        state.set_by(item.alarm_action().by());
+        state.set_note(item.alarm_action().note());
+    }
+}
+
+} // namespace
+
+/// All that happened to the run's alarms, and what it came to.
+Result<telemetry::AlarmDesk> Reader::alarm_desk(RunId run, std::vector<v1::Item>& changes) {
+    {
+        const auto info = state_->info(run);
+        if (!info) return info.error();
+        if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    }
+    telemetry::AlarmDesk desk;
+    for (Sequence after = 0;;) {
+        auto page = alarms(run, after, rows_page_max);
+        if (!page) return page.error();
+        for (auto& item : *page->mutable_changes()) {
+            apply(item, state_->dictionary, desk);
+            changes.push_back(std::move(item));
+        }
+        after = page->next_after();
+        if (after == 0) return desk;
+    }
+}
+
+Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
+    std::vector<v1::Item> changes;
+    const auto desk = alarm_desk(run, changes);
+    if (!desk) return desk.error();
+    const auto newest = newest_ert(run);
+    if (!newest) return newest.error();
+    const Ert at = now.value_or(*newest);
+
+    std::map<std::string, v1::AlarmState> described;
+    for (const auto& item : changes)
+        describe(item, described[name_of_alarm(item, state_->dictionary)]);
+    std::vector<v1::AlarmState> states;
+    for (const auto& [name, state] : desk->all()) {
+        if (std::string_view(state.name(at)) == "normal") continue;
+        auto& written = states.emplace_back(std::move(described[name]));
+        written.set_name(name);
+        if (written.kind().empty()) written.set_kind(state_->dictionary.channel(name) != nullptr ? "limit" : "staleness");
+        written.set_state(state.name(at));
+        written.set_severity(telemetry::name_of(state.severity));
+        written.set_worst(telemetry::name_of(state.worst));
+        written.set_acknowledged(state.acknowledged);
+        written.set_latches(state.latches);
+        if (state.shelved_until && at < *state.shelved_until) written.set_shelved_until(day_of_year_text(*state.shelved_until));
+    }
+    std::ranges::stable_sort(states, std::ranges::greater{}, [](const v1::AlarmState& state) { return telemetry::severity_of(state.severity()); });
+    v1::AlarmList list;
+    for (auto& state : states)
+        *list.add_alarms() = std::move(state);
+    return list;
+}
+
+Result<void> Reader::may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now) {
+    std::vector<v1::Item> changes;
+    const auto desk = alarm_desk(run, changes);
+    if (!desk) return desk.error();
+    return desk->may(alarm, act, now);
+}
+
+Result<Ert> Reader::newest_ert(RunId run) {
+    auto rows = state_->query("SELECT ert_us FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key DESC LIMIT 1");
+    if (!rows) return rows.error();
+    (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
+    auto found = (*rows)->step();
+    if (!found) return found.error();
+    return *found ? Ert{(*rows)->integer(0)} : Ert{};
+}
+
+} // namespace aeolis::archive

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "common/time.hpp"
+#include "dictionaries/dictionary.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+inline constexpr double stale_intervals = 4.0; ///< ours: so many packets in a row are not lost by chance
+inline constexpr double stale_least_s = 5.0;   ///< ours: a burst of losses and the link's queue fit in
+
+inline constexpr auto stale_severity = dictionary::Severity::warning; ///< ours: what one acts upon may be old
+
+struct StalenessChange {
+    std::size_t packet = 0;  ///< index in the dictionary's packets
+    bool stale = false;
+    double silent_s = 0.0;   ///< since it was last heard
+    double expected_s = 0.0; ///< interval at which it should come now; 0 when it is not stale
+    std::string reason;      ///< "heard again", "not expected in landed", "the link is down: plasma blackout"; empty when stale
+};
+
+/// Tells when a packet that should come in real time does not.
+///
+/// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order
+/// Out      changes, appended to `out`
+/// Rule     A packet is expected at its rate (DefaultRateInStream) thinned by the rows of telemetry_plan.csv that hold in
+///          every plan, once it has come at all. It is stale when nothing of it came for `stale_intervals` of that, and
+///          `stale_least_s`, while a link was up and the phase as it is for as long. While no link is up nothing is
+///          expected: silence is then the link's, which says why.
+/// Memory   a row for each packet with a rate
+class StalenessMonitor {
+  public:
+    /// The dictionary must outlive this.
+    explicit StalenessMonitor(const dictionary::Dictionary& dictionary);
+
+    void heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out);
+    /// @param name  "uhf_live", "uhf_<orbiter>", "downlink" bring packets in real time; others are passed over
+    void link(std::string_view name, bool up, std::string_view reason, Ert ert, std::vector<StalenessChange>& out);
+    /// @param label  of EdlPhase
+    void phase(std::string_view label, Ert ert, std::vector<StalenessChange>& out);
+    void pass(Ert now, std::vector<StalenessChange>& out);
+
+  private:
+    struct Expected {
+        std::size_t packet = 0;
+        std::vector<double> interval_s; ///< by state of the vehicle; 0: none. One entry where the plan does not name it
+        std::optional<Ert> last{};      ///< none: never came
+        Ert since{};                    ///< from then on its absence counts
+        bool stale = false;
+    };
+    double interval_s(const Expected& expected) const;
+    void clear(Expected& expected, const std::string& reason, Ert now, std::vector<StalenessChange>& out) const;
+
+    std::vector<Expected> expected_;
+    std::map<std::string, bool, std::less<>> links_;
+    bool any_link_ = false;
+    std::string phase_;
+    std::optional<std::size_t> state_; ///< of the vehicle; none: not known
+};
+
+} // namespace aeolis::telemetry

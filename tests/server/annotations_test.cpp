@@ -1,0 +1,66 @@
+#include "server/api/annotations.hpp"
+
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+v1::AlarmRequest request(const char* channel, const char* action, double shelve_s = 0.0) {
+    v1::AlarmRequest asked;
+    asked.set_channel(channel);
+    asked.set_action(action);
+    asked.set_shelve_s(shelve_s);
+    return asked;
+}
+
+std::string refusal(const v1::AlarmRequest& asked, const std::string& by = "Ada") {
+    const auto record = alarm_action_of(asked, test::small_dictionary(), by, Ert{});
+    return record ? "" : record.error().message;
+}
+
+std::string refusal_of_note(const std::string& text, const std::string& by = "Ada") {
+    v1::NoteRequest asked;
+    asked.set_text(text);
+    const auto note = note_of(asked, by, Ert{});
+    return note ? "" : note.error().message;
+}
+
+} // namespace
+
+TEST_CASE("an act on an alarm is kept under the channel's own name, a stale packet's under the packet's", "[alarms][http]") {
+    const auto dictionary = test::small_dictionary();
+    const auto by_alias = alarm_action_of(request("GNC-0002", "shelve", 60.0), dictionary, "Ada", Ert{5'000'000});
+    REQUIRE(by_alias);
+    CHECK(by_alias->alarm == "speed_mps");
+    CHECK(by_alias->by == "Ada");
+    CHECK(by_alias->until == Ert{65'000'000});
+    CHECK(alarm_action_of(request("Navigation", "acknowledge"), dictionary, "Ada", Ert{})->alarm == "Navigation");
+}
+
+TEST_CASE("an act that names nothing, nobody or no time is refused by its field", "[alarms][http]") {
+    CHECK(refusal(request("moon", "acknowledge")) == "channel: there is no channel or packet 'moon'");
+    CHECK_THAT(refusal(request("speed_mps", "forget")), Catch::StartsWith("action: 'forget'"));
+    CHECK_THAT(refusal(request("speed_mps", "shelve")), Catch::StartsWith("shelve_s: 0"));
+    CHECK_THAT(refusal(request("speed_mps", "shelve", 86'401.0)), Catch::StartsWith("shelve_s: 86401"));
+    CHECK_THAT(refusal(request("speed_mps", "reset", 1.0)), Catch::StartsWith("shelve_s: reset"));
+    CHECK_THAT(refusal(request("speed_mps", "reset"), " "), Catch::StartsWith("by: who"));
+}
+
+TEST_CASE("a note is kept as it was written, and refused when it is empty, too long or nobody's", "[notes][http]") {
+    v1::NoteRequest asked;
+    asked.set_text("<b>chute</b>\n'; DROP TABLE notes; --");
+    asked.set_sclk(1000.5);
+    const auto note = note_of(asked, "Ada", Ert{7});
+    REQUIRE(note);
+    CHECK(note->text == asked.text());
+    CHECK(note->sclk_s == 1000.5);
+    CHECK(note->at == Ert{7});
+    CHECK(refusal_of_note(std::string(note_octets_max, 'x')).empty());
+    CHECK_THAT(refusal_of_note(std::string(note_octets_max + 1, 'x')), Catch::StartsWith("text: 4001 octets"));
+    CHECK(refusal_of_note(" \n") == "text: the note is empty");
+    CHECK_THAT(refusal_of_note("chute", ""), Catch::StartsWith("by: who"));
+    CHECK_THAT(refusal_of_note("chute", std::string(101, 'x')), Catch::StartsWith("by: 101 octets"));
+}

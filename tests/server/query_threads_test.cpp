@@ -1,0 +1,56 @@
+#include "server/api/query_threads.hpp"
+
+#include "server/pipeline/pipeline.hpp"
+#include "tests/server/small_mission.hpp"
+#include "tests/support/catch.hpp"
+
+#include <future>
+
+using namespace aeolis;
+using namespace aeolis::test;
+using server::QueryThreads;
+
+namespace {
+
+/// A run with enough units that a question over all of them is noticed.
+struct Recorded {
+    TemporaryFolder folder;
+    dictionary::Dictionary dictionary = small_dictionary();
+    std::filesystem::path file = folder / "a.db";
+    archive::Archive archive = std::move(archive::Archive::open(file)).value();
+    std::unique_ptr<QueryThreads> threads;
+
+    Recorded() {
+        pipeline::Pipeline pipeline(archive, dictionary);
+        REQUIRE(pipeline.begin({}).ok());
+        for (std::uint16_t i = 0; i < 3000; ++i)
+            REQUIRE(pipeline.accept(live(navigation_packet(i, 1000.0 + i, 9000.0F, 3.0F))).ok());
+        REQUIRE(pipeline.commit().ok());
+        threads = std::move(QueryThreads::open(file, dictionary)).value();
+    }
+    /// What a question over all units comes to.
+    std::string ask(const std::shared_ptr<std::atomic<bool>>& gone) const {
+        std::promise<std::string> answered;
+        REQUIRE(threads->ask(
+            [&](archive::Reader& reader) {
+                const auto proof = reader.proof(archive::RunId{1});
+                answered.set_value(proof ? "answered" : reader.stopped() ? "stopped" : proof.error().message);
+            },
+            gone));
+        return answered.get_future().get();
+    }
+};
+
+} // namespace
+
+TEST_CASE("a question whose asker has left is stopped, and the next question is answered", "[http][bounds]") {
+    const Recorded recorded;
+    const auto gone = std::make_shared<std::atomic<bool>>(false);
+    CHECK(recorded.ask(nullptr) == "answered");
+    CHECK(recorded.ask(gone) == "answered");
+    *gone = true;
+    CHECK(recorded.ask(gone) == "stopped");
+    CHECK(recorded.ask(gone) == "stopped");
+    for (std::size_t i = 0; i < 2 * QueryThreads::threads; ++i) // the next question is not stopped by that
+        CHECK(recorded.ask(nullptr) == "answered");
+}

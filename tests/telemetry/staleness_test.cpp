@@ -1,0 +1,120 @@
+#include "telemetry/staleness.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/small_dictionary.hpp"
+
+using namespace aeolis;
+using namespace aeolis::telemetry;
+
+namespace {
+
+constexpr std::size_t status = 0, held = 1;
+
+constexpr Ert at_s(double seconds) {
+    return Ert{static_cast<std::int64_t>(seconds * 1e6)};
+}
+
+// Status: 1 Hz recorded; of it every 2nd before entry, every 4th in entry, none on the ground. ParametersHeld: no rate.
+struct Ground {
+    dictionary::Dictionary dictionary = make();
+    StalenessMonitor monitor{dictionary};
+    std::vector<StalenessChange> changes;
+
+    static dictionary::Dictionary make() {
+        auto dictionary = tests::small_dictionary();
+        dictionary.packets[status].expected_rate_hz = 1.0;
+        dictionary.telemetry_plan = {{"all", "Status", tests::status_apid, dictionary::TelemetryPriority::high, {2, 4, 4, 0}, "", 2}};
+        return dictionary;
+    }
+    Ground() {
+        monitor.link("uhf_live", true, "nominal", at_s(0.0), changes);
+        monitor.phase("late_cruise", at_s(0.0), changes);
+    }
+    void hear(double s) { monitor.heard(status, at_s(s), changes); }
+    std::size_t after(double s) {
+        monitor.pass(at_s(s), changes);
+        return changes.size();
+    }
+};
+
+} // namespace
+
+TEST_CASE("a packet is stale when four of its intervals bring nothing, and not before", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    CHECK(ground.after(9.0) == 0);
+    REQUIRE(ground.after(9.5) == 1);
+    CHECK(ground.changes[0].packet == status);
+    CHECK(ground.changes[0].stale);
+    CHECK(ground.changes[0].silent_s == 8.5);
+    CHECK(ground.changes[0].expected_s == 2.0);
+    CHECK(ground.after(30.0) == 1); // said once
+    ground.hear(31.0);
+    REQUIRE(ground.changes.size() == 2);
+    CHECK_FALSE(ground.changes[1].stale);
+    CHECK(ground.changes[1].reason == "heard again");
+}
+
+TEST_CASE("silence while the link is down is the link's, and nothing is stale", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.link("uhf_live", false, "plasma blackout", at_s(3.0), ground.changes);
+    CHECK(ground.after(90.0) == 0);
+    ground.monitor.link("uhf_live", true, "nominal", at_s(90.0), ground.changes);
+    CHECK(ground.after(98.0) == 0);
+    CHECK(ground.after(98.5) == 1);
+    ground.monitor.link("uhf_live", false, "Earth set", at_s(99.0), ground.changes);
+    REQUIRE(ground.changes.size() == 2);
+    CHECK(ground.changes[1].reason == "the link is down: Earth set");
+}
+
+TEST_CASE("one of two links is enough to be heard over, and one that brings no packets is none", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.link("uhf_mro", true, "nominal", at_s(2.0), ground.changes);
+    ground.monitor.link("uhf_live", false, "hand-over", at_s(3.0), ground.changes);
+    ground.monitor.link("x_band", true, "nominal", at_s(3.0), ground.changes);
+    CHECK(ground.after(9.5) == 1);
+    ground.monitor.link("uhf_mro", false, "no orbiter in view", at_s(10.0), ground.changes);
+    CHECK(ground.changes.size() == 2);
+    CHECK(ground.after(60.0) == 2);
+}
+
+TEST_CASE("what is expected goes by the phase: less often in entry, not at all on the ground", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.phase("range_control", at_s(2.0), ground.changes);
+    CHECK(ground.after(18.0) == 0);
+    CHECK(ground.after(18.5) == 1);
+    ground.monitor.phase("landed", at_s(20.0), ground.changes);
+    REQUIRE(ground.changes.size() == 2);
+    CHECK(ground.changes[1].reason == "not expected in landed");
+    CHECK(ground.after(500.0) == 2);
+}
+
+TEST_CASE("what never came, has no rate, or is of a plan that may not be flown is not missed", "[alarms][staleness]") {
+    Ground ground;
+    CHECK(ground.after(100.0) == 0);
+    ground.monitor.heard(held, at_s(100.0), ground.changes);
+    CHECK(ground.after(1000.0) == 0);
+    ground.dictionary.telemetry_plan[0].plan = "wideband";
+    StalenessMonitor other{ground.dictionary};
+    other.link("uhf_live", true, "nominal", at_s(0.0), ground.changes);
+    other.phase("late_cruise", at_s(0.0), ground.changes);
+    other.heard(status, at_s(1.0), ground.changes);
+    other.pass(at_s(1000.0), ground.changes);
+    CHECK(ground.changes.empty());
+}
+
+TEST_CASE("a mission without a plan is expected at the rates of its dictionary", "[alarms][staleness]") {
+    auto dictionary = Ground::make();
+    dictionary.telemetry_plan.clear();
+    StalenessMonitor monitor{dictionary};
+    std::vector<StalenessChange> changes;
+    monitor.link("downlink", true, "connected", at_s(0.0), changes);
+    monitor.heard(status, at_s(1.0), changes);
+    monitor.pass(at_s(6.0), changes);
+    CHECK(changes.empty()); // five seconds at least
+    monitor.pass(at_s(6.5), changes);
+    CHECK(changes.size() == 1);
+}
