@@ -12,8 +12,8 @@
 
 namespace aeolis::server {
 
-/// Two threads that read: each has its own read-only connection to the archive. So a long query never holds up the
-/// network, the writer, or the other query.
+/// Two threads that read: each has its own read-only connection to the archive, and takes a new one when the file was put
+/// back under its name. So a long query never holds up the network, the writer, or the other query.
 class QueryThreads {
   public:
     static constexpr std::size_t threads = 2;
@@ -33,7 +33,8 @@ class QueryThreads {
     std::size_t waiting() const { return jobs_.size(); }
 
   private:
-    explicit QueryThreads(std::vector<archive::Reader> readers);
+    using Open = std::function<Result<archive::Reader>()>;
+    QueryThreads(std::vector<archive::Reader> readers, const Open& open);
     BoundedQueue<Job> jobs_{waiting_max};
     std::vector<archive::Reader> readers_;
     std::atomic<std::uint64_t> asked_{0};

@@ -36,6 +36,10 @@ Result<Reader> Reader::open(const std::filesystem::path& file, const dictionary:
     return Reader(std::make_unique<State>(std::move(database).value(), dictionary, other));
 }
 
+bool Reader::outdated() const {
+    return state_->database.moved();
+}
+
 Result<Query> Reader::State::query(const char* sql) {
     auto found = statements.find(sql);
     if (found == statements.end()) {

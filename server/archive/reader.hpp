@@ -97,6 +97,9 @@ class Reader {
     Reader& operator=(Reader&&) noexcept;
     ~Reader();
 
+    /// The file no longer has its name: answers are from what it was, a new Reader sees what it is.
+    bool outdated() const;
+
     /// All runs, newest first. A run that goes on is `running`; pace and clocks are the rehearsal's to fill in.
     Result<v1::RunList> runs();
     Result<v1::RunState> run(RunId run);

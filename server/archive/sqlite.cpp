@@ -162,6 +162,11 @@ Result<void> Database::copy_to(Database& empty) const {
     return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped)};
 }
 
+bool Database::moved() const {
+    int moved = 0;
+    return sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK && moved != 0;
+}
+
 bool Database::autocommit() const {
     return sqlite3_get_autocommit(database_.get()) != 0;
 }

@@ -66,6 +66,9 @@ class Database {
     /// All of this database, as it is now, into an empty one. Writers of this one go on meanwhile.
     Result<void> copy_to(Database& empty) const;
 
+    /// The file has been removed or replaced under its name: this connection still reads and writes what it opened.
+    bool moved() const;
+
     /// False while a transaction is open.
     bool autocommit() const;
     Error error(std::string_view doing) const;

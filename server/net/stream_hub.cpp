@@ -107,6 +107,14 @@ void StreamHub::run_state(v1::RunState state) {
     }
     state_ = std::move(state);
     state_.set_last_seq(last_seq_);
+    state_.set_archive_fault(archive_fault_);
+    ++state_version_;
+    wake_all();
+}
+
+void StreamHub::archive_fault(std::string fault) {
+    archive_fault_ = std::move(fault);
+    state_.set_archive_fault(archive_fault_);
     ++state_version_;
     wake_all();
 }

@@ -80,6 +80,8 @@ class StreamHub {
     void published(std::shared_ptr<const pipeline::PublishedBatch> batch);
     void run_state(v1::RunState state);
     void clocks(v1::Clocks clocks);
+    /// Why nothing can be stored now; empty when all is well. Said with the state of the run.
+    void archive_fault(std::string fault);
 
     void add(StreamSession& session);
     void remove(StreamSession& session);
@@ -133,6 +135,7 @@ class StreamHub {
     std::size_t held_items_ = 0;
     SampleSpacing spacing_;
     std::deque<Cached> cache_;
+    std::string archive_fault_;
     std::array<Encoded, 2> state_encoded_;
     std::uint64_t state_encoded_version_ = 0;
 };

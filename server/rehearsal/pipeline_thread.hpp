@@ -33,8 +33,9 @@ struct Delivery {
 ///
 /// In       deliveries of one run at a time, through a queue of `deliveries_max`: who delivers waits when it is full
 /// Out      what the pipeline publishes, on this thread
-/// Faults   a failed commit is told once, and tried again every half second; the run waits meanwhile and nothing is
-///          lost. With `Faults::give_up` (one landing without a console) the first failure ends it.
+/// Faults   a failed commit is told once, and tried again every half second; the run goes on meanwhile, until
+///          pipeline::pending_octets_max wait: then it waits too. Nothing is lost. With `Faults::give_up` (one landing
+///          without a console) the first failure ends it.
 class PipelineThread {
   public:
     static constexpr std::size_t deliveries_max = 64; ///< ours: some 64 × 256 units, about 2 MB
@@ -59,6 +60,8 @@ class PipelineThread {
     Result<void> finish(const archive::RunEnd& end);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
+    /// Called on this thread when fault() has changed. Before the first run.
+    void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
     /// Given up, or held right now; empty when all is well.
     std::string fault() const;
 
@@ -87,6 +90,12 @@ class PipelineThread {
     void take(Delivery& delivery);
     /// Repeats `attempt` until it succeeds; false when that is given up.
     bool insist(const std::function<Result<void>()>& attempt);
+    /// One attempt at what is due; when it fails, the next after retry_interval.
+    void commit_what_is_due();
+    void finish(Finish& finish);
+    /// Keeps and tells the fault that `result` is, or that it is over.
+    bool noted(const Result<void>& result);
+    bool waits() const { return pipeline_.pending_items() != 0 || !when_durable_.empty(); }
 
     archive::Archive archive_;
     const dictionary::Dictionary& dictionary_;
@@ -95,6 +104,9 @@ class PipelineThread {
     BoundedQueue<Job> jobs_{deliveries_max};
     std::atomic<bool> items_wanted_{true}, given_up_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    std::vector<std::function<void()>> when_durable_; ///< of what waits
+    std::chrono::steady_clock::time_point next_attempt_{};
+    std::function<void(const std::string&)> on_fault_;
     mutable std::mutex fault_mutex_;
     std::string fault_;
     std::thread thread_;

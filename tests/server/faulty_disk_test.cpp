@@ -7,7 +7,11 @@
 #include "server/rehearsal/rehearsal.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
+#include "tests/server/web_client.hpp"
 
+#include "server/api/json.hpp"
+
+#include <fstream>
 #include <random>
 
 using namespace aeolis;
@@ -310,4 +314,144 @@ TEST_CASE("the n-th operation of the disk fails, for every n", "[.long][archive]
     for (const bool lasting : {false, true})
         for (const auto fault : {FaultyDisk::Fault::input_output, FaultyDisk::Fault::full})
             fail_each(fault, lasting, 1, 1);
+}
+
+namespace {
+
+/// A console that watches a landing of its own at a pace; what it is told of the archive.
+class Watch {
+  public:
+    explicit Watch(RunningServer& server) : server_(server), client_(server.port(), "aeolis.v1.protobuf") {
+        v1::ClientMessage message;
+        message.mutable_subscribe()->set_all_channels(true);
+        client_.send(message.SerializeAsString(), true);
+    }
+
+    /// Reads until `condition`; holds every item to the one before.
+    template <typename Condition>
+    void read_until(Condition condition) {
+        while (!condition()) {
+            const auto payload = client_.receive();
+            REQUIRE(payload);
+            v1::ServerMessage message;
+            REQUIRE(message.ParseFromString(*payload));
+            if (message.has_run_state()) fault = message.run_state().archive_fault();
+            if (!message.has_batch()) continue;
+            e_s = message.batch().clocks().e_s();
+            for (const auto& item : message.batch().items())
+                REQUIRE(item.seq() == ++last);
+        }
+    }
+    unsigned health() const { return web_request(server_.port(), "GET", "/healthz").status; }
+
+    double e_s = -1e9;
+    std::string fault;
+    Sequence last = 0;
+
+  private:
+    RunningServer& server_;
+    StreamClient client_;
+};
+
+simulation::Scenario from_uhf_on() {
+    auto scenario = shipped_scenario("nominal_auto");
+    scenario.start_before_entry_s = 600.0;
+    scenario.commands[0].send_before_entry_s = 595.0;
+    scenario.commands[1].send_before_entry_s = 590.0;
+    return scenario;
+}
+
+/// Something happens to the disk in flight: that is said, the landing goes on, and afterwards all is stored.
+template <typename Harm, typename Mend>
+void harm_and_mend(const char* words, Harm harm, Mend mend) {
+    FaultyDisk disk;
+    std::filesystem::path file;
+    Sequence last = 0;
+    TemporaryFolder copies;
+    {
+        RunningServer server{from_uhf_on(), 60.0};
+        file = server.archive();
+        Watch watch{server};
+        watch.read_until([&] { return watch.last > 200; });
+        const double before_s = watch.e_s;
+        harm(disk, file);
+        watch.read_until([&] { return !watch.fault.empty(); });
+        CHECK_THAT(watch.fault, Catch::Contains(file.string()) && Catch::Contains(words));
+        mend(watch);
+        CHECK(watch.e_s > before_s);
+        watch.read_until([&] { return watch.fault.empty(); });
+        CHECK(watch.health() == 200);
+        const Sequence mended = watch.last;
+        watch.read_until([&] { return watch.last > mended + 200; });
+        last = watch.last;
+        // What a question gets, from the routes as from the file.
+        const auto latest = web_request(server.port(), "GET", "/api/v1/runs/1/events?limit=10000");
+        CHECK(latest.status == 200);
+        auto reader = Reader::open(file, tests::shipped_dictionary());
+        REQUIRE(reader.ok());
+        CHECK(reader->last_seq(archive::RunId{1}).value() >= last);
+        reader = Error{"closed"};
+        server.restart(); // a clean end
+        const auto verified = pipeline::verify(file, {}, tests::shipped_dictionary(), nullptr, copies / "");
+        REQUIRE(verified.ok());
+        CHECK(verified->faults == std::vector<std::string>{});
+        CHECK(verified->runs == 1);
+    }
+}
+
+} // namespace
+
+TEST_CASE("while the disk is full the console is told, the landing goes on, and when there is room all of it is stored",
+          "[archive][disk][stream][R43]") {
+    FaultyDisk* full = nullptr;
+    harm_and_mend(
+        "full", [&](FaultyDisk& disk, const auto&) { (full = &disk)->fail_at(1, FaultyDisk::Fault::full, true); },
+        [&](Watch& watch) {
+            CHECK(watch.health() == 503);
+            const double full_s = watch.e_s;
+            watch.read_until([&] { return watch.e_s > full_s + 60.0; }); // far more than the queue of deliveries holds
+            CHECK(watch.health() == 503);
+            full->mend();
+        });
+}
+
+TEST_CASE("an archive that is removed while it is written is put back with all that was in it", "[archive][disk][stream][R43]") {
+    const auto nothing = [](Watch&) {};
+    SECTION("all of its files") {
+        harm_and_mend(
+            "was removed", [](auto&, const std::filesystem::path& file) {
+                for (const char* suffix : {"", "-wal", "-shm"})
+                    std::filesystem::remove(file.string() + suffix);
+            },
+            nothing);
+    }
+    SECTION("its log") {
+        harm_and_mend("was removed", [](auto&, const std::filesystem::path& file) { std::filesystem::remove(file.string() + "-wal"); },
+                      nothing);
+    }
+}
+
+TEST_CASE("another file in the archive's place is left alone, and the archive is put back when it is gone", "[archive][disk]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    const auto dictionary = small_dictionary();
+    auto archive = std::move(Archive::open(file)).value();
+    Pipeline pipeline{archive, dictionary};
+    const auto run = pipeline.begin({});
+    REQUIRE(run.ok());
+    REQUIRE(pipeline.accept(live(mortar_packet(0, 1000.0, 405.0F))).ok());
+    REQUIRE(pipeline.commit().ok());
+    std::filesystem::rename(file, folder / "moved.db");
+    std::ofstream{file} << "not ours";
+    REQUIRE(pipeline.accept(live(mortar_packet(1, 1001.0, 405.0F))).ok());
+    const auto refused = pipeline.commit();
+    REQUIRE_FALSE(refused.ok());
+    CHECK_THAT(refused.error().message, Catch::Contains("a.db was replaced by another file"));
+    CHECK(std::filesystem::file_size(file) == 8);
+    std::filesystem::remove(file);
+    CHECK_FALSE(pipeline.commit().ok()); // says that it was removed
+    REQUIRE(pipeline.commit().ok());
+    REQUIRE(pipeline.finish({}).ok());
+    CHECK(Reader::open(file, dictionary)->events(*run, {})->events_size() == 2);
+    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults.empty());
 }
