@@ -33,7 +33,7 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
 
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
     for (const auto& [item, previous_sclk] : items) {
-        if (item->has_unit() && item->unit().source() == v1::SOURCE_RECORDED) continue;
+        if (item->has_unit() && (!shape.units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
         if (!item->has_samples()) {
             *batch.add_items() = *item;
             continue;

@@ -30,6 +30,7 @@ struct StreamShape {
     bool all_channels = false;
     std::vector<std::uint32_t> channels; ///< ascending
     double max_rate_hz = 0.0;
+    bool units = true;
     bool operator==(const StreamShape&) const = default;
 };
 
@@ -42,7 +43,7 @@ struct ItemBefore {
 
 /// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
 /// Samples: the subscribed channels; `interval_s` (vehicle time) at least apart when > 0, and then marked thinned.
-/// Units: those received live; the recording's are at /packets.
+/// Units: those received live, where the shape has any; the recording's are at /packets.
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
 
 /// Tells previous_sclk for items in their order.

@@ -70,6 +70,7 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     shape_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
     std::ranges::sort(shape_.channels);
     shape_.max_rate_hz = subscribe.max_rate_hz();
+    shape_.units = !subscribe.without_units();
     newest_run_ = subscribe.run() == 0;
     const std::uint64_t run = newest_run_ ? hub_.current_run() : subscribe.run();
     if (run == 0 || run == hub_.current_run()) {
@@ -212,6 +213,7 @@ void StreamSession::ask_archive() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
+    kinds.units = shape_.units;
     hub_.services().read_items(
         archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
         [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
