@@ -1,5 +1,6 @@
 // What the archive costs above bare SQLite with the same table, index, batch and synchronous=FULL; what a landing's
-// telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes.
+// telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes; how
+// long a start has to wait for an archive that was closed, or whose writer was killed.
 
 #include "common/bytes.hpp"
 #include "server/archive/archive.hpp"
@@ -12,6 +13,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -20,6 +22,7 @@
 #include <functional>
 #include <random>
 #include <sqlite3.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 using namespace aeolis;
@@ -222,6 +225,50 @@ void store_long(const std::filesystem::path& file, const dictionary::Dictionary&
     must(opened->append(*run, batch).ok(), "append");
 }
 
+/// Ten million samples come in packets of `fields`; then kill -9, in the midst of the run.
+void store_until_killed(const std::filesystem::path& file, const dictionary::Dictionary& dictionary) {
+    const pid_t child = ::fork();
+    must(child >= 0, "fork");
+    if (child == 0) {
+        auto opened = archive::Archive::open(file);
+        must(opened.ok(), "Archive::open");
+        pipeline::Pipeline pipeline(*opened, dictionary);
+        pipeline.want_items(false);
+        must(pipeline.begin({}).ok(), "begin");
+        auto packets = landing();
+        for (std::size_t i = 0; i <= long_samples / fields; ++i) {
+            auto& octets = packets[i % packets.size()].octets;
+            seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0}, 1);
+            must(pipeline.accept(packets[i % packets.size()]).ok(), "accept");
+            must(pipeline.commit_if_full().ok(), "commit");
+        }
+        must(pipeline.commit().ok(), "commit");
+        ::raise(SIGKILL);
+    }
+    int status = 0;
+    must(::waitpid(child, &status, 0) == child && WIFSIGNALED(status), "the killed writer");
+}
+
+/// As a start does: the writer, then a reader, up to its first answer. The median of five, each of a copy: what a writer
+/// that was killed has left is mended by opening it. Closing is not part of it.
+double reopening_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary, std::size_t interrupted) {
+    std::vector<double> times;
+    const auto copy = file.string() + "-copy";
+    for (int i = 0; i < 5; ++i) {
+        for (const char* suffix : {"", "-wal"})
+            if (std::filesystem::exists(file.string() + suffix))
+                std::filesystem::copy_file(file.string() + suffix, copy + suffix, std::filesystem::copy_options::overwrite_existing);
+        const double start = wall_s();
+        auto writer = archive::Archive::open(copy);
+        must(writer.ok() && writer->interrupted().size() == interrupted, "Archive::open");
+        auto reader = archive::Reader::open(copy, dictionary);
+        must(reader.ok() && reader->runs().ok(), "Reader::open");
+        times.push_back(1e3 * (wall_s() - start));
+    }
+    std::nth_element(times.begin(), times.begin() + 2, times.end());
+    return times[2];
+}
+
 /// Of the pages that hold samples, for each value of a channel.
 double octets_of_samples(const std::filesystem::path& file) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_only);
@@ -309,6 +356,14 @@ int main() {
     goal("all of them thinned to 2000, CPU, hot", median_ms([&] { ask(whole); }), 0.1, "ms");
     goal("100 000 of them thinned to 2000, wall, first touch", first_touch_ms(file, two, some), 2.0, "ms");
     goal("all of them thinned to 2000, wall, first touch", first_touch_ms(file, two, whole), 2.0, "ms");
+
+    const auto killed = folder.path / "killed";
+    store_until_killed(killed, dictionary);
+    const double log_mb = static_cast<double>(std::filesystem::file_size(killed.string() + "-wal")) * 1e-6;
+    std::printf("opening an archive of %zu samples, for writing and for reading, up to the list of its runs\n", long_samples);
+    goal("after a clean end, wall", reopening_ms(file, two, 0), 10.0, "ms");
+    std::printf("  its writer killed: a log of %.1f MB\n", log_mb);
+    goal("after kill -9, wall", reopening_ms(killed, dictionary, 1), 100.0, "ms");
 
     const auto flown = folder.path / "nominal_auto";
     const auto command = std::string(AEOLIS_SOURCE_DIR "/build/release/aeolis rehearse --scenario nominal_auto --archive ") + flown.string();

@@ -439,7 +439,10 @@ void Api::post_alarm(const Asked& asked) {
 
 v1::RunState Api::current_run() const {
     auto state = parts_.desk.current();
-    if (state.run() != 0) state.set_last_seq(parts_.hub.last_seq());
+    if (state.run() != 0) {
+        state.set_last_seq(parts_.hub.last_seq());
+        state.set_archive_fault(parts_.pipeline.fault());
+    }
     return state;
 }
 

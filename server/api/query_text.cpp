@@ -9,9 +9,10 @@
 
 namespace aeolis::server {
 
-Result<QueryText> QueryText::parse(std::string_view encoded, std::initializer_list<std::string_view> known) {
+Result<QueryText> QueryText::parse(std::string_view encoded, const std::vector<std::string_view>& known) {
     QueryText query;
-    const auto parsed = boost::urls::parse_query(boost::urls::string_view{encoded.data(), encoded.size()});
+    const std::string text{encoded}; // Boost.URL 1.81 reads one octet behind an empty view
+    const auto parsed = boost::urls::parse_query(text);
     if (!parsed) return Error{fmt::format("the query '{}' is not well formed", encoded)};
     const boost::urls::encoding_opts plus_is_space{true};
     for (const auto part : *parsed) {

@@ -3,7 +3,6 @@
 #include "common/result.hpp"
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,7 +14,7 @@ namespace aeolis::server {
 class QueryText {
   public:
     /// Fails on bad percent-encoding, a name given twice, or a name that is not among `known`.
-    static Result<QueryText> parse(std::string_view encoded, std::initializer_list<std::string_view> known);
+    static Result<QueryText> parse(std::string_view encoded, const std::vector<std::string_view>& known);
 
     std::optional<std::string> text(std::string_view name) const;
     /// Finite; none when not given or empty.

@@ -5,20 +5,24 @@ namespace aeolis::server {
 Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::path& archive,
                                                          const dictionary::Dictionary& dictionary,
                                                          const telemetry::OtherMission* other) {
+    const auto open = [archive, &dictionary, other] { return archive::Reader::open(archive, dictionary, other); };
     std::vector<archive::Reader> readers;
     for (std::size_t i = 0; i < threads; ++i) {
-        auto reader = archive::Reader::open(archive, dictionary, other);
+        auto reader = open();
         if (!reader) return reader.error();
         readers.push_back(std::move(reader).value());
     }
-    return std::unique_ptr<QueryThreads>{new QueryThreads{std::move(readers)}};
+    return std::unique_ptr<QueryThreads>{new QueryThreads{std::move(readers), open}};
 }
 
-QueryThreads::QueryThreads(std::vector<archive::Reader> readers) : readers_(std::move(readers)) {
+QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open) : readers_(std::move(readers)) {
     for (auto& reader : readers_)
-        threads_.emplace_back([this, &reader] {
-            while (const auto asked = jobs_.pop())
+        threads_.emplace_back([this, &reader, open] {
+            while (const auto asked = jobs_.pop()) {
+                if (reader.outdated())
+                    if (auto fresh = open()) reader = std::move(*fresh);
                 answer(*asked, reader);
+            }
         });
 }
 

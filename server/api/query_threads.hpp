@@ -14,8 +14,8 @@
 
 namespace aeolis::server {
 
-/// Two threads that read: each has its own read-only connection to the archive. So a long query never holds up the
-/// network, the writer, or the other query.
+/// Two threads that read: each has its own read-only connection to the archive, and takes a new one when the file was put
+/// back under its name. So a long query never holds up the network, the writer, or the other query.
 class QueryThreads {
   public:
     static constexpr std::size_t threads = 2;
@@ -38,7 +38,8 @@ class QueryThreads {
     std::size_t waiting() const { return jobs_.size(); }
 
   private:
-    explicit QueryThreads(std::vector<archive::Reader> readers);
+    using Open = std::function<Result<archive::Reader>()>;
+    QueryThreads(std::vector<archive::Reader> readers, const Open& open);
     struct Asked {
         Job job;
         std::shared_ptr<std::atomic<bool>> gone; ///< null: never told

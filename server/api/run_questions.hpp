@@ -2,8 +2,8 @@
 
 #include "server/api/api.hpp"
 
-#include <initializer_list>
 #include <string_view>
+#include <vector>
 
 namespace aeolis::server {
 
@@ -16,7 +16,7 @@ struct Ground {
 /// A question to one run: the last part of its path, the parameters it knows, and how it is answered.
 struct RunQuestionEntry {
     std::string_view name; ///< "events" of /api/v1/runs/{run}/events; "" for the run itself
-    std::initializer_list<std::string_view> parameters;
+    std::vector<std::string_view> parameters;
     HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
 };
 

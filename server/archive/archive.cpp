@@ -3,7 +3,11 @@
 #include "server/archive/row_writer.hpp"
 #include "server/archive/schema.hpp"
 #include "server/archive/sqlite.hpp"
+#include "server/archive/upkeep.hpp"
 #include "server/archive/writer_lock.hpp"
+
+#include <array>
+#include <sys/stat.h>
 
 namespace aeolis::archive {
 
@@ -21,12 +25,26 @@ std::int64_t number(std::uint64_t value) {
     return static_cast<std::int64_t>(value);
 }
 
+std::filesystem::path beside(std::filesystem::path file, const char* suffix) {
+    return file += suffix;
+}
+
 } // namespace
 
 struct Archive::State {
-    State(std::filesystem::path file_in, WriterLock lock_in, sqlite::Database database_in)
-        : file(std::move(file_in)), lock(std::move(lock_in)), database(std::move(database_in)) {}
+    State(std::filesystem::path file_in, WriterLock lock_in) : file(std::move(file_in)), lock(std::move(lock_in)) {}
 
+    /// What a name stands for: device and inode. A file that is open lives on without its name; SQLite then goes on
+    /// writing what nobody will find again.
+    using Identity = std::optional<std::pair<dev_t, ino_t>>;
+    using Identities = std::array<Identity, 3>; ///< of the file, its WAL, its shared memory
+    static Identity identity_of(const std::filesystem::path& file);
+    Identities identities() const { return {identity_of(file), identity_of(beside(file, "-wal")), identity_of(beside(file, "-shm"))}; }
+
+    Result<void> connect();
+    /// Before anything is written: that all three still have their names.
+    Result<void> in_place();
+    Result<void> put_back();
     Result<void> mark_interrupted();
     Result<void> add_dictionary(const dictionary::Dictionary& dictionary);
     Result<RunId> add_run(const RunStart& start, const dictionary::Dictionary& dictionary);
@@ -37,6 +55,8 @@ struct Archive::State {
     sqlite::Database database;
     RowWriter rows;
     sqlite::Statement last_key;
+    Identities opened;
+    bool told_removed = false;
     std::vector<RunId> interrupted;
 };
 
@@ -57,19 +77,62 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
         return Error{file.string() + " is a directory, not an Aeolis archive"};
     auto lock = WriterLock::take(file);
     if (!lock) return lock.error();
-    auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
-    if (!database) return database.error();
-    auto state = std::make_unique<State>(file, std::move(lock).value(), std::move(database).value());
-    if (auto done = prepare_for_writing(state->database); !done) return done.error();
-    if (auto done = state->database.execute(writer_pragmas); !done) return done.error();
-    auto rows = RowWriter::open(state->database);
-    if (!rows) return rows.error();
-    state->rows = std::move(rows).value();
-    auto last_key = state->database.prepare(last_key_sql);
-    if (!last_key) return last_key.error();
-    state->last_key = std::move(last_key).value();
+    auto state = std::make_unique<State>(file, std::move(lock).value());
+    if (auto done = state->connect(); !done) return done.error();
     if (auto done = state->mark_interrupted(); !done) return done.error();
     return Archive(std::move(state));
+}
+
+Archive::State::Identity Archive::State::identity_of(const std::filesystem::path& file) {
+    struct stat found {};
+    if (::stat(file.c_str(), &found) != 0) return std::nullopt;
+    return std::pair{found.st_dev, found.st_ino};
+}
+
+Result<void> Archive::State::connect() {
+    auto fresh = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+    if (!fresh) return fresh.error();
+    if (auto done = prepare_for_writing(*fresh); !done) return done;
+    if (auto done = fresh->execute(writer_pragmas); !done) return done;
+    auto row_writer = RowWriter::open(*fresh);
+    if (!row_writer) return row_writer.error();
+    auto key = fresh->prepare(last_key_sql);
+    if (!key) return key.error();
+    // The first question makes the log and its shared memory.
+    if (auto asked = fresh->integer_of("SELECT max(run) FROM runs"); !asked) return asked.error();
+    // Statements of an earlier connection go before it.
+    rows = std::move(*row_writer);
+    last_key = std::move(*key);
+    database = std::move(*fresh);
+    opened = identities();
+    return {};
+}
+
+Result<void> Archive::State::in_place() {
+    const auto now = identities();
+    if (now == opened) return {};
+    if (now[0] && now[0] != opened[0])
+        return Error{file.string() + " was replaced by another file while it was being written: move that away, and the archive is put back"};
+    if (!std::exchange(told_removed, true))
+        return Error{(now[0] ? beside(file, now[1] == opened[1] ? "-shm" : "-wal") : file).string() +
+                     " was removed while it was being written: the archive is put back from what is open"};
+    auto done = put_back();
+    if (done) told_removed = false;
+    return done;
+}
+
+Result<void> Archive::State::put_back() {
+    const auto copy = beside(file, "-restored");
+    if (auto done = copy_whole(database, copy); !done) return done;
+    // A log that belongs to another file must not stand beside it.
+    std::error_code why;
+    for (const char* suffix : {"-wal", "-shm"})
+        std::filesystem::remove(beside(file, suffix), why);
+    std::filesystem::rename(copy, file, why);
+    if (why) return Error{file.string() + ": " + why.message()};
+    opened = {identity_of(file), std::nullopt, std::nullopt}; // ours, also when what follows must be tried again
+    if (auto done = make_durable(file); !done) return done;
+    return connect();
 }
 
 Result<void> Archive::State::mark_interrupted() {
@@ -99,6 +162,7 @@ Result<void> Archive::State::mark_interrupted() {
 }
 
 Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictionary& dictionary) {
+    if (auto done = state_->in_place(); !done) return done.error();
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     if (auto done = state_->add_dictionary(dictionary); !done) return done.error();
@@ -109,6 +173,7 @@ Result<RunId> Archive::begin_run(const RunStart& start, const dictionary::Dictio
 }
 
 Result<void> Archive::continue_run(RunId run) {
+    if (auto done = state_->in_place(); !done) return done;
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     auto row = state_->database.prepare("UPDATE runs SET state = 'running', last_seq = NULL WHERE run = ? AND state = 'interrupted'");
@@ -193,6 +258,7 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
 
 Result<void> Archive::append(RunId run, const Batch& batch) {
     AEOLIS_CHECK(batch.last_seq <= sequence_max);
+    if (auto done = state_->in_place(); !done) return done;
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     if (auto done = state_->rows.write(run, batch); !done) return done;

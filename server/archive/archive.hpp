@@ -19,7 +19,8 @@ inline constexpr std::int32_t schema_version = 5;          ///< PRAGMA user_vers
 /// In       batches of one run, in the order of their sequence numbers
 /// Out      durable rows: when append() returns ok they survive kill -9 and a power cut (WAL, synchronous=FULL)
 /// Faults   every failure of the disk is an Error that names the file; nothing of that batch is then stored, and the
-///          same batch may be given again. A second writer, of this process or another, is refused at open().
+///          same batch may be given again. A second writer, of this process or another, is refused at open(). When the
+///          file was removed under its name that is an Error, once; the next call puts it back as it was.
 /// Threads  one owner. Readers (reader.hpp) have their own connections.
 class Archive {
   public:

@@ -57,6 +57,10 @@ std::string search_words(std::string_view text) {
     return words;
 }
 
+bool Reader::outdated() const {
+    return state_->database.moved();
+}
+
 Result<Query> Reader::State::query(const char* sql) {
     auto found = statements.find(sql);
     if (found == statements.end()) {

@@ -110,6 +110,8 @@ class Reader {
     void stop_when(std::function<bool()> stop);
     /// Whether that has happened since.
     bool stopped() const;
+    /// The file no longer has its name: answers are from what it was, a new Reader sees what it is.
+    bool outdated() const;
 
     /// All runs, newest first. A run that goes on is `running`; pace and clocks are the rehearsal's to fill in.
     Result<v1::RunList> runs();

@@ -180,6 +180,11 @@ bool Database::stopped() const {
     return stop_ != nullptr && stop_->happened;
 }
 
+bool Database::moved() const {
+    int moved = 0;
+    return sqlite3_file_control(database_.get(), "main", SQLITE_FCNTL_HAS_MOVED, &moved) == SQLITE_OK && moved != 0;
+}
+
 bool Database::autocommit() const {
     return sqlite3_get_autocommit(database_.get()) != 0;
 }

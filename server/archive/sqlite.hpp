@@ -71,6 +71,8 @@ class Database {
     void stop_when(std::function<bool()> stop);
     /// Whether that has happened since.
     bool stopped() const;
+    /// The file has been removed or replaced under its name: this connection still reads and writes what it opened.
+    bool moved() const;
 
     /// False while a transaction is open.
     bool autocommit() const;

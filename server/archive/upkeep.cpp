@@ -24,7 +24,8 @@ std::string item_keys_sql(const std::string& schema, bool since_five) {
     return sql;
 }
 
-/// The file and its folder: what has been written, and the name it has.
+} // namespace
+
 Result<void> make_durable(const std::filesystem::path& file) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     for (const auto& each : {file, folder}) {
@@ -36,8 +37,6 @@ Result<void> make_durable(const std::filesystem::path& file) {
     }
     return {};
 }
-
-} // namespace
 
 Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
     std::error_code ignored;
@@ -102,21 +101,28 @@ Result<void> backup(const std::filesystem::path& file, const std::filesystem::pa
     if (auto ours = check_for_reading(*source); !ours) return ours;
     auto partial = copy;
     partial += "-partial";
-    std::filesystem::remove(partial, ignored);
-    const auto copied = [&]() -> Result<void> {
-        auto target = sqlite::Database::open(partial.string(), sqlite::Mode::read_write_create);
-        if (!target) return target.error();
-        if (auto done = source->copy_to(*target); !done) return done;
-        // One file, without a log beside it: a copy is carried about.
-        return target->execute("PRAGMA journal_mode = DELETE");
-    }();
-    auto done = copied ? make_durable(partial) : copied;
+    auto done = copy_whole(*source, partial);
     if (done) {
         std::error_code why;
         std::filesystem::rename(partial, copy, why);
         done = why ? Result<void>(Error{copy.string() + ": " + why.message()}) : make_durable(copy);
     }
     if (!done) std::filesystem::remove(partial, ignored);
+    return done;
+}
+
+Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into) {
+    std::error_code ignored;
+    std::filesystem::remove(into, ignored);
+    const auto copied = [&]() -> Result<void> {
+        auto target = sqlite::Database::open(into.string(), sqlite::Mode::read_write_create);
+        if (!target) return target.error();
+        if (auto done = source.copy_to(*target); !done) return done;
+        // One file, without a log beside it: a copy is carried about.
+        return target->execute("PRAGMA journal_mode = DELETE");
+    }();
+    auto done = copied ? make_durable(into) : copied;
+    if (!done) std::filesystem::remove(into, ignored);
     return done;
 }
 

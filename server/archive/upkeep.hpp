@@ -48,6 +48,13 @@ Result<void> vacuum(Maintenance& archive);
 /// only when it is complete and durable.
 Result<void> backup(const std::filesystem::path& file, const std::filesystem::path& copy);
 
+/// The same of a database that is open, whatever has become of its name; `into` is replaced if it is there. Leaves it
+/// durable, and nothing when it fails.
+Result<void> copy_whole(const sqlite::Database& source, const std::filesystem::path& into);
+
+/// Durable: the file's contents, and its name in its folder.
+Result<void> make_durable(const std::filesystem::path& file);
+
 /// SQLite's own check of the file, a line a fault; empty: none.
 Result<std::vector<std::string>> integrity_faults(sqlite::Database& database);
 

@@ -64,6 +64,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         },
         chosen.other);
     backend->pipeline_->want_items(false);
+    backend->pipeline_->on_fault([self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
     backend->desk_ = std::make_unique<RehearsalDesk>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {

@@ -33,7 +33,7 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
 
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
     for (const auto& [item, previous_sclk] : items) {
-        if (item->has_unit() && item->unit().source() == v1::SOURCE_RECORDED) continue;
+        if (item->has_unit() && (!shape.units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
         if (!item->has_samples()) {
             *batch.add_items() = *item;
             continue;
@@ -107,6 +107,14 @@ void StreamHub::run_state(v1::RunState state) {
     }
     state_ = std::move(state);
     state_.set_last_seq(last_seq_);
+    state_.set_archive_fault(archive_fault_);
+    ++state_version_;
+    wake_all();
+}
+
+void StreamHub::archive_fault(std::string fault) {
+    archive_fault_ = std::move(fault);
+    state_.set_archive_fault(archive_fault_);
     ++state_version_;
     wake_all();
 }

@@ -30,6 +30,7 @@ struct StreamShape {
     bool all_channels = false;
     std::vector<std::uint32_t> channels; ///< ascending
     double max_rate_hz = 0.0;
+    bool units = true;
     bool operator==(const StreamShape&) const = default;
 };
 
@@ -42,7 +43,7 @@ struct ItemBefore {
 
 /// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
 /// Samples: the subscribed channels; `interval_s` (vehicle time) at least apart when > 0, and then marked thinned.
-/// Units: those received live; the recording's are at /packets.
+/// Units: those received live, where the shape has any; the recording's are at /packets.
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
 
 /// Tells previous_sclk for items in their order.
@@ -78,6 +79,8 @@ class StreamHub {
     void published(std::shared_ptr<const pipeline::PublishedBatch> batch);
     void run_state(v1::RunState state);
     void clocks(v1::Clocks clocks);
+    /// Why nothing can be stored now; empty when all is well. Said with the state of the run.
+    void archive_fault(std::string fault);
 
     void add(StreamSession& session);
     void remove(StreamSession& session);
@@ -133,6 +136,7 @@ class StreamHub {
     std::size_t held_items_ = 0;
     SampleSpacing spacing_;
     std::deque<Cached> cache_;
+    std::string archive_fault_;
     std::array<Encoded, 2> state_encoded_;
     std::uint64_t state_encoded_version_ = 0;
 };

@@ -9,6 +9,19 @@
 
 namespace aeolis::server {
 
+StreamSession::Client StreamSession::follower() {
+    Client client;
+    client.command = [](const v1::CommandRequest& request, const auto& reply) {
+        v1::CommandReply answer;
+        answer.set_request(request.request());
+        answer.set_reason("this client only follows");
+        reply(answer);
+    };
+    client.control = [](const v1::RehearsalControl&, const auto& done) { done(Error{"this client only follows"}); };
+    client.refusal = [] { return std::string{}; };
+    return client;
+}
+
 StreamSession::StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake, Client client)
     : hub_(hub), wake_(std::move(wake)), client_(std::move(client)) {
     shape_.format = format;
@@ -83,6 +96,7 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     shape_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
     std::ranges::sort(shape_.channels);
     shape_.max_rate_hz = subscribe.max_rate_hz();
+    shape_.units = !subscribe.without_units();
     newest_run_ = subscribe.run() == 0;
     const std::uint64_t run = newest_run_ ? hub_.current_run() : subscribe.run();
     if (run == 0 || run == hub_.current_run()) {
@@ -226,6 +240,7 @@ void StreamSession::ask_archive() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
+    kinds.units = shape_.units;
     hub_.services().read_items(
         archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
         [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {

@@ -29,6 +29,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
         std::function<void(v1::RehearsalControl, std::function<void(Result<void>)>)> control;
         std::function<std::string()> refusal; ///< why it may follow no longer; empty: it may
     };
+    /// Follows, may do nothing else, and is never sent away.
+    static Client follower();
     StreamSession(StreamHub& hub, StreamFormat format, std::function<void()> wake, Client client);
     ~StreamSession();
     StreamSession(const StreamSession&) = delete;

@@ -116,14 +116,28 @@ bool PipelineThread::audit_has_room() const {
     return audit_.size() < audit_waiting_max;
 }
 
-void PipelineThread::write_audit() {
+bool PipelineThread::waits() const {
+    if (pipeline_.pending_items() != 0 || !when_durable_.empty()) return true;
+    const std::scoped_lock lock{audit_mutex_};
+    return !audit_.empty();
+}
+
+Result<void> PipelineThread::write_audit() {
     std::vector<archive::AuditRecord> records;
     {
         const std::scoped_lock lock{audit_mutex_};
-        records.swap(audit_);
+        records = audit_;
     }
-    if (records.empty() || insist([&] { return archive_.append_audit(records); })) return;
-    spdlog::error("audit: {} entries could not be written", records.size());
+    if (records.empty()) return {};
+    if (auto written = archive_.append_audit(records); !written) return written;
+    const std::scoped_lock lock{audit_mutex_};
+    audit_.erase(audit_.begin(), audit_.begin() + static_cast<std::ptrdiff_t>(records.size()));
+    return {};
+}
+
+Result<void> PipelineThread::commit(std::optional<std::chrono::steady_clock::time_point> when_due) {
+    auto committed = when_due ? pipeline_.commit_if_due(*when_due) : pipeline_.commit();
+    return committed ? write_audit() : committed;
 }
 
 bool PipelineThread::deliver(Delivery delivery) {
@@ -157,67 +171,79 @@ PipelineThread::Figures PipelineThread::figures() const {
 void PipelineThread::run() {
     for (;;) {
         // Nothing waits for a commit: neither does this thread need to wake for one.
-        auto job = pipeline_.pending_items() == 0
-                       ? jobs_.pop()
-                       : jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval);
-        if (!job && pipeline_.pending_items() == 0) return write_audit();
+        auto job = waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
+        if (!job && jobs_.closed() && jobs_.size() == 0) {
+            if (waits()) insist([&] { return commit(std::nullopt); });
+            return;
+        }
         pipeline_.want_items(items_wanted_);
         if (job) {
-            if (auto* begin = std::get_if<Begin>(&*job)) {
+            if (auto* begin = std::get_if<Begin>(&*job))
                 begin->done.set_value(pipeline_.begin(begin->start));
-            } else if (auto* delivery = std::get_if<Delivery>(&*job)) {
+            else if (auto* delivery = std::get_if<Delivery>(&*job))
                 take(*delivery);
-            } else if (auto* action = std::get_if<Action>(&*job)) {
+            else if (auto* action = std::get_if<Action>(&*job))
                 (*action)();
-            } else {
-                auto& finish = std::get<Finish>(*job);
-                if (insist([&] { return pipeline_.finish(finish.end); }))
-                    finish.done.set_value({});
-                else
-                    finish.done.set_value(Error{fault()});
-            }
+            else
+                finish(std::get<Finish>(*job));
         }
-        insist([&] { return pipeline_.commit_if_due(std::chrono::steady_clock::now()); });
-        write_audit();
-        if (!job && jobs_.closed() && (given_up_ || !pipeline_.commit().ok())) return;
+        commit_what_is_due();
     }
+}
+
+void PipelineThread::finish(Finish& finish) {
+    if (insist([&] { return pipeline_.finish(finish.end); }))
+        finish.done.set_value({});
+    else
+        finish.done.set_value(Error{fault()});
 }
 
 void PipelineThread::take(Delivery& delivery) {
     ++deliveries_;
     for (auto& entry : delivery.entries) {
+        const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
         // Refused only while too much waits for a failing disk: then that must be committed first.
-        const auto accepted = insist([&]() -> Result<void> {
-            auto result = std::visit([&](auto& each) { return pipeline_.accept(each); }, entry);
-            return result;
-        });
-        if (!accepted) return;
+        if (!accept() && !insist(accept)) return;
     }
     pipeline_.relay_progress(delivery.relay_progress);
     if (!delivery.links.empty()) pipeline_.link_totals(std::move(delivery.links));
-    if (delivery.when_durable.empty()) return;
-    if (!insist([&] { return pipeline_.commit(); })) return;
-    for (const auto& tell : delivery.when_durable)
+    for (auto& tell : delivery.when_durable)
+        when_durable_.push_back(std::move(tell));
+}
+
+void PipelineThread::commit_what_is_due() {
+    const auto now = std::chrono::steady_clock::now();
+    if (given_up_ || now < next_attempt_) return;
+    if (!noted(commit(when_durable_.empty() ? std::optional{now} : std::nullopt))) {
+        next_attempt_ = now + retry_interval;
+        given_up_ = faults_ == Faults::give_up;
+        return;
+    }
+    for (const auto& tell : std::exchange(when_durable_, {}))
         tell();
+}
+
+bool PipelineThread::noted(const Result<void>& result) {
+    if (!result) ++failed_commits_;
+    const std::string fault = result ? "" : result.error().message;
+    {
+        const std::scoped_lock lock{fault_mutex_};
+        if (fault == fault_) return result.ok();
+        fault_ = fault;
+    }
+    if (result)
+        spdlog::info("archive: writing goes on");
+    else
+        spdlog::error("archive: {}", fault);
+    if (on_fault_) on_fault_(fault);
+    return result.ok();
 }
 
 bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
     for (int tries = 0; !given_up_; ++tries) {
-        auto result = attempt();
-        if (result) {
-            if (tries > 0) {
-                spdlog::info("archive: writing goes on");
-                const std::scoped_lock lock{fault_mutex_};
-                fault_.clear();
-            }
-            return true;
-        }
-        ++failed_commits_;
-        if (tries == 0) {
-            spdlog::error("archive: {}", result.error().message);
-            const std::scoped_lock lock{fault_mutex_};
-            fault_ = result.error().message;
-        }
+        const auto result = attempt();
+        if (result) return noted(result);
+        if (fault().empty()) noted(result); // else the disk's own words are known
         if (faults_ == Faults::give_up || (jobs_.closed() && tries >= retries_when_closing)) {
             given_up_ = true;
             break;

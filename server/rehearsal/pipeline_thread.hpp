@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <optional>
 #include <thread>
 #include <variant>
 #include <vector>
@@ -35,8 +36,9 @@ struct Delivery {
 ///
 /// In       deliveries of one run at a time, through a queue of `deliveries_max`: who delivers waits when it is full
 /// Out      what the pipeline publishes, on this thread
-/// Faults   a failed commit is told once, and tried again every half second; the run waits meanwhile and nothing is
-///          lost. With `Faults::give_up` (one landing without a console) the first failure ends it.
+/// Faults   a failed commit is told once, and tried again every half second; the run goes on meanwhile, until
+///          pipeline::pending_octets_max wait: then it waits too. Nothing is lost. With `Faults::give_up` (one landing
+///          without a console) the first failure ends it.
 class PipelineThread {
   public:
     static constexpr std::size_t audit_waiting_max = 1'000; ///< ours: some 200 kB
@@ -70,6 +72,8 @@ class PipelineThread {
     bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
+    /// Called on this thread when fault() has changed. Before the first run.
+    void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
     /// Given up, or held right now; empty when all is well.
     std::string fault() const;
 
@@ -98,6 +102,15 @@ class PipelineThread {
     void take(Delivery& delivery);
     /// Repeats `attempt` until it succeeds; false when that is given up.
     bool insist(const std::function<Result<void>()>& attempt);
+    /// One attempt at what is due; when it fails, the next after retry_interval.
+    void commit_what_is_due();
+    void finish(Finish& finish);
+    /// Keeps and tells the fault that `result` is, or that it is over.
+    bool noted(const Result<void>& result);
+    bool waits() const;
+    Result<void> write_audit();
+    /// Of the run and of the audit; the run's when it is due, or at once.
+    Result<void> commit(std::optional<std::chrono::steady_clock::time_point> when_due);
 
     archive::Archive archive_;
     const dictionary::Dictionary& dictionary_;
@@ -106,9 +119,11 @@ class PipelineThread {
     BoundedQueue<Job> jobs_{deliveries_max};
     std::atomic<bool> items_wanted_{true}, given_up_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
-    void write_audit();
     mutable std::mutex audit_mutex_;
     std::vector<archive::AuditRecord> audit_;
+    std::vector<std::function<void()>> when_durable_; ///< of what waits
+    std::chrono::steady_clock::time_point next_attempt_{};
+    std::function<void(const std::string&)> on_fault_;
     mutable std::mutex fault_mutex_;
     std::string fault_;
     std::thread thread_;

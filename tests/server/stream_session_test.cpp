@@ -83,13 +83,7 @@ struct Client {
         : session(std::make_shared<StreamSession>(hub, format, [] {}, rights())) {}
 
     StreamSession::Client rights() {
-        StreamSession::Client client;
-        client.command = [](const v1::CommandRequest& request, const auto& reply) {
-            v1::CommandReply answer;
-            answer.set_request(request.request());
-            answer.set_reason("nothing listens");
-            reply(answer);
-        };
+        auto client = StreamSession::follower();
         client.control = [](const v1::RehearsalControl&, const auto& done) { done(Error{"no rehearsal goes on"}); };
         client.refusal = [this] { return refusal; };
         return client;

@@ -1,0 +1,349 @@
+// The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
+// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled. And the start of the real
+// program on an archive of a hundred runs, up to the first answer with data.
+
+#include "bench/loopback_clients.hpp"
+#include "common/bytes.hpp"
+#include "server/api/query_threads.hpp"
+#include "server/archive/reader.hpp"
+#include "server/net/web_server.hpp"
+#include "server/rehearsal/pipeline_thread.hpp"
+
+#include <arpa/inet.h>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+using namespace aeolis;
+using namespace aeolis::bench;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+constexpr std::size_t clients = 1000, stalled = 1, watched_channels = 30;
+constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368; // 1.5 kB
+constexpr std::size_t events_per_s = 10;
+constexpr double seconds = 10.0;
+constexpr double sample_rate_hz = 20.0;
+constexpr Apid event_apid{0x7F};
+
+void must(bool done, const char* what) {
+    if (done) return;
+    std::fprintf(stderr, "load_bench: %s failed\n", what);
+    std::exit(1);
+}
+
+struct Folder {
+    std::filesystem::path path;
+    Folder() {
+        std::string name = (std::filesystem::temp_directory_path() / "aeolis-bench-XXXXXX").string();
+        must(::mkdtemp(name.data()) != nullptr, "mkdtemp");
+        path = name;
+    }
+    ~Folder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+double now_s() {
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+/// Packets of floats, each a channel; and an event that tells when it was made: two numbers of 32 bits.
+dictionary::Dictionary load() {
+    dictionary::Dictionary d;
+    d.mission = "LOAD";
+    d.id = 1;
+    dictionary::Type real;
+    real.kind = dictionary::ValueKind::real;
+    real.encoding = dictionary::Encoding::ieee754;
+    real.bits = 32;
+    for (std::size_t kind = 0; kind < packet_kinds; ++kind) {
+        dictionary::Packet packet;
+        packet.name = "Load" + std::to_string(kind);
+        packet.apid = Apid{static_cast<std::uint16_t>(kind + 1)};
+        packet.octets = static_cast<unsigned>(tm_overhead_octets + 4 * channels_a_packet);
+        for (std::size_t i = 0; i < channels_a_packet; ++i) {
+            const ChannelId id{static_cast<std::uint16_t>(d.channels.size())};
+            const auto name = "load_" + std::to_string(id.value);
+            d.channels.push_back({id, name, name, "", real});
+            packet.fields.push_back({name, real, id, static_cast<unsigned>((tm_data_offset_octets + 4 * i) * 8), std::nullopt});
+        }
+        d.packets.push_back(packet);
+    }
+    dictionary::Type whole;
+    whole.bits = 32;
+    dictionary::Packet event;
+    event.name = "LOAD_EVENT";
+    event.apid = event_apid;
+    event.event = EvrId{1};
+    event.octets = tm_overhead_octets + 2 + 8;
+    const unsigned data = tm_data_offset_octets * 8;
+    dictionary::Type id = whole;
+    id.bits = 16;
+    event.fields = {{"event_id", id, {}, data, {}}, {"seconds", whole, {}, data + 16, {}}, {"nanoseconds", whole, {}, data + 48, {}}};
+    d.packets.push_back(event);
+    d.events = {{EvrId{1}, "LOAD_EVENT", dictionary::EventLevel::activity_hi, "at {seconds}.{nanoseconds}", packet_kinds}};
+    return d;
+}
+
+std::uint64_t resident_octets() {
+    std::ifstream statm{"/proc/self/statm"};
+    std::uint64_t size = 0, resident = 0;
+    statm >> size >> resident;
+    return resident * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+/// A client that reads every item: what a console knows. One thread.
+class Watcher {
+  public:
+    Watcher(std::uint16_t port, const std::string& subscription) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(port);
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        must(::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0, "connect");
+        write("GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+              "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n");
+        while (!kept_.ends_with("\r\n\r\n"))
+            kept_ += read(1);
+        kept_.clear();
+        must(subscription.size() < 126, "a short subscription");
+        write(std::string{"\x82"} + static_cast<char>(0x80U | subscription.size()) + std::string(4, '\0') + subscription);
+        thread_ = std::thread{[this] { follow(); }};
+    }
+    ~Watcher() {
+        ::shutdown(socket_, SHUT_RDWR);
+        thread_.join();
+        ::close(socket_);
+    }
+
+    std::atomic<std::uint64_t> events{0}, through{0};
+    std::atomic<bool> broken{false}; ///< a batch that does not join the one before
+    std::vector<double> event_ms, sample_ms;
+
+  private:
+    void write(const std::string& octets) { must(::send(socket_, octets.data(), octets.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(octets.size()), "send"); }
+    std::string read(std::size_t octets) {
+        std::string got(octets, '\0');
+        if (octets > 0 && ::recv(socket_, got.data(), octets, MSG_WAITALL) != static_cast<ssize_t>(octets)) over_ = true;
+        return got;
+    }
+    void follow() {
+        while (!over_) {
+            const auto head = read(2);
+            std::uint64_t octets = static_cast<std::uint8_t>(head[1]);
+            const std::size_t more = octets == 126 ? 2 : octets == 127 ? 8 : 0;
+            if (more > 0) octets = 0;
+            for (const char each : read(more))
+                octets = octets << 8U | static_cast<std::uint8_t>(each);
+            const auto payload = read(octets);
+            v1::ServerMessage message;
+            if (over_ || (head[0] & 0xF) != 2 || !message.ParseFromString(payload) || !message.has_batch()) continue;
+            take(message.batch());
+            if (now_s() - alive_s_ < 5.0) continue;
+            alive_s_ = now_s();
+            write(std::string{alive});
+        }
+    }
+    void take(const v1::Batch& batch) {
+        const double now = now_s();
+        if (batch.after_seq() != through) broken = true;
+        through = batch.complete_through();
+        double newest = 0.0;
+        for (const auto& item : batch.items()) {
+            if (item.has_samples()) newest = std::max(newest, item.samples().sclk());
+            if (!item.has_event()) continue;
+            ++events;
+            event_ms.push_back(1e3 * (now - item.event().sclk()));
+        }
+        if (newest > 0.0) sample_ms.push_back(1e3 * (now - newest));
+    }
+
+    int socket_;
+    bool over_ = false;
+    double alive_s_ = now_s();
+    std::string kept_;
+    std::thread thread_;
+};
+
+double quantile(std::vector<double>& values, double q) {
+    if (values.empty()) return 1e9;
+    const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), values.begin() + at, values.end());
+    return values[static_cast<std::size_t>(at)];
+}
+
+bool met = true;
+void goal(const char* what, double figure, double most, const char* unit) {
+    std::printf("  %-52s %9.2f %s, goal %.0f", what, figure, unit, most);
+    if (most > 0.0) std::printf(": ratio %.2f", figure / most);
+    std::printf("\n");
+    met = met && figure <= most;
+}
+
+/// Threads and connections as `aeolis serve` has them, with packets made here in place of a landing.
+void under_load() {
+    LoopbackClients others;
+    spdlog::set_level(spdlog::level::err);
+    const Folder folder;
+    const auto file = folder.path / "load.db";
+    const auto dictionary = load();
+    auto archive = std::move(archive::Archive::open(file)).value();
+    auto queries = std::move(server::QueryThreads::open(file, dictionary)).value();
+    std::unique_ptr<server::WebServer> web;
+    server::StreamHub::Services services;
+    services.want_items = [](bool) {};
+    services.read_items = [&](archive::RunId run, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds kinds, const auto& done) {
+        const bool taken = queries->ask([&web, run, after, limit, kinds, done](archive::Reader& reader) {
+            auto page = reader.items(run, after, limit, kinds);
+            web->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
+        });
+        if (!taken) web->post([done] { done(Error{"too many questions wait: try again"}); });
+    };
+    server::StreamHub hub{dictionary.id, services};
+    server::WebServer::Handlers handlers;
+    handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
+    handlers.open_stream = [&](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
+        return std::make_shared<server::StreamSession>(hub, format, std::move(wake), server::StreamSession::follower());
+    };
+    web = std::move(server::WebServer::open({}, handlers)).value();
+    server::PipelineThread pipeline{std::move(archive), dictionary, server::PipelineThread::Faults::give_up, [&](auto batch) {
+                                        web->post([&hub, batch = std::move(batch)]() mutable { hub.published(std::move(batch)); });
+                                    }};
+    std::thread network{[&] { web->run(); }};
+    const auto run = pipeline.begin({});
+    must(run.ok(), "begin");
+    v1::RunState state;
+    state.set_run(run->value);
+    state.set_attained_pace(1.0);
+    web->post([&hub, state] { hub.run_state(state); });
+
+    v1::ClientMessage subscription;
+    for (std::uint32_t i = 0; i < watched_channels; ++i)
+        subscription.mutable_subscribe()->add_channels(i);
+    subscription.mutable_subscribe()->set_max_rate_hz(sample_rate_hz);
+    subscription.mutable_subscribe()->set_without_units(true);
+    others.connect(web->port(), {clients - 1, stalled, true, subscription.SerializeAsString()});
+    std::uint64_t sent_packets = 0, sent_events = 0;
+    std::uint64_t resident = 0;
+    double behind_s = 0.0;
+    {
+        Watcher watcher{web->port(), subscription.SerializeAsString()};
+        std::this_thread::sleep_for(std::chrono::milliseconds{500});
+        others.forget();
+        std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet), event(tm_overhead_octets + 10);
+        BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
+        for (std::size_t i = 0; i < channels_a_packet; ++i)
+            bits.put_float(static_cast<float>(std::sin(static_cast<double>(i))));
+        const double begin = now_s();
+        while (now_s() - begin < seconds) {
+            server::Delivery delivery;
+            const double now = now_s();
+            for (; static_cast<double>(sent_packets) < (now - begin) * packets_per_s; ++sent_packets) {
+                const auto kind = static_cast<std::uint16_t>(sent_packets % packet_kinds);
+                octets[tm_data_offset_octets + 3] = static_cast<std::uint8_t>(sent_packets >> 5U);
+                seal_tm_packet(octets, Apid{static_cast<std::uint16_t>(kind + 1)}, static_cast<std::uint16_t>(sent_packets / packet_kinds & 0x3FFFU), Sclk{now}, dictionary.id);
+                delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets});
+            }
+            for (; static_cast<double>(sent_events) < (now - begin) * events_per_s; ++sent_events) {
+                BitWriter told{std::span<std::uint8_t>(event).subspan(tm_data_offset_octets)};
+                told.put(1, 16);
+                seal_tm_packet(event, event_apid, static_cast<std::uint16_t>(sent_events), Sclk{now}, dictionary.id);
+                delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, event});
+            }
+            must(pipeline.deliver(std::move(delivery)), "deliver");
+            behind_s = std::max(behind_s, now_s() - now);
+            resident = std::max(resident, resident_octets());
+            std::this_thread::sleep_for(std::chrono::milliseconds{5});
+        }
+        for (int i = 0; i < 100 && watcher.events < sent_events; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds{100});
+        must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
+        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels at %.0f Hz, %zu of them stalled\n",
+                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels, sample_rate_hz, stalled);
+        std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n", static_cast<double>(others.octets()) / seconds * 1e-6, 1e3 * behind_s);
+        goal("events of which one client saw none", static_cast<double>(sent_events - watcher.events), 0.0, "events");
+        goal("batches that do not join the one before", watcher.broken ? 1.0 : 0.0, 0.0, "");
+        goal("connections that ended", static_cast<double>(others.broken()), 0.0, "");
+        goal("event, from receipt to the client, p99", quantile(watcher.event_ms, 0.99), 40.0, "ms");
+        goal("newest sample's age when a batch arrives, p99", quantile(watcher.sample_ms, 0.99), 65.0, "ms");
+        goal("resident memory", static_cast<double>(resident) * 1e-6, 300.0, "MB");
+    }
+    others.close();
+    auto reader = archive::Reader::open(file, dictionary);
+    must(reader.ok(), "Reader::open");
+    archive::EventQuery events;
+    events.limit = 10'000;
+    goal("packets and events that are not in the archive",
+         static_cast<double>(sent_packets + 2 * sent_events) + static_cast<double>(sent_packets) - static_cast<double>(reader->last_seq(*run).value()), 0.0, "");
+    web->stop();
+    network.join();
+    queries.reset();
+}
+
+/// `aeolis serve` on an archive of a hundred runs: until its list of runs, and a channel of the last one, are there.
+void start() {
+    const Folder folder;
+    const auto file = folder.path / "runs.db";
+    const std::string program = AEOLIS_SOURCE_DIR "/build/release/aeolis";
+    const auto flown = program + " rehearse --scenario nominal_auto --archive " + file.string() + " >/dev/null";
+    must(std::system(flown.c_str()) == 0, flown.c_str());
+    {
+        // The other ninety-nine are of a minute each: a list of runs and the last of them is what a start reads.
+        const auto dictionary = load();
+        auto archive = std::move(archive::Archive::open(file)).value();
+        pipeline::Pipeline pipeline{archive, dictionary};
+        pipeline.want_items(false);
+        std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet);
+        for (int i = 0; i < 99; ++i) {
+            must(pipeline.begin({}).ok(), "begin");
+            for (std::uint16_t k = 0; k < 640; ++k) {
+                seal_tm_packet(octets, Apid{1}, k, Sclk{k / 64.0}, dictionary.id);
+                must(pipeline.accept(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets}).ok(), "accept");
+            }
+            must(pipeline.finish({}).ok(), "finish");
+        }
+    }
+    std::fflush(stdout);
+    const std::uint16_t port = 18'753;
+    const auto ask = "curl -sf --max-time 5 -o /dev/null http://127.0.0.1:" + std::to_string(port) + "/api/v1/runs/1/channels?names=altitude_m\\&points=500";
+    const double begin = now_s();
+    const pid_t child = ::fork();
+    must(child >= 0, "fork");
+    if (child == 0) {
+        const auto listen = "127.0.0.1:" + std::to_string(port);
+        must(std::freopen("/dev/null", "w", stdout) != nullptr && std::freopen("/dev/null", "w", stderr) != nullptr, "freopen");
+        ::execl(program.c_str(), program.c_str(), "serve", "--listen", listen.c_str(), "--archive", file.c_str(), static_cast<char*>(nullptr));
+        ::_exit(1);
+    }
+    double first_s = 0.0;
+    while (now_s() - begin < 10.0 && first_s == 0.0) {
+        if (std::system(ask.c_str()) == 0) first_s = now_s() - begin;
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    ::kill(child, SIGTERM);
+    ::waitpid(child, nullptr, 0);
+    must(first_s > 0.0, "the server's first answer");
+    std::printf("aeolis serve on an archive of 100 runs, %.0f MB\n", static_cast<double>(std::filesystem::file_size(file)) * 1e-6);
+    goal("from its start to the first plotted channel", 1e3 * first_s, 1000.0, "ms");
+}
+
+} // namespace
+
+int main() {
+    under_load();
+    start();
+    return met ? 0 : 1;
+}

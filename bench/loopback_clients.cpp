@@ -1,0 +1,232 @@
+#include "bench/loopback_clients.hpp"
+
+#include <algorithm>
+#include <arpa/inet.h>
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/epoll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <utility>
+
+namespace aeolis::bench {
+namespace {
+
+constexpr std::uint64_t alive_interval_ns = 5'000'000'000;
+
+void must(bool done, const char* what) {
+    if (done) return;
+    std::perror(what);
+    std::exit(1);
+}
+
+std::uint64_t now_ns() {
+    timespec time{};
+    ::clock_gettime(CLOCK_MONOTONIC, &time);
+    return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(time.tv_nsec);
+}
+
+void send_all(int socket, std::string_view octets) {
+    must(::send(socket, octets.data(), octets.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(octets.size()), "send");
+}
+
+/// The upgrade, then the subscription in one masked frame (mask 0).
+void open_stream(int socket, const std::string& subscription) {
+    send_all(socket, "GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                     "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+                     "Sec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n");
+    std::string reply;
+    while (reply.find("\r\n\r\n") == std::string::npos) {
+        char octet = 0;
+        must(::recv(socket, &octet, 1, 0) == 1, "the upgrade");
+        reply += octet;
+    }
+    must(reply.starts_with("HTTP/1.1 101"), reply.c_str());
+    std::string frame{"\x82"};
+    if (subscription.size() < 126)
+        frame += static_cast<char>(0x80U | subscription.size());
+    else
+        frame.append({static_cast<char>(0xFE), static_cast<char>(subscription.size() >> 8U), static_cast<char>(subscription.size() & 255U)});
+    send_all(socket, frame + std::string(4, '\0') + subscription);
+}
+
+int connect_to(std::uint16_t port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    must(socket >= 0, "socket");
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    must(::connect(socket, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0, "connect");
+    return socket;
+}
+
+/// Marks in what has come; one that is cut by the end of a read is found with what comes next.
+struct Reading {
+    std::string kept;
+
+    void take(Board& board, std::string_view octets) {
+        const auto now = now_ns();
+        std::string joined;
+        if (!kept.empty()) {
+            joined = std::exchange(kept, {}).append(octets);
+            octets = joined;
+        }
+        std::uint64_t found = 0;
+        for (;;) {
+            const auto at = octets.find(mark);
+            if (at == std::string_view::npos) break;
+            if (octets.size() < at + mark.size() + 16) break;
+            std::uint64_t made_ns = 0;
+            std::from_chars(octets.data() + at + mark.size(), octets.data() + at + mark.size() + 16, made_ns, 16);
+            const auto bin = std::min<std::size_t>((now - made_ns) / 50'000U, latency_bins - 1);
+            board.latencies[bin].fetch_add(1, std::memory_order_relaxed);
+            ++found;
+            octets.remove_prefix(at + mark.size() + 16);
+        }
+        kept = octets.substr(octets.size() - std::min(octets.size(), mark.size() + 16));
+        board.messages.fetch_add(found, std::memory_order_relaxed);
+    }
+};
+
+void read_until_closed(Board& board, int phase, const std::vector<int>& sockets, bool websocket) {
+    const int epoll = ::epoll_create1(EPOLL_CLOEXEC);
+    std::vector<Reading> readings(sockets.size());
+    for (std::size_t i = 0; i < sockets.size(); ++i) {
+        epoll_event event{};
+        event.events = EPOLLIN;
+        event.data.u64 = i;
+        must(::epoll_ctl(epoll, EPOLL_CTL_ADD, sockets[i], &event) == 0, "epoll_ctl");
+    }
+    std::array<epoll_event, 256> events{};
+    std::vector<char> buffer(256 << 10);
+    for (auto said_ns = now_ns(); board.phase == phase;) {
+        if (websocket && now_ns() - said_ns > alive_interval_ns) {
+            said_ns = now_ns();
+            for (const int socket : sockets)
+                (void)::send(socket, alive.data(), alive.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        }
+        const int count = ::epoll_wait(epoll, events.data(), events.size(), 20);
+        for (int i = 0; i < count; ++i) {
+            const auto client = static_cast<std::size_t>(events[static_cast<std::size_t>(i)].data.u64);
+            const auto got = ::recv(sockets[client], buffer.data(), buffer.size(), MSG_DONTWAIT);
+            if (got <= 0) {
+                if (got < 0 && errno == EAGAIN) continue;
+                ++board.broken;
+                ::epoll_ctl(epoll, EPOLL_CTL_DEL, sockets[client], nullptr);
+                continue;
+            }
+            board.octets.fetch_add(static_cast<std::uint64_t>(got), std::memory_order_relaxed);
+            readings[client].take(board, {buffer.data(), static_cast<std::size_t>(got)});
+        }
+    }
+    ::close(epoll);
+}
+
+struct Order {
+    std::size_t clients = 0, stalled = 0;
+    bool websocket = true;
+    std::uint32_t octets = 0; ///< of the subscription, which follows
+};
+
+[[noreturn]] void be_clients(Board& board, int orders) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    for (;;) {
+        Order order;
+        if (::read(orders, &order, sizeof order) != sizeof order) ::_exit(0);
+        std::string subscription(order.octets, '\0');
+        if (order.octets > 0) must(::read(orders, subscription.data(), order.octets) == static_cast<ssize_t>(order.octets), "read");
+        const int phase = board.phase;
+        std::vector<int> sockets;
+        for (std::size_t i = 0; i < order.clients; ++i) {
+            sockets.push_back(connect_to(board.port));
+            if (order.websocket) open_stream(sockets.back(), subscription);
+        }
+        board.settled = phase;
+        read_until_closed(board, phase, {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)}, order.websocket);
+        for (const int socket : sockets)
+            ::close(socket);
+        board.settled = phase + 1;
+    }
+}
+
+} // namespace
+
+std::string mark_now() {
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(now_ns()));
+    return std::string{mark} + digits;
+}
+
+LoopbackClients::LoopbackClients() {
+    rlimit files{};
+    ::getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    void* const shared = ::mmap(nullptr, sizeof(Board), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    must(shared != MAP_FAILED, "mmap");
+    board_ = new (shared) Board;
+    int ends[2];
+    must(::pipe(ends) == 0, "pipe");
+    process_ = ::fork();
+    must(process_ >= 0, "fork");
+    if (process_ == 0) {
+        ::close(ends[1]);
+        be_clients(*board_, ends[0]);
+    }
+    ::close(ends[0]);
+    pipe_ = ends[1];
+}
+
+LoopbackClients::~LoopbackClients() {
+    if (board_->phase % 2 == 1) close();
+    ::close(pipe_);
+    ::waitpid(process_, nullptr, 0);
+    ::munmap(board_, sizeof(Board));
+}
+
+void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {
+    board_->port = port;
+    const int phase = ++board_->phase;
+    const Order order{settings.clients, settings.stalled, settings.websocket, static_cast<std::uint32_t>(settings.subscription.size())};
+    must(::write(pipe_, &order, sizeof order) == sizeof order, "write");
+    if (!settings.subscription.empty())
+        must(::write(pipe_, settings.subscription.data(), settings.subscription.size()) == static_cast<ssize_t>(settings.subscription.size()), "write");
+    while (board_->settled != phase)
+        ::usleep(1000);
+}
+
+void LoopbackClients::close() {
+    const int phase = ++board_->phase;
+    while (board_->settled != phase)
+        ::usleep(1000);
+}
+
+void LoopbackClients::forget() {
+    board_->messages = board_->octets = board_->broken = 0;
+    for (auto& bin : board_->latencies)
+        bin = 0;
+}
+
+double LoopbackClients::latency_ms(double quantile) const {
+    std::uint64_t all = 0, sum = 0;
+    for (const auto& bin : board_->latencies)
+        all += bin;
+    for (std::size_t i = 0; i < latency_bins; ++i) {
+        sum += board_->latencies[i];
+        if (static_cast<double>(sum) >= quantile * static_cast<double>(all)) return 0.05 * static_cast<double>(i + 1);
+    }
+    return 0.0;
+}
+
+} // namespace aeolis::bench
