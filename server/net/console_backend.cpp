@@ -1,9 +1,8 @@
 #include "server/net/console_backend.hpp"
 
-#include "server/api/json.hpp"
-
 #include <algorithm>
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -31,6 +30,8 @@ ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& 
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
+    // A message that is not one is refused to its client; else Protobuf also writes a line of its own for each.
+    google::protobuf::SetLogHandler(nullptr);
     std::unique_ptr<ConsoleBackend> backend{new ConsoleBackend{std::move(settings), dictionary}};
     const auto& chosen = backend->settings_;
     auto* const self = backend.get();

@@ -5,6 +5,7 @@
 #include "server/net/stream_session.hpp"
 
 #include <cstdlib>
+#include <google/protobuf/stubs/logging.h>
 
 namespace {
 
@@ -108,6 +109,7 @@ struct Client {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
+    google::protobuf::SetLogHandler(nullptr); // as the server has it
     const auto format = data[0] % 2 == 0 ? StreamFormat::protobuf : StreamFormat::json;
     Ground ground;
     Client client{std::make_shared<StreamSession>(ground.hub, format, [] {}, StreamSession::follower())};
