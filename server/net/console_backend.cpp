@@ -62,11 +62,11 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
 
 ConsoleBackend::~ConsoleBackend() {
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
+    queries_.reset(); // what still waits may add a note, through api and pipeline
     api_.reset();
     downlink_.reset();
     desk_.reset();
     pipeline_.reset();
-    queries_.reset();
     server_.reset();
     hub_.reset();
 }
