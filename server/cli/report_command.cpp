@@ -4,6 +4,7 @@
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace aeolis::server {
@@ -52,6 +53,20 @@ void print_proof(const v1::ProofReport& proof) {
                proof.recording_complete() ? "" : " The recording is not complete.");
 }
 
+/// A note on one line: what a terminal would obey is shown as a space.
+std::string one_line(std::string text) {
+    std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; }, ' ');
+    return text;
+}
+
+void print_notes(const v1::AsFlownReport& report) {
+    for (const auto& item : report.notes()) {
+        const auto& note = item.note();
+        const auto when = note.has_sclk() ? from_entry(note.sclk() - report.run().entry_sclk()) : note.at();
+        fmt::print("Note {} by {}: {}\n", when, one_line(note.by()), one_line(note.text()));
+    }
+}
+
 } // namespace
 
 int report(const ReportOptions& options) {
@@ -76,6 +91,7 @@ int report(const ReportOptions& options) {
             const auto& last = command.stages(command.stages_size() - 1).command_stage();
             fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(), last.stage(), last.status(), last.evidence());
         }
+    print_notes(*report);
     return 0;
 }
 

@@ -142,11 +142,11 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
 
 ConsoleBackend::~ConsoleBackend() {
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
+    queries_.reset(); // what still waits may add a note, through api and pipeline
     api_.reset();
     downlink_.reset();
     desk_.reset();
     pipeline_.reset();
-    queries_.reset();
     server_.reset();
     hub_.reset();
 }
