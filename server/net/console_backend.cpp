@@ -1,5 +1,7 @@
 #include "server/net/console_backend.hpp"
 
+#include "server/api/json.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
