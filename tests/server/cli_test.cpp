@@ -205,7 +205,7 @@ TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli
              {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
              {"campaign --scenario campaign --cases 2 --results /dev/null", "/dev/null"},
              {"campaign --scenario performance --cases 2", "performance: test_venue: "},
-             {"serve --listen 192.0.2.1:0 --archive /dev/null", "only loopback"},
+             {"serve --listen 192.0.2.1:0 --archive /dev/null", "loopback only"},
          }}) {
         const auto ended = run(program(), arguments);
         INFO(arguments << " -> " << ended.code << ": " << ended.text);

@@ -94,6 +94,7 @@ const std::vector<Home>& homes() {
         {"sqlite3", {"server/archive/", "tests/", "bench/"}, "SQLite is at home in server/archive/"},
         {"zstd", {"server/archive/", "tests/", "bench/"}, "zstd is at home in server/archive/"},
         {"muParser", {"server/archive/expression.cpp"}, "muParser is at home in server/archive/expression.cpp"},
+        {"sodium", {"server/access/secrets.cpp"}, "libsodium is at home in server/access/secrets.cpp"},
         {"boost/", with_effects, "Boost is at home in server/"},
         {"openssl/", with_effects, "OpenSSL is at home in server/"},
         {"spdlog/", with_effects, "only server/ logs"},
