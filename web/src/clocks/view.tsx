@@ -1,16 +1,15 @@
 // The header: which run, what time it is, what is connected.
+import { LINK_STATUS, STATUS } from '../design/status';
 import { fromEntry, duration } from '../run/time';
 import { cutoff, modeNow, pastRange, replay, runNow, stream, timepoints } from '../run/session';
 import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
 import './style.css';
 
-const SHAPES = { up: '●', down: '◌', lost: '✖', unknown: '○' } as const;
-
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
   return (
     <div class={`link link-${line.look}`} data-testid={testId}>
-      <b><span aria-hidden="true">{SHAPES[line.look]}</span> {line.name}</b>
+      <b><span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}</b>
       <small>{line.detail}</small>
     </div>
   );
@@ -35,12 +34,13 @@ export function Header() {
           <output data-testid="clock-entry">{clocks?.entry ?? fromEntry(NaN)}</output>
         </div>
       )}
-      {clocks?.others.map((clock) => (
-        <div class="clock" key={clock.id}>
-          <small>{clock.label}</small>
-          <output data-testid={`clock-${clock.id}`}>{clock.value}</output>
-        </div>
-      ))}
+      {clocks && (
+        <dl class="clocks">
+          {clocks.others.map((clock) => (
+            <div key={clock.id}><dt>{clock.label}</dt><dd><output data-testid={`clock-${clock.id}`}>{clock.value}</output></dd></div>
+          ))}
+        </dl>
+      )}
       {send && (
         <div class={`clock ${send.left_s < 60 ? 'late' : ''}`} title={`before ${send.first}`}>
           <small>send at the latest</small>

@@ -111,13 +111,15 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.lineWidth = 1;
 }
 
-/** Each phase by its name beside the corridor, where there is room: below it. */
+/** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. */
 function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
   const words = dictionary.value;
   const corridor = corridorNow();
   if (!words || corridor.length === 0) return;
   const steps = phaseSteps(store.value, words, cutoff.value);
   c.textBaseline = 'middle';
+  const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1; // as style.css has them, in the corner below
+  const figures = { left: width - RIGHT - figure_px * 3.6, top: height - 62 - 2 * figure_px };
   steps.forEach((step, index) => {
     const from = step.predicted_e_s;
     const to = steps[index + 1]?.predicted_e_s;
@@ -126,9 +128,12 @@ function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: S
     c.font = `${step.state === 'now' ? 800 : 600} ${Math.round(Math.min(26, width / 26, height / 13))}px ${colours.sans}`;
     c.fillStyle = step.state === 'now' ? colours.text : colours.dim;
     c.globalAlpha = step.state === 'now' ? 1 : 0.75;
-    c.textAlign = index === 1 ? 'right' : 'left';
+    c.textAlign = 'left';
     const wide = c.measureText(step.title).width;
-    c.fillText(step.title, index === 1 ? width - RIGHT - 6 : Math.min(width - wide - RIGHT, x(at.speed_mps) + 34), y(at.altitude_m) + (index === 1 ? 46 : 24));
+    const [px, py] = [x(at.speed_mps), y(at.altitude_m)];
+    const places: [number, number][] = index === 1 ? [[width - RIGHT - 6 - wide, py + 46]] : [[Math.min(width - wide - RIGHT, px + 34), py + 24], [px - wide - 44, py + 8]];
+    const [left, top] = places.find(([left, top]) => left > LEFT && (left + wide < figures.left || top + 16 < figures.top)) ?? [NaN, NaN];
+    c.fillText(step.title, left, top);
     c.globalAlpha = 1;
   });
 }
