@@ -6,26 +6,20 @@ import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { browser, focused, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+import { focused, root, waitFor, workplace } from './support.mjs';
 
 const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
 const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal'];
 const SCRIPT_KB = 150;
 
-let chrome;
-let folder;
+const { open, serve } = workplace();
 let server;
 
 before(async () => {
-    [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
-    server = await serve({ archive: path.join(folder.folder, 'panels.db'), more: ['--scenario', 'nominal_auto', '--pace', '0'] });
+    server = await serve(undefined, 'panels', ['--scenario', 'nominal_auto', '--pace', '0']);
     await waitFor(async () => (await server.get('/runs')).runs[0]?.state, (state) => state === 'finished', 60_000);
 });
-after(async () => {
-    await server?.stop();
-    await chrome?.close();
-    await folder?.remove();
-});
+after(() => server?.stop());
 
 /** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
 async function findings(page, theme) {
@@ -37,7 +31,7 @@ async function findings(page, theme) {
 
 test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 400_000 }, async () => {
     const found = [];
-    const { page, problems, shows } = await open(chrome, server.address);
+    const { page, problems, shows } = await open(server.address);
     for (const name of ['dark', 'light']) {
         await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), name);
         for (const panel of [...PANELS, undefined]) {
@@ -81,7 +75,7 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
 });
 
 test('a replay shows nothing of what came later, in every panel, and the way back is one key', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, server.address);
+    const { page, problems, text, shows } = await open(server.address);
     await shows('waiting', /Landed/);
     await page.keyboard.press('y');
     await shows('badge', /REPLAY, NOT LIVE/);
@@ -100,7 +94,7 @@ test('a replay shows nothing of what came later, in every panel, and the way bac
 });
 
 test('live is proven against the recording, by packet and by link, and a packet that differs has its octets marked', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, server.address);
+    const { page, problems, text, shows } = await open(server.address);
     await shows('badge', /ENDED RUN/);
     await page.keyboard.press('v');
     const { streams, tones } = await server.get('/runs/latest/proof');
@@ -134,7 +128,7 @@ test('live is proven against the recording, by packet and by link, and a packet 
 });
 
 test('a packet is read by keyboard: its fields light their octets, an octet lights its fields, and a packet can be chosen alone', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, `${server.address}/?panel=packets`);
+    const { page, problems, text, shows } = await open(`${server.address}/?panel=packets`);
     await shows('badge', /ENDED RUN/);
     const { streams } = await server.get('/runs/latest/proof');
     const live = streams.filter((row) => Number(row.realtime) > 0).map((row) => row.name).sort();
@@ -174,7 +168,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
 });
 
 test('from 320 px to 4K nothing is wider than the screen', { timeout: 60_000 }, async () => {
-    const { page, shows } = await open(chrome, server.address);
+    const { page, shows } = await open(server.address);
     await shows('badge', /ENDED RUN/);
     for (const [width, height] of [[320, 640], [768, 1024], [1024, 768], [1366, 768], [1920, 1080], [3840, 2160]]) {
         await page.setViewportSize({ width, height });

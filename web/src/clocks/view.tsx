@@ -4,6 +4,9 @@ import { fromEntry, duration } from '../run/time';
 import { cutoff, modeNow, pastRange, replay, runNow, stream, timepoints } from '../run/session';
 import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
+import { Who } from '../access/view';
+import { toAcknowledge } from '../alarms/model';
+import { focusPanel } from '../shortcuts/model';
 import './style.css';
 
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
@@ -22,6 +25,7 @@ export function Header() {
   const clocks = run && clocksOf(run, past?.to);
   const send = run?.going && !past ? latestSend(run, timepoints.value) : undefined;
   const severities = run && !past ? [...run.alarms.values()] : [];
+  const waiting = past ? 0 : toAcknowledge.value.length;
   return (
     <header class="header" data-testid="header">
       <h1 class="brand">AEOLIS</h1>
@@ -50,6 +54,12 @@ export function Header() {
         </div>
       )}
       <div class="links">
+        {waiting > 0 && (
+          <div class="link link-lost" data-testid="alarms-waiting">
+            <b><span aria-hidden="true">■</span> {waiting} to acknowledge</b>
+            <small><button type="button" class="quiet" onClick={() => focusPanel('alarms')}>alarms <kbd>a</kbd></button></small>
+          </div>
+        )}
         {severities.length > 0 && (
           <div class="link link-alarm" data-testid="alarm-count">
             <b><span aria-hidden="true">▲</span> {severities.length} {severities.length === 1 ? 'alarm' : 'alarms'}</b>
@@ -60,6 +70,7 @@ export function Header() {
           <Link key={line.name} line={line} testId={`link-${line.name}`} />
         ))}
         <Link line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} testId="stream-state" />
+        <Who />
         {run && (
           <div class="link" data-testid="complete-through">
             <b>complete</b>

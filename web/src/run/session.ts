@@ -5,6 +5,9 @@ import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, T
 import { LAYOUT } from '../layout';
 import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
+import { access, admitted, learnAccess, mayAct } from '../access/model';
+import { refreshAlarms } from '../alarms/model';
+import { Refused, turnedAway } from './api';
 import { Dictionary } from './dictionary';
 import { RunStore } from './store';
 
@@ -59,7 +62,7 @@ export function modeNow(): Mode {
 
 /** Whether a command can be sent from what is shown. */
 export function takesCommands(): boolean {
-  return ['live', 'rehearsal'].includes(modeNow());
+  return ['live', 'rehearsal'].includes(modeNow()) && mayAct();
 }
 
 export function backToLive(): void {
@@ -69,6 +72,7 @@ export function backToLive(): void {
 
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
+const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
 
 let worker: Worker | undefined;
@@ -131,6 +135,7 @@ function onMessage(message: FromWorker): void {
       const before = stream.value.state;
       stream.value = message;
       if (message.state === 'lost' && before !== 'lost') {
+        void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
         for (const request of requests.values()) {
           request.reject(new Error('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
@@ -172,7 +177,10 @@ function onMessage(message: FromWorker): void {
       const question = asked.get(message.ask);
       asked.delete(message.ask);
       if (message.ok) question?.resolve(message.value);
-      else question?.reject(new Error(message.error));
+      else {
+        if (message.status === 401) turnedAway.value += 1;
+        question?.reject(new Refused(message.status, message.error));
+      }
       break;
     }
   }
@@ -239,6 +247,8 @@ export async function begin(): Promise<void> {
 
   for (let attempt = 0; ; ++attempt) {
     try {
+      await learnAccess();
+      await admitted();
       const [reply, list] = await Promise.all([
         ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'),
       ]);
@@ -263,6 +273,20 @@ export async function begin(): Promise<void> {
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted: [...new Set(plotted)], others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
+  let wasIn = true;
+  effect(() => {
+    const isIn = access.value.state !== 'out';
+    if (isIn && !wasIn) post({ type: 'reconnect' });
+    wasIn = isIn;
+  });
+  let told = -1;
+  let since = 0;
+  void everySeconds(1, async () => {
+    const run = store.value;
+    if (!run || stream.value.state !== 'live' || (run.alarmsVersion === told && ++since < ALARMS_EVERY_S)) return;
+    [told, since] = [run.alarmsVersion, 0];
+    await refreshAlarms();
+  });
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
     if (store.value?.going) await refreshTimepoints();

@@ -12,6 +12,7 @@ import { secondsOfDayOfYear } from './time';
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
+const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
 
 export interface Known<T> {
   seq: number;
@@ -68,6 +69,9 @@ export class RunStore {
   clocks: Clocks | undefined;
   completeThrough = 0;
   thinnedSinceHistory = false;
+  /** Count what came about alarms, and about notes: whoever keeps their states asks again. */
+  alarmsVersion = 0;
+  notesVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
   /** Counts changes of anything. */
@@ -168,6 +172,8 @@ export class RunStore {
 
   private addFact(item: Fact): void {
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
+    if (ABOUT_ALARMS.has(item.kind)) ++this.alarmsVersion;
+    if (item.kind as string === 'note') ++this.notesVersion;
     switch (item.kind) {
       case 'event':
         this.addTwin(this.events, item, (a, b) => a.id === b.id && a.text === b.text);

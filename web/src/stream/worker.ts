@@ -29,6 +29,7 @@ const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
 
 let socket: WebSocket | undefined;
 let attempt = 0;
+let retry: ReturnType<typeof setTimeout> | undefined;
 let wantedRun = 0;
 let currentRun = 0;
 let serverVersion = '';
@@ -71,6 +72,7 @@ function subscribe(): void {
 }
 
 function connect(): void {
+  retry = undefined;
   say(attempt === 0 ? 'connecting' : 'lost');
   const mine = new WebSocket(socketUrl, ['aeolis.v1.protobuf']);
   mine.binaryType = 'arraybuffer';
@@ -90,7 +92,7 @@ function connect(): void {
     if (state === 'live') lost = { after: check.completeThrough, attempts: 0 };
     if (lost) lost.attempts = attempt;
     say('lost');
-    setTimeout(connect, backoffSeconds(attempt) * 1000);
+    retry = setTimeout(connect, backoffSeconds(attempt) * 1000);
   };
 }
 
@@ -230,7 +232,7 @@ async function askJson(path: string): Promise<unknown> {
     } catch {
       // The answer was not of our API; its text says what it says.
     }
-    throw new Error(error || `${response.status} ${response.statusText}`);
+    throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
   }
   return JSON.parse(text);
 }
@@ -255,6 +257,12 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       restart(0);
       subscribe();
       break;
+    case 'reconnect':
+      if (retry !== undefined) {
+        clearTimeout(retry);
+        connect();
+      }
+      break;
     case 'refresh_history':
       void fetchHistory(message.all);
       break;
@@ -272,7 +280,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       ask(ANSWERS[message.question], message.path).then(
         (value) => post({ type: 'answer', ask: message.ask, ok: true, value }),
         (error: unknown) => post({
-          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error),
+          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error), status: (error as { status?: number }).status ?? 0,
         }),
       );
       break;

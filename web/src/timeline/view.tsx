@@ -4,7 +4,9 @@ import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
+import { LAYOUT } from '../layout';
 import { cutoff, pastRange, replay, runNow, store, tick, timepoints } from '../run/session';
+import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
@@ -35,11 +37,19 @@ export function closeTimepoint(): boolean {
   return open;
 }
 
+/** What is shown; while a command in the form would move something of the landing, the landing. */
+function shown(run: RunStore | undefined): { from: number; to: number } {
+  const span = spanNow(run);
+  const all = moved.value ?? [];
+  if (all.length === 0 || choice.value !== 'landing') return span;
+  return { from: Math.min(LAYOUT.window.from, ...all.flatMap((each) => [each.from_e_s - 20, each.to_e_s - 20])), to: span.to };
+}
+
 let hits: { x: number; y: number; id: number }[] = [];
 
 function drawTimeline({ context: c, width, height, colours }: Surface): void {
   const run = store.value;
-  const { from, to } = spanNow(run);
+  const { from, to } = shown(run);
   const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
   const lane_px = Math.max(16, Math.min(25, (height - TOP - LABELS) / LANES.length));
   const y = (lane: number) => TOP + lane_px * (lane + 0.5);
@@ -161,7 +171,7 @@ function labels(
   c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number, height: number,
   colours: Surface['colours'],
 ): void {
-  const { from, to } = spanNow(store.value);
+  const { from, to } = shown(store.value);
   const closeUp = to - from <= CLOSE_UP_S;
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
@@ -319,13 +329,13 @@ export function Timeline() {
       <Canvas
         label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
         keyOf={() => {
-          const span = spanNow(store.value);
+          const span = shown(store.value);
           return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${JSON.stringify(moved.value)}`;
         }}
         draw={drawTimeline}
         onPoint={select}
         onWheel={(px, width, delta) => {
-          const { from, to } = spanNow(store.value);
+          const { from, to } = shown(store.value);
           zoom(store.value, delta > 0 ? 1.25 : 0.8, from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from));
         }}
       />
