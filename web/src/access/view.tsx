@@ -1,5 +1,6 @@
 // The log-in, in place: alone before anything may be shown, as a bar over the display when a session ended in the middle.
 import { signal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
 import { access, busy, logIn, logOut, mayAct, problem } from './model';
 import './style.css';
 
@@ -7,6 +8,10 @@ const user = signal('');
 const password = signal('');
 
 function Form({ known }: { known: string }) {
+  const first = useRef<HTMLInputElement>(null);
+  useEffect(() => {
+    if (known === '') first.current?.focus();
+  }, [known]);
   return (
     <form data-testid="log-in" aria-label="log in" onSubmit={(event) => {
       event.preventDefault();
@@ -14,7 +19,7 @@ function Form({ known }: { known: string }) {
       password.value = '';
       void logIn(name, secret);
     }}>
-      <label>user <input name="username" autocomplete="username" maxLength={64} required value={user.value || known} data-testid="log-in-user" spellcheck={false}
+      <label>user <input ref={first} name="username" autocomplete="username" maxLength={64} required value={user.value || known} data-testid="log-in-user" spellcheck={false}
         onInput={(event) => (user.value = event.currentTarget.value)} /></label>
       <label>password <input name="password" type="password" autocomplete="current-password" maxLength={1024} required value={password.value} data-testid="log-in-password"
         onInput={(event) => (password.value = event.currentTarget.value)} /></label>
@@ -55,7 +60,7 @@ export function Who() {
   if (now.state === 'open') return <div class="link" data-testid="who"><b>no accounts</b><small>this machine only</small></div>;
   if (now.state !== 'in') return null;
   return (
-    <div class="link" data-testid="who" title={now.rights.length > 0 ? `may: ${now.rights.join(', ')}` : 'may look'}>
+    <div class="link who" data-testid="who" title={now.rights.length > 0 ? `may: ${now.rights.join(', ')}` : 'may look'}>
       <b>{now.user}</b>
       <small>{now.role}{mayAct(now) ? '' : ', only looks'} <button type="button" class="quiet" data-testid="log-out" onClick={() => void logOut()}>log out</button></small>
     </div>

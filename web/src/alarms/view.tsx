@@ -18,15 +18,15 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
     <tr data-alarm={alarm.name} data-state={alarm.state}>
       <td class={`status-${look.token}`}><span aria-hidden="true">{look.shape}</span> {alarm.severity === 'none' ? `was ${alarm.worst}` : alarm.severity}</td>
       <td><b>{alarm.name}</b></td>
-      <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
-      <td>{alarm.limit}</td>
-      <td class="number">{alarm.sclk === undefined ? '' : fromEntry(alarm.sclk - entry_sclk)}</td>
-      <td>{alarm.state}{alarm.shelved_until && ` until ${alarm.shelved_until}`}{alarm.by && `, ${alarm.by}`}{alarm.note && <small> {alarm.note}</small>}</td>
       <td>{mayAct() && actionsOn(alarm).map((action) => (
         <button type="button" key={action} disabled={acting.value !== undefined} aria-label={`${action} ${alarm.name}`} onClick={() => void act(alarm.name, action)}>
           {action}{action === 'shelve' && ` ${duration(Number(shelveFor.value)).replace(' 00 s', '').replace('.0', '')}`}
         </button>
       ))}</td>
+      <td class="alarm-state">{alarm.state}{alarm.shelved_until && ` until ${alarm.shelved_until}`}{alarm.by && `, ${alarm.by}`}{alarm.note && <small> {alarm.note}</small>}</td>
+      <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
+      <td>{alarm.limit}</td>
+      <td class="number">{alarm.sclk === undefined ? '' : fromEntry(alarm.sclk - entry_sclk)}</td>
     </tr>
   );
 }
@@ -52,7 +52,7 @@ export function Alarms() {
       <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms">
         {listed.value.length > 0 && (
           <table>
-            <thead><tr><th>severity</th><th>alarm</th><th class="number">value</th><th>limit</th><th class="number">since</th><th>state</th><th>do</th></tr></thead>
+            <thead><tr><th>severity</th><th>alarm</th><th>do</th><th>state</th><th class="number">value</th><th>limit</th><th class="number">since</th></tr></thead>
             <tbody>{listed.value.map((alarm) => <Row key={alarm.name} alarm={alarm} entry_sclk={run.entrySclk} />)}</tbody>
           </table>
         )}

@@ -4,6 +4,7 @@ import { fromEntry, duration } from '../run/time';
 import { cutoff, modeNow, pastRange, replay, runNow, stream, timepoints } from '../run/session';
 import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
+import { access } from '../access/model';
 import { Who } from '../access/view';
 import { toAcknowledge } from '../alarms/model';
 import { focusPanel } from '../shortcuts/model';
@@ -30,7 +31,7 @@ export function Header() {
     <header class="header" data-testid="header">
       <h1 class="brand">AEOLIS</h1>
       <div class={`badge badge-${modeNow()}`} data-testid="badge" role="status">
-        <b>{badge.title}</b> <span>{badge.detail}</span>
+        <b>{badge.title}</b> <span>{!run && access.value.state === 'out' ? 'log in first' : badge.detail}</span>
       </div>
       {run && (
         <div class="clock clock-entry">

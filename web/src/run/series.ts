@@ -54,6 +54,10 @@ export class Series {
     return low;
   }
 
+  get newestSclk(): number {
+    return this.length > 0 ? (this.sclk[this.length - 1] as number) : -Infinity;
+  }
+
   /** The newest sample at or before `sclk`. */
   at(sclk: number): { sclk: number; value: number } | undefined {
     const index = this.firstAfter(sclk) - 1;

@@ -267,7 +267,7 @@ export async function begin(): Promise<void> {
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
   watched.value = chosen;
   const words = dictionary.value as Dictionary;
-  const plotted = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel)]
+  const plotted = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel), ...(new URL(location.href).searchParams.get('channels') ?? '').split(',').map((name) => [name])]
     .map((names) => words.pick(names)?.name).filter((name) => name !== undefined);
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted: [...new Set(plotted)], others });

@@ -39,6 +39,7 @@ let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
 let posting = false;
+let lastPost = -Infinity;
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
@@ -174,12 +175,13 @@ function receiveBatch(batch: Batch): void {
   }
   if (!posting) {
     posting = true;
-    setTimeout(flush, POST_EVERY_MS);
+    setTimeout(flush, Math.max(0, lastPost + POST_EVERY_MS - performance.now())); // at once after a pause
   }
 }
 
 function flush(): void {
   posting = false;
+  lastPost = performance.now();
   if (collector.empty) return;
   const batch = collector.take();
   self.postMessage({ type: 'batch', batch } satisfies FromWorker,
