@@ -21,9 +21,9 @@ export async function temporaryFolder() {
 }
 
 /** `aeolis serve`; `port` 0 takes a free one. */
-export async function serve({ archive, port = 0, more = [] }) {
+export async function serve({ archive, port = 0, more = [], web = path.join(root, 'web/dist') }) {
     const child = spawn(program, ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive,
-        '--web', path.join(root, 'web/dist'), ...more], { stdio: ['ignore', 'pipe', 'pipe'] });
+        '--web', web, ...more], { stdio: ['ignore', 'pipe', 'pipe'] });
     let said = '';
     const address = await new Promise((resolve, reject) => {
         const late = setTimeout(() => reject(new Error(`no address after ${START_MS} ms; it said: ${said}`)), START_MS);

@@ -192,7 +192,8 @@ function takeRun(run: RunState | undefined): void {
   if (known?.id === Number(run.run)) {
     known.update(run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
-    store.value = new RunStore(run);
+    const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
+    store.value = new RunStore(run, (channel) => drawn.has(channel));
     backToLive();
   } else {
     return;
@@ -239,6 +240,13 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
   }
 }
 
+/** What is drawn over time: its history comes finer. */
+export function plottedChannels(): string[] {
+  const named = (new URL(location.href).searchParams.get('channels') ?? '').split(',').map((name) => [name]);
+  const picks = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel), ...named];
+  return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
+}
+
 /** Starts the worker, learns the dictionary, chooses the run that is going on or the last one, and connects. */
 export async function begin(): Promise<void> {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
@@ -267,10 +275,9 @@ export async function begin(): Promise<void> {
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
   watched.value = chosen;
   const words = dictionary.value as Dictionary;
-  const plotted = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel), ...(new URL(location.href).searchParams.get('channels') ?? '').split(',').map((name) => [name])]
-    .map((names) => words.pick(names)?.name).filter((name) => name !== undefined);
+  const plotted = plottedChannels();
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted: [...new Set(plotted)], others });
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
   let wasIn = true;

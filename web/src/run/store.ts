@@ -6,7 +6,7 @@ import type {
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
-import { Series } from './series';
+import { LIMIT_NOT_DRAWN, Series } from './series';
 import { secondsOfDayOfYear } from './time';
 
 const EVENT_LIMIT = 20000;
@@ -77,7 +77,7 @@ export class RunStore {
   /** Counts changes of anything. */
   version = 0;
 
-  constructor(public run: RunState) {
+  constructor(public run: RunState, private readonly isDrawn: (channel: number) => boolean = () => true) {
     this.clocks = run.clocks;
   }
 
@@ -166,7 +166,7 @@ export class RunStore {
   private series(column: Column): Series {
     const all = column.recorded ? this.recorded : this.live;
     let series = all.get(column.id);
-    if (!series) all.set(column.id, (series = new Series()));
+    if (!series) all.set(column.id, (series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN)));
     return series;
   }
 
