@@ -104,7 +104,10 @@ pagesIn(web);
 const chrome = await browser();
 const server = await serve({ archive: path.join(folder, "bench.db"), more: ["--scenario", "bench_wideband", "--pace", "100"], web });
 const run = async () => (await server.get("/runs")).runs[0];
-const setPace = (pace) => fetch(`${server.address}/api/v1/rehearsals/1`, { method: "POST", body: JSON.stringify({ pace }) });
+async function setPace(pace) {
+    const answer = await fetch(`${server.address}/api/v1/rehearsals/current`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ pace }) });
+    if (!answer.ok) throw new Error(await answer.text());
+}
 
 /** A page in a profile of its own, with nothing cached. */
 async function cold(name, scripts = []) {
@@ -167,14 +170,14 @@ async function live() {
         await pause(4000);
         const observer = observe(channels.find((each) => each.name === CHANNELS[0]).id);
         await page.evaluate(watchFrames);
-        await cdp.send("Performance.enable", { timeDomain: "threadTicks" });
+        await cdp.send("Performance.enable"); // by the clock on the wall: what waits for a picture to be read back cannot answer a key either
         const busy = async () => (await cdp.send("Performance.getMetrics")).metrics.find((each) => each.name === "TaskDuration").value;
         const before = await busy();
         const began = performance.now();
         await pause(LIVE_S * 1000);
         share[name] = (await busy() - before) / ((performance.now() - began) / 1000);
         const { frames, long } = await page.evaluate(() => ({ frames: window.frames_, long: window.long }));
-        row(`${name}: main thread over ${LIVE_S} s`, `${(share[name] * 100).toFixed(1)} % of a core, heap ${(await heap_mb(cdp)).toFixed(1)} MB`, "");
+        row(`${name}: main thread over ${LIVE_S} s`, `${(share[name] * 100).toFixed(1)} % occupied, heap ${(await heap_mb(cdp)).toFixed(1)} MB`, "");
         row(`${name}: tasks over 50 ms`, `${long.length}${long.length ? `, longest ${Math.max(...long).toFixed(0)} ms` : ""}`, name === "console" ? "none" : "", name === "console" ? long.length === 0 : undefined);
         const ages = frames.map(([sclk, painted]) => painted - observer.came.get(sclk)).filter((age) => Number.isFinite(age));
         if (ages.length > 0) {

@@ -243,7 +243,7 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
 /** What is drawn over time: its history comes finer. */
 export function plottedChannels(): string[] {
   const named = (new URL(location.href).searchParams.get('channels') ?? '').split(',').map((name) => [name]);
-  const picks = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel), ...named];
+  const picks = [...named, ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }
 
@@ -255,11 +255,15 @@ export async function begin(): Promise<void> {
 
   for (let attempt = 0; ; ++attempt) {
     try {
-      await learnAccess();
-      await admitted();
+      const knowing = learnAccess();
+      knowing.catch(() => undefined); // looked at below
       const [reply, list] = await Promise.all([
-        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'),
-      ]);
+        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'), knowing,
+      ]).catch(async (error: unknown) => {
+        if (!(error instanceof Refused) || error.status !== 401) throw error;
+        await admitted();
+        return Promise.all([ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs')]);
+      });
       dictionary.value = new Dictionary(reply);
       runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
       break;
@@ -277,7 +281,9 @@ export async function begin(): Promise<void> {
   const words = dictionary.value as Dictionary;
   const plotted = plottedChannels();
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
+  const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
+  takeRun(lookAt);
+  post({ type: 'open', run: chosen, lookAt: Number(lookAt?.run ?? 0), packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
   let wasIn = true;
