@@ -5,7 +5,7 @@ const get = async (path) => (await fetch(`/api/v1${path}`)).json();
 
 const [{ channels: words }, { runs: [run] }] = await Promise.all([get('/dictionary'), get('/runs')]);
 const idOf = new Map(words.map((each) => [each.name, each.id]));
-const { channels } = await get(`/runs/${run.run}/channels?names=${names.join()}&points=6000`);
+const { channels } = await get(`/runs/${run.run}/channels?names=${names.join()}&points=1000`);
 const wide = Math.floor(innerWidth / 2) - 20;
 const high = Math.floor(innerHeight / Math.ceil(names.length / 2)) - 20;
 document.body.style.cssText = 'display:grid;grid-template-columns:1fr 1fr;margin:4px;gap:8px';

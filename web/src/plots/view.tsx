@@ -8,7 +8,7 @@ import { palette } from '../draw/palette';
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../design/panel';
-import { cutoff, dictionary, store, tick } from '../run/session';
+import { cutoff, dictionary, namedChannels, store, tick } from '../run/session';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import { align } from './model';
@@ -179,7 +179,7 @@ function bounds(data: readonly (readonly (number | null | undefined)[])[]): [num
 }
 
 /** Named at ?panel=plots&channels=one,two: any of the dictionary, as many as are named. */
-const NAMED = (new URLSearchParams(globalThis.location?.search).get('channels') ?? '').split(',').filter((name) => name !== '');
+const NAMED = namedChannels();
 const MOST_NAMED = 16; // ours: more cannot be read
 
 export function Plots() {

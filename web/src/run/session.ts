@@ -9,6 +9,7 @@ import { access, admitted, learnAccess, mayAct } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
 import { Refused, turnedAway } from './api';
 import { Dictionary } from './dictionary';
+import { firstLook } from './first_look';
 import { RunStore } from './store';
 
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
@@ -74,6 +75,8 @@ let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
 const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
+
+const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
 let worker: Worker | undefined;
 let lastAsk = 0;
@@ -154,7 +157,10 @@ function onMessage(message: FromWorker): void {
       if (store.value?.id === message.batch.run) store.value.add(message.batch);
       break;
     case 'history':
-      if (store.value?.id === message.run) store.value.addHistory(message.columns);
+      if (store.value?.id === message.run) {
+        wholeHistory.add(store.value);
+        store.value.addHistory(message.columns);
+      }
       break;
     case 'reply': {
       const request = Number(message.reply.request);
@@ -240,10 +246,14 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
   }
 }
 
+/** Of the panel of plots at an address: ?panel=plots&channels=one,two. */
+export function namedChannels(): string[] {
+  return (new URLSearchParams(globalThis.location?.search).get('channels') ?? '').split(',').filter((name) => name !== '');
+}
+
 /** What is drawn over time: its history comes finer. */
 export function plottedChannels(): string[] {
-  const named = (new URL(location.href).searchParams.get('channels') ?? '').split(',').map((name) => [name]);
-  const picks = [...named, ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
+  const picks = [...namedChannels().map((name) => [name]), ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }
 
@@ -251,6 +261,7 @@ export function plottedChannels(): string[] {
 export async function begin(): Promise<void> {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
+  const first = firstLook(Number(new URL(location.href).searchParams.get('run') ?? 0), namedChannels());
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
 
   for (let attempt = 0; ; ++attempt) {
@@ -283,7 +294,10 @@ export async function begin(): Promise<void> {
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
-  post({ type: 'open', run: chosen, lookAt: Number(lookAt?.run ?? 0), packets: Object.fromEntries(words.packets), plotted, others });
+  void first.then((look) => {
+    if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
+  });
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
   let wasIn = true;

@@ -75,7 +75,7 @@ export interface CommandIntent {
 export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 
 export type ToWorker =
-  | { type: 'open'; run: number; lookAt: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
+  | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
   | { type: 'reconnect' } // at once: whoever was turned away has logged in
   | { type: 'refresh_history'; all: boolean }

@@ -18,8 +18,6 @@ import { SequenceCheck, backoffSeconds } from './sequence';
 
 const POST_EVERY_MS = 25;
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
-const FIRST_CHANNELS = 8;
-const FIRST_POINTS = 1000; // for the first picture
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
@@ -45,7 +43,6 @@ let lastPost = -Infinity;
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
-let wholeHistory = false; // some of it has been posted
 let stopAt = 0; // what the run had when the subscription began: from there on it is live
 let lost: { after: number; attempts: number } | undefined; // while a break lasts: what was complete when it began
 let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
@@ -204,13 +201,6 @@ function goOnWithSamples(): void {
   }, 300);
 }
 
-/** What is drawn, coarse, before anything else is known: someone waits for a picture. The history that has no seam replaces it. */
-async function firstLook(run: number): Promise<void> {
-  if (run === 0) return;
-  const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?names=${plotted.slice(0, FIRST_CHANNELS).map(encodeURIComponent).join(',')}&points=${FIRST_POINTS}`).catch(() => undefined);
-  if (list && !wholeHistory) post({ type: 'history', run, columns: list.channels.flatMap(splitBySource) });
-}
-
 async function fetchHistory(all = true): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
@@ -220,7 +210,6 @@ async function fetchHistory(all = true): Promise<void> {
         const some = names.slice(i, i + CHANNELS_A_QUESTION).map(encodeURIComponent).join(',');
         const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?names=${some}&points=${points}`);
         if (run !== currentRun) return;
-        wholeHistory = true;
         post({ type: 'history', run, columns: list.channels.flatMap(splitBySource) });
       }
     }
@@ -263,7 +252,6 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       packetOf = new Map(Object.entries(message.packets).map(([id, all]) => [Number(id), all]));
       collector = new ColumnCollector(packetOf);
       connect();
-      void firstLook(message.lookAt);
       break;
     case 'watch':
       wantedRun = message.run;
