@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { standIn } from './stand_in.mjs';
-import { focused, waitFor, workplace } from './support.mjs';
+import { findings, focused, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 
@@ -34,6 +34,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     };
 
     await waitFor(() => page.getByTestId('log-in').count(), (forms) => forms === 1);
+    assert.deepEqual(await findings(page, 'dark'), []);
     assert.equal(await page.getByTestId('panel-timeline').count(), 0, 'nothing of a run is shown');
     await logIn('ann', 'guess');
     await shows('log-in-problem', /wrong user or password/);
@@ -86,6 +87,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     await page.getByLabel('name of the new token').fill('plotter');
     await page.keyboard.press('Enter');
     await shows('new-token', /shown-once-4711/);
+    assert.deepEqual(await findings(page, 'dark'), []);
     assert.match(await text('audit'), /ann[^]*log_in/);
     assert.deepEqual(problems.filter((problem) => !/status of 401/.test(problem)), [], 'the policy forbids nothing that the page does');
     await page.close();
@@ -123,6 +125,7 @@ test('alarms are acknowledged with a note, shelved and taken back by keyboard, a
     await shows('alarm-sentence', /all acknowledged/);
     await shows('alarms', /shelved until in 900 s/);
     assert.equal(await page.getByTestId('alarms-waiting').count(), 0);
+    assert.deepEqual(await findings(page, 'dark'), []);
     await page.getByRole('button', { name: 'unshelve GncNavigation' }).focus();
     await page.keyboard.press('Enter');
     await shows('alarms-waiting', /1 to acknowledge/);

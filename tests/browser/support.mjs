@@ -1,6 +1,7 @@
 // Starts what the browser tests need: the program on a free port with an archive of its own, and Debian's Chromium.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { readFileSync } from 'node:fs';
 import { mkdtemp, rm } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { connect, createServer } from 'node:net';
@@ -77,7 +78,7 @@ export function workplace() {
         await folder?.remove();
     });
     return {
-        open: (address, size) => open(chrome, address, size),
+        open: (address, size, script) => open(chrome, address, size, script),
         /** With the archive NAME of this file's folder; without `t` it is the caller's to stop. */
         serve: async (t, name, more = [], options = {}) => {
             const server = await serve({ archive: path.join(folder.folder, `${name}.db`), more, ...options });
@@ -88,8 +89,9 @@ export function workplace() {
 }
 
 /** A page that fails the test when its scripts do. */
-export async function open(chrome, address, size = { width: 1920, height: 1080 }) {
+export async function open(chrome, address, size = { width: 1920, height: 1080 }, script = undefined) {
     const page = await chrome.newPage({ viewport: size });
+    if (script) await page.addInitScript(script);
     const problems = [];
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (message) => {
@@ -102,6 +104,16 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
     await page.goto(address);
     const text = (id) => page.getByTestId(id).innerText();
     return { page, problems, text, shows: (id, pattern, timeout) => waitFor(() => text(id), pattern, timeout) };
+}
+
+const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
+
+/** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
+export async function findings(page, theme) {
+    if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8')); // as a debugger does: a page's policy forbids scripts of others
+    const rules = theme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'] : ['color-contrast', 'link-in-text-block'];
+    const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
+    return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
 }
 
 /** Waits until what `read` gives matches; fails with what it was last. */

@@ -288,6 +288,7 @@ export async function begin(): Promise<void> {
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
+  if (wanted > 0 && chosen !== wanted) notify(`Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`);
   watched.value = chosen;
   const words = dictionary.value as Dictionary;
   const plotted = plottedChannels();
