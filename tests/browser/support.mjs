@@ -7,7 +7,7 @@ import { createRequire } from 'node:module';
 import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { after, before } from 'node:test';
+import { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 export const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
@@ -68,20 +68,19 @@ export async function browser() {
 
 /** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it. */
 export function workplace() {
-    let chrome;
-    let folder;
-    before(async () => {
-        [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
-    });
+    let made;
+    const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
     after(async () => {
-        await chrome?.close();
-        await folder?.remove();
+        const [chrome, folder] = await both();
+        await chrome.close();
+        await folder.remove();
     });
     return {
-        open: (address, size, script) => open(chrome, address, size, script),
+        open: async (address, size, script) => open((await both())[0], address, size, script),
         /** With the archive NAME of this file's folder; without `t` it is the caller's to stop. */
         serve: async (t, name, more = [], options = {}) => {
-            const server = await serve({ archive: path.join(folder.folder, `${name}.db`), more, ...options });
+            const [, { folder }] = await both();
+            const server = await serve({ archive: path.join(folder, `${name}.db`), more, ...options });
             t?.after(() => server.stop());
             return server;
         },

@@ -76,9 +76,9 @@ export function admitted(): Promise<void> {
   });
 }
 
-/** Observers send nothing; for everyone else the server decides, command by command. */
+/** Observers send nothing; for everyone else the server decides, command by command. After the end of a session what is typed stays, and is refused. */
 export function mayAct(now: Access = access.value): boolean {
-  return now.state === 'in' ? now.role !== 'observer' : now.state !== 'out';
+  return now.state !== 'in' || now.role !== 'observer';
 }
 
 effect(() => {
