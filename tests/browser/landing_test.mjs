@@ -1,118 +1,104 @@
 // A newcomer lands a spacecraft with the keyboard alone, reloads, and asks for a recorded range; a server that is
 // killed in mid-landing loses nothing that was shown.
 import assert from 'node:assert/strict';
-import path from 'node:path';
-import { after, before, test } from 'node:test';
-import { breakable, browser, focused, open, secondsFromEntry, serve, setPace as pace, stageLook as stage, temporaryFolder, waitFor } from './support.mjs';
+import { test } from 'node:test';
+import { breakable, focused, secondsFromEntry, setPace as pace, stageLook as stage, waitFor, workplace } from './support.mjs';
 
-let chrome;
-let folder;
+const { open, serve } = workplace();
 
-before(async () => {
-    [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
-});
-after(async () => {
-    await chrome?.close();
-    await folder?.remove();
-});
+test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 480_000 }, async (t) => {
+    const server = await serve(t, 'landing', ['--scenario', 'nominal']);
+    const { page, problems, text, shows } = await open(server.address);
+    await shows('badge', /REHEARSAL.*nominal/s);
+    await shows('waiting', /set edl parameters/);
 
-test('two commands by keyboard land it; a reload has all of it; a range can be asked for', { timeout: 480_000 }, async () => {
-    const server = await serve({ archive: path.join(folder.folder, 'landing.db'), more: ['--scenario', 'nominal'] });
-    try {
-        const { page, problems, text, shows } = await open(chrome, server.address);
-        await shows('badge', /REHEARSAL.*nominal/s);
-        await shows('waiting', /set edl parameters/);
+    await page.keyboard.press('/');
+    await page.keyboard.type('set edl parameters');
+    await page.keyboard.press('Enter');
+    await shows('command-review', /filled from ground/);
+    await page.keyboard.press('Enter');
+    await shows('command-message', /EDL_SET_PARAMETERS is #1/);
+    await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
+    await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 20_000); // flight reports what it holds every 8 s
+    await shows('waiting', /type “do edl”/);
+    await shows('command-history', /EDL_SET_PARAMETERS #1/);
 
-        await page.keyboard.press('/');
-        await page.keyboard.type('set edl parameters');
-        await page.keyboard.press('Enter');
-        await shows('command-review', /filled from ground/);
-        await page.keyboard.press('Enter');
-        await shows('command-message', /EDL_SET_PARAMETERS is #1/);
-        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
-        await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 20_000); // flight reports what it holds every 8 s
-        await shows('waiting', /type “do edl”/);
-        await shows('command-history', /EDL_SET_PARAMETERS #1/);
+    await waitFor(() => focused(page), /command-line/);
+    await page.keyboard.type('do edl');
+    await page.keyboard.press('Enter');
+    await shows('command-review', /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters_received == 1 is 1/);
+    await page.keyboard.press('Enter');
+    await shows('command-armed', /ARMED/);
+    await waitFor(() => focused(page), /command-confirmation/);
+    await page.keyboard.press('Enter');
+    await shows('command-message', /nothing was sent/);
+    await page.keyboard.type('EDL_DO_EDL');
+    await page.keyboard.press('Enter');
+    await shows('command-message', /EDL_DO_EDL is #2/);
+    await page.keyboard.press('Escape');
 
-        await waitFor(() => focused(page), /command-line/);
-        await page.keyboard.type('do edl');
-        await page.keyboard.press('Enter');
-        await shows('command-review', /✓ It would be sent[^]*arms it; nothing is sent yet[^]*✓ parameters_received == 1 is 1/);
-        await page.keyboard.press('Enter');
-        await shows('command-armed', /ARMED/);
-        await waitFor(() => focused(page), /command-confirmation/);
-        await page.keyboard.press('Enter');
-        await shows('command-message', /nothing was sent/);
-        await page.keyboard.type('EDL_DO_EDL');
-        await page.keyboard.press('Enter');
-        await shows('command-message', /EDL_DO_EDL is #2/);
-        await page.keyboard.press('Escape');
+    await pace(page, 100);
+    await shows('waiting', /Waiting for coolant vent/);
+    await shows('timepoints-fired', /^[1-9]/);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 150_000);
+    await pace(page, 20);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 100_000);
+    await page.keyboard.press('p');
+    await shows('badge', /paused/);
+    await shows('pause', /go on/);
+    await shows('phases', /Parachute/);
+    assert.match(await text('tone-title'), /Tone \d+ · \S/);
+    assert.match(await text('reading-altitude'), /\d/);
+    await page.keyboard.press('p');
+    await pace(page, 100);
 
-        await pace(page, 100);
-        await shows('waiting', /Waiting for coolant vent/);
-        await shows('timepoints-fired', /^[1-9]/);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 150_000);
-        await pace(page, 20);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 266, 100_000);
-        await page.keyboard.press('p');
-        await shows('badge', /paused/);
-        await shows('pause', /go on/);
-        await shows('phases', /Parachute/);
-        assert.match(await text('tone-title'), /Tone \d+ · \S/);
-        assert.match(await text('reading-altitude'), /\d/);
-        await page.keyboard.press('p');
-        await pace(page, 100);
+    await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 100_000);
+    await pace(page, 0).catch(() => undefined); // it may have ended by now
+    await shows('waiting', /Landed/, 100_000);
+    await shows('badge', /ENDED RUN.*touchdown/s);
+    // The end of the run may be told before its last items: the page has all once it has what the server has, and
+    // neither goes on.
+    let before;
+    await waitFor(async () => {
+        const [{ last_seq: last }] = (await server.get('/runs')).runs;
+        const through = (await text('complete-through')).replace(/\D/g, '');
+        const settled = through === last && through === before;
+        before = through;
+        await new Promise((resolve) => setTimeout(resolve, 300));
+        return settled;
+    }, (settled) => settled === true);
+    const seen = {
+        fired: await text('timepoints-fired'), through: await text('complete-through'), tone: await text('tone-title'),
+        stages: await stage(page, 'EDL_DO_EDL', 'executed'),
+    };
 
-        await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 100_000);
-        await pace(page, 0).catch(() => undefined); // it may have ended by now
-        await shows('waiting', /Landed/, 100_000);
-        await shows('badge', /ENDED RUN.*touchdown/s);
-        // The end of the run may be told before its last items: the page has all once it has what the server has, and
-        // neither goes on.
-        let before;
-        await waitFor(async () => {
-            const [{ last_seq: last }] = (await server.get('/runs')).runs;
-            const through = (await text('complete-through')).replace(/\D/g, '');
-            const settled = through === last && through === before;
-            before = through;
-            await new Promise((resolve) => setTimeout(resolve, 300));
-            return settled;
-        }, (settled) => settled === true);
-        const seen = {
-            fired: await text('timepoints-fired'), through: await text('complete-through'), tone: await text('tone-title'),
-            stages: await stage(page, 'EDL_DO_EDL', 'executed'),
-        };
+    await page.reload();
+    await shows('waiting', /Landed/);
+    await waitFor(() => text('timepoints-fired'), (value) => value === seen.fired);
+    await waitFor(() => text('complete-through'), (value) => value === seen.through);
+    await waitFor(() => text('reading-altitude'), /\d/);
+    assert.equal(await text('tone-title'), seen.tone);
+    assert.equal(await stage(page, 'EDL_DO_EDL', 'executed'), seen.stages);
+    assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 1);
 
-        await page.reload();
-        await shows('waiting', /Landed/);
-        await waitFor(() => text('timepoints-fired'), (value) => value === seen.fired);
-        await waitFor(() => text('complete-through'), (value) => value === seen.through);
-        await waitFor(() => text('reading-altitude'), /\d/);
-        assert.equal(await text('tone-title'), seen.tone);
-        assert.equal(await stage(page, 'EDL_DO_EDL', 'executed'), seen.stages);
-        assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 1);
-
-        await page.keyboard.press('r');
-        await waitFor(() => focused(page), /range-from/);
-        await page.keyboard.press('Control+A');
-        await page.keyboard.type('E+4:10');
-        await page.keyboard.press('Tab');
-        await page.keyboard.type('E+5:00');
-        await page.keyboard.press('Enter');
-        await shows('range-message', /✓ [1-9]\d* samples of 4 channels/);
-        await shows('badge', /PAST, NOT LIVE/);
-        assert.match(await text('past-bar'), /Nothing here is live/);
-        assert.match(await text('recording-summary'), /✓ Every live packet is in the recording/);
-        assert.equal(await text('clock-entry'), 'E+00:05:00');
-        assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 0, 'an event after the range is shown');
-        await page.keyboard.press('Escape');
-        await page.keyboard.press('Escape');
-        await shows('badge', /ENDED RUN/);
-        assert.deepEqual(problems, []);
-        await page.close();
-    } finally {
-        await server.stop();
-    }
+    await page.keyboard.press('r');
+    await waitFor(() => focused(page), /range-from/);
+    await page.keyboard.press('Control+A');
+    await page.keyboard.type('E+4:10');
+    await page.keyboard.press('Tab');
+    await page.keyboard.type('E+5:00');
+    await page.keyboard.press('Enter');
+    await shows('range-message', /✓ [1-9]\d* samples of 4 channels/);
+    await shows('badge', /PAST, NOT LIVE/);
+    assert.match(await text('past-bar'), /Nothing here is live/);
+    assert.match(await text('recording-summary'), /✓ Every live packet is in the recording/);
+    assert.equal(await text('clock-entry'), 'E+00:05:00');
+    assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 0, 'an event after the range is shown');
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('Escape');
+    await shows('badge', /ENDED RUN/);
+    assert.deepEqual(problems, []);
+    await page.close();
 });
 
 /** Does what the guide says, key by key, and nothing else. */
@@ -126,115 +112,100 @@ async function obey(page) {
     }
 }
 
-test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 480_000 }, async () => {
-    const server = await serve({ archive: path.join(folder.folder, 'guide.db'), more: ['--scenario', 'nominal'] });
-    try {
-        const { page, problems, text, shows } = await open(chrome, server.address);
-        await shows('guide', /Tell the vehicle where it is/);
-        for (const title of [/Tell the vehicle where it is/, /read it/]) {
-            await shows('guide', title);
-            await obey(page);
-        }
-        for (const title of [/Let it begin/, /read it/, /EDL_DO_EDL/]) {
-            await shows('guide', title);
-            await obey(page);
-        }
-        await shows('guide', /Nothing to do until entry/);
-        await page.keyboard.press('Escape'); // leaves the command line
-        await waitFor(async () => {
-            await obey(page);
-            await new Promise((resolve) => setTimeout(resolve, 300));
-            return page.getByTestId('pace').inputValue();
-        }, (value) => Number(value) >= 20);
-        await pace(page, 100);
-        await shows('guide', /Entry[^]*see it happen/, 150_000);
+test('whoever only does what the guide says lands it, and once put away the guide stays away', { timeout: 480_000 }, async (t) => {
+    const server = await serve(t, 'guide', ['--scenario', 'nominal']);
+    const { page, problems, text, shows } = await open(server.address);
+    await shows('guide', /Tell the vehicle where it is/);
+    for (const title of [/Tell the vehicle where it is/, /read it/]) {
+        await shows('guide', title);
         await obey(page);
-        await shows('guide', /You have landed it/, 90_000);
-        assert.match(await text('badge'), /touchdown/);
-
-        await page.keyboard.press('g');
-        await waitFor(() => page.getByTestId('guide').count(), (count) => count === 0);
-        await page.reload();
-        await shows('waiting', /Landed/);
-        assert.equal(await page.getByTestId('guide').count(), 0);
-        assert.deepEqual(problems, []);
-        await page.close();
-    } finally {
-        await server.stop();
     }
+    for (const title of [/Let it begin/, /read it/, /EDL_DO_EDL/]) {
+        await shows('guide', title);
+        await obey(page);
+    }
+    await shows('guide', /Nothing to do until entry/);
+    await page.keyboard.press('Escape'); // leaves the command line
+    await waitFor(async () => {
+        await obey(page);
+        await new Promise((resolve) => setTimeout(resolve, 300));
+        return page.getByTestId('pace').inputValue();
+    }, (value) => Number(value) >= 20);
+    await pace(page, 100);
+    await shows('guide', /Entry[^]*see it happen/, 150_000);
+    await obey(page);
+    await shows('guide', /You have landed it/, 90_000);
+    assert.match(await text('badge'), /touchdown/);
+
+    await page.keyboard.press('g');
+    await waitFor(() => page.getByTestId('guide').count(), (count) => count === 0);
+    await page.reload();
+    await shows('waiting', /Landed/);
+    assert.equal(await page.getByTestId('guide').count(), 0);
+    assert.deepEqual(problems, []);
+    await page.close();
 });
 
-test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown, and can be continued', { timeout: 60_000 }, async () => {
-    const archive = path.join(folder.folder, 'killed.db');
-    const first = await serve({ archive, more: ['--scenario', 'nominal_auto', '--pace', '100'] });
-    let second;
-    try {
-        const { page, text, shows } = await open(chrome, first.address);
-        await shows('timepoints-fired', /^([5-9]|\d\d) of/, 30_000);
-        await shows('stream-state', /connected/);
-        await first.kill();
-        await shows('stream-state', /NO CONNECTION/);
-        const shown = Number((await text('complete-through')).replace(/\D/g, ''));
-        const fired = Number.parseInt(await text('timepoints-fired'), 10);
-        assert.ok(shown > 0);
+test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown, and can be continued', { timeout: 60_000 }, async (t) => {
+    const first = await serve(t, 'killed', ['--scenario', 'nominal_auto', '--pace', '100']);
+    const { page, text, shows } = await open(first.address);
+    await shows('timepoints-fired', /^([5-9]|\d\d) of/, 30_000);
+    await shows('stream-state', /connected/);
+    await first.kill();
+    await shows('stream-state', /NO CONNECTION/);
+    const shown = Number((await text('complete-through')).replace(/\D/g, ''));
+    const fired = Number.parseInt(await text('timepoints-fired'), 10);
+    assert.ok(shown > 0);
 
-        second = await serve({ archive, port: first.port });
-        await shows('stream-state', /connected/);
-        await shows('badge', /INTERRUPTED RUN/);
-        await shows('notices', /The server had stopped and was started again: this run was cut off at number \d+/);
-        await shows('waiting', /Interrupted/);
-        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
-        assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
-        const [run] = (await second.get('/runs')).runs;
-        assert.equal(run.state, 'interrupted');
-        assert.ok(Number(run.last_seq) >= shown, `${run.last_seq} stored, ${shown} shown`);
+    const second = await serve(t, 'killed', [], { port: first.port });
+    await shows('stream-state', /connected/);
+    await shows('badge', /INTERRUPTED RUN/);
+    await shows('notices', /The server had stopped and was started again: this run was cut off at number \d+/);
+    await shows('waiting', /Interrupted/);
+    await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
+    assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
+    const [run] = (await second.get('/runs')).runs;
+    assert.equal(run.state, 'interrupted');
+    assert.ok(Number(run.last_seq) >= shown, `${run.last_seq} stored, ${shown} shown`);
 
-        await page.reload();
-        await shows('badge', /INTERRUPTED RUN/);
-        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
+    await page.reload();
+    await shows('badge', /INTERRUPTED RUN/);
+    await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) >= shown);
 
-        await page.getByTestId('tab-rehearsal').click();
-        await page.getByTestId('continue-1').click();
-        await waitFor(async () => (await second.get('/runs')).runs[0], (now) => now.state === 'running' && Number(now.last_seq) > Number(run.last_seq) + 50);
-        await shows('badge', /REHEARSAL/);
-        await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) > Number(run.last_seq) + 50);
-        assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
-        await page.close();
-    } finally {
-        await first.kill();
-        await second?.stop();
-    }
+    await page.getByTestId('tab-rehearsal').click();
+    await page.getByTestId('continue-1').click();
+    await waitFor(async () => (await second.get('/runs')).runs[0], (now) => now.state === 'running' && Number(now.last_seq) > Number(run.last_seq) + 50);
+    await shows('badge', /REHEARSAL/);
+    await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) > Number(run.last_seq) + 50);
+    assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
+    await page.close();
 });
 
-test('cut off in mid-entry the page says so, says what it missed once it is back, and has all of it', { timeout: 180_000 }, async () => {
-    const server = await serve({ archive: path.join(folder.folder, 'cut.db'), more: ['--scenario', 'nominal_auto', '--pace', '100'] });
+test('cut off in mid-entry the page says so, says what it missed once it is back, and has all of it', { timeout: 180_000 }, async (t) => {
+    const server = await serve(t, 'cut', ['--scenario', 'nominal_auto', '--pace', '100']);
     const way = await breakable(server.port);
-    try {
-        const { page, problems, text, shows } = await open(chrome, way.address);
-        await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 120, 90_000);
-        await pace(page, 10);
-        await shows('stream-state', /connected/);
-        way.cut();
-        await shows('stream-state', /NO CONNECTION/);
-        await shows('lost-bar', /everything here is old/);
-        const [{ last_seq: last }] = (await server.get('/runs')).runs;
-        await waitFor(async () => (await server.get('/runs')).runs[0], (run) => Number(run.last_seq) > Number(last) + 200); // the landing goes on
-        way.mend();
-        await shows('notices', /The connection was lost at E\+0\d:\d\d and is back[^]*were filled in from the archive, none is missing/);
-        await shows('stream-state', /connected/);
-        await pace(page, 100);
-        await shows('badge', /ENDED RUN.*touchdown/s, 90_000);
-        // What came while it was away is there, once each: as many events as the archive has, and no hole in the trace.
-        const { events } = await server.get('/runs/1/events?limit=10000');
-        const names = (rows) => rows.reduce((count, name) => count.set(name, (count.get(name) ?? 0) + 1), new Map());
-        const wanted = names(events.map((item) => item.event).filter(({ level }) => !['DIAGNOSTIC', 'ACTIVITY_LO'].includes(level)).map(({ name }) => name));
-        await page.getByLabel('least level shown').selectOption('ACTIVITY_HI');
-        await waitFor(async () => names(await page.locator('[data-event]:not(.level-why)').evaluateAll((rows) => rows.map((row) => row.dataset.event))),
-            (shown) => shown.size === wanted.size && [...wanted].every(([name, count]) => shown.get(name) === count), 10_000);
-        assert.deepEqual(problems.filter((problem) => !/Failed to fetch|ERR_/.test(problem)), []);
-        await page.close();
-    } finally {
-        way.close();
-        await server.stop();
-    }
+    t.after(() => way.close());
+    const { page, problems, text, shows } = await open(way.address);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 120, 90_000);
+    await pace(page, 10);
+    await shows('stream-state', /connected/);
+    way.cut();
+    await shows('stream-state', /NO CONNECTION/);
+    await shows('lost-bar', /everything here is old/);
+    const [{ last_seq: last }] = (await server.get('/runs')).runs;
+    await waitFor(async () => (await server.get('/runs')).runs[0], (run) => Number(run.last_seq) > Number(last) + 200); // the landing goes on
+    way.mend();
+    await shows('notices', /The connection was lost at E\+0\d:\d\d and is back[^]*were filled in from the archive, none is missing/);
+    await shows('stream-state', /connected/);
+    await pace(page, 100);
+    await shows('badge', /ENDED RUN.*touchdown/s, 90_000);
+    // What came while it was away is there, once each: as many events as the archive has, and no hole in the trace.
+    const { events } = await server.get('/runs/1/events?limit=10000');
+    const names = (rows) => rows.reduce((count, name) => count.set(name, (count.get(name) ?? 0) + 1), new Map());
+    const wanted = names(events.map((item) => item.event).filter(({ level }) => !['DIAGNOSTIC', 'ACTIVITY_LO'].includes(level)).map(({ name }) => name));
+    await page.getByLabel('least level shown').selectOption('ACTIVITY_HI');
+    await waitFor(async () => names(await page.locator('[data-event]:not(.level-why)').evaluateAll((rows) => rows.map((row) => row.dataset.event))),
+        (shown) => shown.size === wanted.size && [...wanted].every(([name, count]) => shown.get(name) === count), 10_000);
+    assert.deepEqual(problems.filter((problem) => !/Failed to fetch|ERR_/.test(problem)), []);
+    await page.close();
 });

@@ -31,7 +31,7 @@ test('Open MCT shows runs and channels of a server, with history and live values
         assert.ok(tree.channels.includes('altitude_m (aeolis.channel)'), tree.channels.slice(0, 5).join());
 
         const live = await page.evaluate(async () => {
-            const altitude = await openmct.objects.get({ namespace: 'aeolis', key: '1/altitude_m' });
+            const altitude = await openmct.objects.get({ namespace: 'aeolis', key: '1~altitude_m' });
             const taken = [];
             await new Promise((resolve) => {
                 const stop = openmct.telemetry.subscribe(altitude, (datum) => {
@@ -46,7 +46,7 @@ test('Open MCT shows runs and channels of a server, with history and live values
         await waitFor(async () => (await server.get('/runs')).runs[0].state, (state) => state === 'finished', 60_000);
 
         const history = await page.evaluate(async () => {
-            const altitude = await openmct.objects.get({ namespace: 'aeolis', key: '1/altitude_m' });
+            const altitude = await openmct.objects.get({ namespace: 'aeolis', key: '1~altitude_m' });
             return openmct.telemetry.request(altitude, { start: 0, end: 60_000, size: 500 });
         });
         const { entry_sclk: entry } = (await server.get('/runs')).runs[0];
@@ -59,7 +59,11 @@ test('Open MCT shows runs and channels of a server, with history and live values
             assert.equal(all.value[at], value, `live ${value} at ${e} ms is not what is recorded`);
         }
 
+        // What a person sees: the run's channel as a plot.
+        await page.goto('about:blank');
         await page.goto(`http://127.0.0.1:${pages.address().port}/#/browse/aeolis:runs/aeolis:1/aeolis:1~altitude_m`);
+        await page.waitForSelector('.gl-plot-chart-area canvas');
+        await waitFor(() => page.locator('.gl-plot').first().innerText(), /GNC-\d+[^]*\b[1-9]\d{4,}\b[^]*E\+\d/); // its axes are those of the values
         await page.close();
     } finally {
         pages.closeAllConnections();

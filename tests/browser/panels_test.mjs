@@ -2,42 +2,27 @@
 // wider than the screen from 320 px to 4K; live against recorded is shown octet by octet; the script is as small as was promised.
 import assert from 'node:assert/strict';
 import { readFile, readdir } from 'node:fs/promises';
-import { createRequire } from 'node:module';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
-import { browser, focused, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+import { comparePicture } from './picture.mjs';
+import { findings, focused, root, waitFor, workplace } from './support.mjs';
 
-const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
-const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal'];
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'alarms', 'notes', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal', 'users'];
 const SCRIPT_KB = 150;
 
-let chrome;
-let folder;
+const { open, serve } = workplace();
 let server;
 
 before(async () => {
-    [chrome, folder] = await Promise.all([browser(), temporaryFolder()]);
-    server = await serve({ archive: path.join(folder.folder, 'panels.db'), more: ['--scenario', 'nominal_auto', '--pace', '0'] });
+    server = await serve(undefined, 'panels', ['--scenario', 'nominal_auto', '--pace', '0']);
     await waitFor(async () => (await server.get('/runs')).runs[0]?.state, (state) => state === 'finished', 60_000);
 });
-after(async () => {
-    await server?.stop();
-    await chrome?.close();
-    await folder?.remove();
-});
-
-/** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
-async function findings(page, theme) {
-    if (!(await page.evaluate(() => 'axe' in window))) await page.addScriptTag({ path: axe });
-    const rules = theme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'] : ['color-contrast', 'link-in-text-block'];
-    const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
-    return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
-}
+after(() => server?.stop());
 
 test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 400_000 }, async () => {
     const found = [];
-    const { page, problems, shows } = await open(chrome, server.address);
+    const { page, problems, shows } = await open(server.address);
     for (const name of ['dark', 'light']) {
         await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), name);
         for (const panel of [...PANELS, undefined]) {
@@ -80,8 +65,38 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
     await page.close();
 });
 
+test('each panel looks as its stored picture does, within a tolerance', { timeout: 120_000 }, async () => {
+    const { page, problems, shows } = await open(server.address, { width: 1000, height: 640 });
+    const different = [];
+    const compare = async (name, what) => different.push(...await comparePicture(page, name, await what.screenshot({ animations: 'disabled' })));
+    for (const [theme, panels] of [['dark', PANELS.filter((panel) => panel !== 'phases')], ['light', ['timeline', 'plots', 'commands']]]) {
+        await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
+        for (const panel of panels) {
+            await page.goto(`${server.address}/?panel=${panel}`);
+            await shows('badge', /ENDED RUN/);
+            await shows('stream-state', /connected/);
+            if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
+            if (panel === 'flown') await shows('flown-summary', /timepoints fired/);
+            if (panel === 'channels') await waitFor(() => page.getByTestId('channel-altitude_m').innerText(), /\d/);
+            await page.waitForTimeout(700); // history, and a draw after it
+            await compare(`${panel}_${theme}`, page.locator('main'));
+        }
+    }
+    await page.setViewportSize({ width: 1600, height: 900 });
+    for (const theme of ['dark', 'light']) {
+        await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
+        await page.goto(server.address);
+        await shows('waiting', /Landed/);
+        await page.waitForTimeout(1500);
+        await compare(`console_${theme}`, page);
+    }
+    assert.deepEqual(different, []);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
 test('a replay shows nothing of what came later, in every panel, and the way back is one key', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, server.address);
+    const { page, problems, text, shows } = await open(server.address);
     await shows('waiting', /Landed/);
     await page.keyboard.press('y');
     await shows('badge', /REPLAY, NOT LIVE/);
@@ -100,7 +115,7 @@ test('a replay shows nothing of what came later, in every panel, and the way bac
 });
 
 test('live is proven against the recording, by packet and by link, and a packet that differs has its octets marked', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, server.address);
+    const { page, problems, text, shows } = await open(server.address);
     await shows('badge', /ENDED RUN/);
     await page.keyboard.press('v');
     const { streams, tones } = await server.get('/runs/latest/proof');
@@ -134,7 +149,7 @@ test('live is proven against the recording, by packet and by link, and a packet 
 });
 
 test('a packet is read by keyboard: its fields light their octets, an octet lights its fields, and a packet can be chosen alone', { timeout: 40_000 }, async () => {
-    const { page, problems, text, shows } = await open(chrome, `${server.address}/?panel=packets`);
+    const { page, problems, text, shows } = await open(`${server.address}/?panel=packets`);
     await shows('badge', /ENDED RUN/);
     const { streams } = await server.get('/runs/latest/proof');
     const live = streams.filter((row) => Number(row.realtime) > 0).map((row) => row.name).sort();
@@ -174,7 +189,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
 });
 
 test('from 320 px to 4K nothing is wider than the screen', { timeout: 60_000 }, async () => {
-    const { page, shows } = await open(chrome, server.address);
+    const { page, shows } = await open(server.address);
     await shows('badge', /ENDED RUN/);
     for (const [width, height] of [[320, 640], [768, 1024], [1024, 768], [1366, 768], [1920, 1080], [3840, 2160]]) {
         await page.setViewportSize({ width, height });

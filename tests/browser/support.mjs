@@ -1,11 +1,13 @@
 // Starts what the browser tests need: the program on a free port with an archive of its own, and Debian's Chromium.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { readFileSync } from 'node:fs';
 import { mkdtemp, rm } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { connect, createServer } from 'node:net';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
+import { after } from 'node:test';
 import { fileURLToPath } from 'node:url';
 
 export const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
@@ -20,9 +22,9 @@ export async function temporaryFolder() {
 }
 
 /** `aeolis serve`; `port` 0 takes a free one. */
-export async function serve({ archive, port = 0, more = [] }) {
+export async function serve({ archive, port = 0, more = [], web = path.join(root, 'web/dist') }) {
     const child = spawn(program, ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive,
-        '--web', path.join(root, 'web/dist'), ...more], { stdio: ['ignore', 'pipe', 'pipe'] });
+        '--web', web, ...more], { stdio: ['ignore', 'pipe', 'pipe'] });
     let said = '';
     const address = await new Promise((resolve, reject) => {
         const late = setTimeout(() => reject(new Error(`no address after ${START_MS} ms; it said: ${said}`)), START_MS);
@@ -64,19 +66,53 @@ export async function browser() {
     });
 }
 
+/** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it. */
+export function workplace() {
+    let made;
+    const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
+    after(async () => {
+        const [chrome, folder] = await both();
+        await chrome.close();
+        await folder.remove();
+    });
+    return {
+        open: async (address, size, script) => open((await both())[0], address, size, script),
+        /** With the archive NAME of this file's folder; without `t` it is the caller's to stop. */
+        serve: async (t, name, more = [], options = {}) => {
+            const [, { folder }] = await both();
+            const server = await serve({ archive: path.join(folder, `${name}.db`), more, ...options });
+            t?.after(() => server.stop());
+            return server;
+        },
+    };
+}
+
 /** A page that fails the test when its scripts do. */
-export async function open(chrome, address, size = { width: 1920, height: 1080 }) {
+export async function open(chrome, address, size = { width: 1920, height: 1080 }, script = undefined) {
     const page = await chrome.newPage({ viewport: size });
+    if (script) await page.addInitScript(script);
     const problems = [];
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (message) => {
         // A connection that is refused while the server is down is what one of the tests is about.
-        if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(message.text());
+        // A server that knows of no sessions or alarms' states is asked for them once, and answers 404.
+        const optional = /404/.test(message.text()) && /\/(session|alarms\?state=current|notes)$/.test(message.location().url);
+        if (message.type() === 'error' && !optional && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(message.text());
     });
     page.setDefaultTimeout(20_000);
     await page.goto(address);
     const text = (id) => page.getByTestId(id).innerText();
     return { page, problems, text, shows: (id, pattern, timeout) => waitFor(() => text(id), pattern, timeout) };
+}
+
+const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
+
+/** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
+export async function findings(page, theme) {
+    if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8')); // as a debugger does: a page's policy forbids scripts of others
+    const rules = theme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'] : ['color-contrast', 'link-in-text-block'];
+    const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
+    return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
 }
 
 /** Waits until what `read` gives matches; fails with what it was last. */

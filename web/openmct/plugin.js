@@ -41,8 +41,8 @@ export function AeolisPlugin(origin = location.origin) {
     return runs.get(number);
   };
   const idOf = (key) => ({ namespace: NAMESPACE, key });
-  const partsOf = ({ key }) => { // "runs", "3", "3/altitude_m"
-    const [run, channel] = key.split('/');
+  const partsOf = ({ key }) => { // "runs", "3", "3~altitude_m": a stroke would end it in an address
+    const [run, channel] = key.split('~');
     return { run, channel };
   };
 
@@ -64,7 +64,7 @@ export function AeolisPlugin(origin = location.origin) {
 
   const composition = async ({ identifier }) => identifier.key === 'runs'
     ? ((await get('/runs')).runs ?? []).map(({ run }) => idOf(run))
-    : (await words()).channels.map(({ name }) => idOf(`${identifier.key}/${name}`));
+    : (await words()).channels.map(({ name }) => idOf(`${identifier.key}~${name}`));
 
   const request = async ({ identifier }, { start, end, size, strategy }) => {
     const { run, channel } = partsOf(identifier);

@@ -1,4 +1,7 @@
 // The whole console, or one panel of it at ?panel=NAME for further monitors.
+import { access } from './access/model';
+import { ExpiredBar, LogIn } from './access/view';
+import { Alarms } from './alarms/view';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -10,6 +13,7 @@ import { guideNow } from './guide/model';
 import { Guide } from './guide/view';
 import { Links } from './links/view';
 import { PastBar, Tape } from './mode/view';
+import { Notes } from './notes/view';
 import { Packets } from './packets/view';
 import { Panel } from './design/panel';
 import { Phases } from './phases/view';
@@ -17,22 +21,23 @@ import { Plots } from './plots/view';
 import { Recorded } from './recorded/view';
 import { PaceBar, Rehearsal } from './rehearsal/view';
 import { ReplayBar } from './replay/view';
-import { dismissNotice, modeNow, notices, stream } from './run/session';
+import { dismissNotice, modeNow, notices, runNow, stream } from './run/session';
 import { TABS, helpShown, tab } from './shortcuts/model';
 import { Help } from './shortcuts/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
+import { Users } from './users/view';
 import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
-const DATA = { channels: Channels, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal };
+const DATA = { channels: Channels, alarms: Alarms, notes: Notes, users: Users, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal };
 
 function Data() {
   const Shown = DATA[tab.value];
   return (
     <Panel name="data" title={
       <span role="tablist" class="tabs">
-        {TABS.map((each) => (
+        {TABS.filter((each) => each.id !== 'users' || each.id === tab.value || (access.value.state === 'in' && access.value.role === 'administrator')).map((each) => (
           <button type="button" role="tab" key={each.id} aria-selected={tab.value === each.id} data-testid={`tab-${each.id}`}
             onClick={() => (tab.value = each.id)}>{each.title} <kbd>{each.key}</kbd></button>
         ))}
@@ -67,16 +72,18 @@ const ALONE = {
 
 export function App({ panel }: { panel?: string | undefined }) {
   const mode = modeNow();
+  const run = runNow();
   const Alone = panel === undefined ? undefined : ALONE[panel as keyof typeof ALONE];
   return (
     <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`} data-testid="console" data-mode={mode}>
       <Tape />
       <Header />
       <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>
+      <ExpiredBar />
       <PastBar />
       <ReplayBar />
       <Notices />
-      {Alone ? <main class="one"><Alone /></main> : (
+      {access.value.state === 'out' && !run ? <LogIn /> : Alone ? <main class="one"><Alone /></main> : (
         <main class="grid">
           <div class="left">
             <Timeline />

@@ -1,6 +1,7 @@
 import { render } from 'preact';
 import { App } from './app';
 import { startLoop } from './draw/loop';
+import { refineWhatIsLookedAt } from './run/detail';
 import { begin } from './run/session';
 import { onKey } from './shortcuts/model';
 import './style.css';
@@ -11,4 +12,5 @@ const root = document.getElementById('console');
 if (root) render(<App panel={panel} />, root);
 window.addEventListener('keydown', onKey);
 startLoop();
+refineWhatIsLookedAt();
 void begin();

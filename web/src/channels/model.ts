@@ -1,16 +1,13 @@
 // The table of channels: value, unit, age, alarm and stale state.
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import type { Status } from '../design/status';
 import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
 import { valueText } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import { duration } from '../run/time';
 
-export type ChannelLook = 'good' | 'watch' | 'alarm' | 'stale' | 'never';
-export const SHAPES: Record<ChannelLook, string> = { good: '●', watch: '▲', alarm: '■', stale: '◌', never: '·' };
-export const WORDS: Record<ChannelLook, string> = {
-  good: 'good', watch: 'watch', alarm: 'alarm', stale: 'stale', never: 'not received',
-};
+export type ChannelLook = Extract<Status, 'good' | 'caution' | 'alarm' | 'stale' | 'never'>;
 
 export interface ChannelRow {
   id: number;
@@ -61,7 +58,7 @@ function lookOf(
   if (value === undefined || age === undefined) return 'never';
   // In a past view the alarms of now do not apply: the limits are asked again.
   const severity = cutoff === Infinity ? store?.alarms.get(channel.id)?.severity : outside(channel, value);
-  if (severity !== undefined) return ALARMS.has(severity) ? 'alarm' : 'watch';
+  if (severity !== undefined) return ALARMS.has(severity) ? 'alarm' : 'caution';
   const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
   if (store?.going && age > Math.max(STALE_LEAST_S, STALE_PERIODS * period)) return 'stale';
   return 'good';

@@ -19,7 +19,7 @@ describe('channels', () => {
   });
   it('judge the limits anew in a past view', () => {
     const store = aStore([samples(800, { 3: 300000, 4: 1 }), samples(900, { 3: 5, 4: 1 })]);
-    expect(row(store, 'altitude_m', 850)?.look).toBe('watch');
+    expect(row(store, 'altitude_m', 850)?.look).toBe('caution');
     expect(row(store, 'altitude_m')?.look).toBe('good');
   });
   it('are found by any of their words', () => {

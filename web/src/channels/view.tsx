@@ -1,6 +1,7 @@
 import { signal } from '@preact/signals';
+import { STATUS } from '../design/status';
 import { cutoff, dictionary, store, tick } from '../run/session';
-import { SHAPES, WORDS, channelRows } from './model';
+import { channelRows } from './model';
 import './style.css';
 
 const filter = signal('');
@@ -23,7 +24,7 @@ export function Channels() {
           <tbody>
             {rows.map((row) => (
               <tr key={row.id} class={`look-${row.look}`} title={row.text} data-testid={`channel-${row.name}`}>
-                <td title={WORDS[row.look]}><span class="shape" aria-label={WORDS[row.look]}>{SHAPES[row.look]}</span></td>
+                <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>
                 <td><span class="alias">{row.alias}</span> {row.name}</td>
                 <td class="number value">{row.value}</td>
                 <td>{row.unit}</td>

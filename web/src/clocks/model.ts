@@ -1,3 +1,4 @@
+import type { LinkLook } from '../design/status';
 import { dayOfYear, duration, fromEntry } from '../run/time';
 import { linkTitle } from '../links/model';
 import { MODES, isReal, modeOf } from '../mode/model';
@@ -44,8 +45,6 @@ export function latestSend(
   return { at: fromEntry(latest_e_s), left_s: latest_e_s - now_e_s, first: first.name };
 }
 
-/** down: silent for a reason that is named; lost: it should be there. */
-export type LinkLook = 'up' | 'down' | 'lost' | 'unknown';
 export interface LinkLine {
   name: string;
   look: LinkLook;

@@ -1,5 +1,7 @@
 // What waits to leave, with what can be done about it; and every command of the run, each stage with all that was said of it.
 import { signal } from '@preact/signals';
+import { STAGE_LOOKS } from '../design/status';
+import type { StageLook } from '../design/status';
 import type { CommandList } from '../gen/aeolis/v1/run_pb';
 import { ask, cutoff, dictionary, runNow, store, takesCommands } from '../run/session';
 import type { CommandRow, RunStore } from '../run/store';
@@ -9,8 +11,6 @@ import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model
 import type { StageCell } from './model';
 
 const HISTORY_SHOWN = 12;
-const STAGE_SHAPES = { ok: '✓', failed: '✖', unknown: '?', pending: '…', none: '' } as const;
-const STAGE_WORDS = { ok: 'seen', failed: 'failed', unknown: 'not known', pending: 'due', none: 'nothing known' } as const;
 
 export function Queue() {
   const run = runNow();
@@ -92,8 +92,8 @@ function Details({ row, cells, run, known }: { row: CommandRow; cells: StageCell
             const words = (row.stages.get(cell.stage) ?? []).filter((word) => known(word.at));
             if (words.length === 0) return [<tr key={cell.stage} class="status-dim"><td>? {cell.stage}</td><td>—</td><td class="evidence">nothing is known</td></tr>];
             return words.map((word, i) => {
-              const look = word.status as keyof typeof STAGE_SHAPES;
-              return <tr key={`${cell.stage} ${i}`} class={look === 'failed' ? 'status-alarm' : ''}><td>{STAGE_SHAPES[look]} {cell.stage}{look === 'ok' ? '' : `, ${STAGE_WORDS[look]}`}</td><td>{word.at}</td><td class="evidence">{word.evidence}</td></tr>;
+              const look = word.status as StageLook;
+              return <tr key={`${cell.stage} ${i}`} class={look === 'failed' ? 'status-alarm' : ''}><td>{STAGE_LOOKS[look].shape} {cell.stage}{look === 'ok' ? '' : `, ${STAGE_LOOKS[look].word}`}</td><td>{word.at}</td><td class="evidence">{word.evidence}</td></tr>;
             });
           })}
         </tbody>
@@ -123,8 +123,8 @@ export function History() {
           <ol class="stages">
             {cells.map((cell) => (
               <li key={cell.stage} class={`stage stage-${cell.look}`} data-stage={cell.stage} data-look={cell.look}
-                title={`${cell.stage}: ${STAGE_WORDS[cell.look]}. ${cell.evidence} ${cell.at}`}>
-                <i>{STAGE_SHAPES[cell.look]}</i><span>{cell.stage}</span>
+                title={`${cell.stage}: ${STAGE_LOOKS[cell.look].word}. ${cell.evidence} ${cell.at}`}>
+                <i>{STAGE_LOOKS[cell.look].shape}</i><span>{cell.stage}</span>
               </li>
             ))}
           </ol>

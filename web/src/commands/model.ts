@@ -1,6 +1,7 @@
 // From what is typed to what is sent, step by step, all of it pure: what is sent is decided here and tested.
 import type { CommandArgument } from '../gen/aeolis/v1/scenario_pb';
 import type { DictionaryArgument, DictionaryCommand, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { StageLook } from '../design/status';
 import type { Dictionary } from '../run/dictionary';
 import { numberText } from '../run/dictionary';
 import type { CommandRow, RunStore } from '../run/store';
@@ -221,7 +222,6 @@ export function conditionWords(text: string): { words: string; value: string } {
 }
 
 export const STAGES = ['queued', 'authorised', 'released', 'radiated', 'received', 'accepted', 'executed', 'verified'] as const;
-export type StageLook = 'ok' | 'failed' | 'unknown' | 'pending' | 'none';
 
 export interface StageCell {
   stage: string;

@@ -1,9 +1,11 @@
 // What would be sent, before it is: a form from the dictionary, the server's dry run of it, and the arming of a hazardous one, in place.
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
+import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
 import { runNow, store, timepoints } from '../run/session';
 import { duration, fromEntry } from '../run/time';
+import { moved } from '../timeline/now';
 import { confirmation, fields, formText, intentKey, openCommandLine, previewNow, problemNow, step, tryOut, typed, uplink } from './line';
 import { arrivalOf, conditionWords, isHazardous, rangeText } from './model';
 import type { UplinkText } from './model';
@@ -60,7 +62,7 @@ function Uplink({ onKey }: Pick<Properties, 'onKey'>) {
   );
 }
 
-const CONDITION = { holds: ['holds', '✓'], fails: ['missing', '✖'], unknown: ['unknown', '?'] } as const;
+const CONDITION = { holds: 'holds', fails: 'failed', unknown: 'unknown' } as const;
 
 function Told({ reply }: { reply: CommandReply }) {
   const run = runNow();
@@ -72,9 +74,9 @@ function Told({ reply }: { reply: CommandReply }) {
       {reply.preconditions.length > 0 && (
         <ul class="preconditions" aria-label="preconditions">
           {reply.preconditions.map((condition) => {
-            const [look, shape] = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
+            const look = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
             const { words, value } = conditionWords(condition.text);
-            return <li key={words} class={look}>{shape} {words} <output>{value}{look === 'unknown' && '; flight decides'}</output></li>;
+            return <li key={words} class={look}>{STATUS[look].shape} {words} <output>{value}{look === 'unknown' && '; flight decides'}</output></li>;
           })}
         </ul>
       )}
@@ -125,11 +127,36 @@ function DryRun({ command }: { command: DictionaryCommand }) {
   );
 }
 
+const MOVED_SHOWN = 4;
+
+/** What it would move, in words; the lane of predictions has the same drawn. */
+function Effect() {
+  const all = moved.value;
+  if (!all) return null;
+  const most = all.reduce((largest, each) => Math.max(largest, Math.abs(each.to_e_s - each.from_e_s)), 0);
+  return (
+    <div class="effect" data-testid="effect" role="status">
+      {all.length === 0 ? <p>◌ As predicted now, it moves no timepoint.</p> : (
+        <>
+          <p><b>◌ It would move {all.length} {all.length === 1 ? 'timepoint' : 'timepoints'}</b>, by at most {duration(most)}: dashed on the timeline.</p>
+          <ul>
+            {all.slice(0, MOVED_SHOWN).map((each) => (
+              <li key={each.id}>{inWords(each.name)} <output>{fromEntry(each.from_e_s, { tenths: true })} → {fromEntry(each.to_e_s, { tenths: true })}, {each.to_e_s > each.from_e_s ? '+' : '−'}{duration(Math.abs(each.to_e_s - each.from_e_s))}</output></li>
+            ))}
+            {all.length > MOVED_SHOWN && <li>and {all.length - MOVED_SHOWN} more</li>}
+          </ul>
+        </>
+      )}
+    </div>
+  );
+}
+
 export function Review({ command, onKey }: Properties) {
   return (
     <div class="review" data-testid="command-review">
       <p><b>{command.name}</b> {command.text}</p>
       {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+      <Effect />
       <DryRun command={command} />
       <Fields onKey={onKey} />
       <Uplink onKey={onKey} />

@@ -1,4 +1,5 @@
 // Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
+import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';
 import { pastRange, takesCommands } from '../run/session';
 import { History, Queue } from './history';
@@ -64,7 +65,7 @@ export function Commands() {
       <div class="command-line">
         <input data-testid="command-line" role="combobox" aria-expanded={step.value === 'type' && line.value !== ''} aria-controls="offers"
           aria-activedescendant={step.value === 'type' && line.value !== '' ? `offer-${choiceIndex.value}` : undefined}
-          aria-label="command line" autocomplete="off" spellcheck={false} placeholder={canSend ? 'type a command in words' : pastRange.value ? 'nothing can be sent from the past' : 'this run takes no commands'}
+          aria-label="command line" autocomplete="off" spellcheck={false} placeholder={canSend ? 'type a command in words' : pastRange.value ? 'nothing can be sent from the past' : mayAct() ? 'this run takes no commands' : 'you may look, not send'}
           disabled={!canSend} value={line.value} onInput={(event) => type(event.currentTarget.value)} onKeyDown={onKey} />
       </div>
       {canSend && step.value === 'type' && line.value.trim() !== '' && <Offers />}

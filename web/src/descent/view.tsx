@@ -111,26 +111,37 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.lineWidth = 1;
 }
 
-/** Each phase by its name beside the corridor, where there is room: below it. */
+/** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. */
 function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
   const words = dictionary.value;
   const corridor = corridorNow();
   if (!words || corridor.length === 0) return;
   const steps = phaseSteps(store.value, words, cutoff.value);
   c.textBaseline = 'middle';
-  steps.forEach((step, index) => {
+  const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1; // as style.css has them, in the corner below
+  const figures = { left: width - RIGHT - figure_px * 3.6, top: height - 62 - 2 * figure_px };
+  const taken: [number, number, number][] = []; // left, right, middle of what is written
+  const order = steps.map((step, index) => ({ step, index })).sort((a, b) => Number(b.step.state === 'now') - Number(a.step.state === 'now'));
+  for (const { step, index } of order) {
     const from = step.predicted_e_s;
     const to = steps[index + 1]?.predicted_e_s;
-    if (from === undefined || to === undefined) return;
+    if (from === undefined || to === undefined) continue;
     const at = corridor.reduce((best, point) => (Math.abs(point.e_s - (from + to) / 2) < Math.abs(best.e_s - (from + to) / 2) ? point : best));
     c.font = `${step.state === 'now' ? 800 : 600} ${Math.round(Math.min(26, width / 26, height / 13))}px ${colours.sans}`;
     c.fillStyle = step.state === 'now' ? colours.text : colours.dim;
     c.globalAlpha = step.state === 'now' ? 1 : 0.75;
-    c.textAlign = index === 1 ? 'right' : 'left';
+    c.textAlign = 'left';
     const wide = c.measureText(step.title).width;
-    c.fillText(step.title, index === 1 ? width - RIGHT - 6 : Math.min(width - wide - RIGHT, x(at.speed_mps) + 34), y(at.altitude_m) + (index === 1 ? 46 : 24));
+    const [px, py] = [x(at.speed_mps), y(at.altitude_m)];
+    const places: [number, number][] = index === 1 ? [[width - RIGHT - 6 - wide, py + 46]] : [[Math.min(width - wide - RIGHT, px + 34), py + 24], [px - wide - 44, py + 8]];
+    const place = places.find(([left, top]) => left > LEFT && (left + wide < figures.left || top + 16 < figures.top) &&
+      !taken.some(([l, r, middle]) => left < r && left + wide > l && Math.abs(top - middle) < 24));
+    if (place) {
+      taken.push([place[0], place[0] + wide, place[1]]);
+      c.fillText(step.title, ...place);
+    }
     c.globalAlpha = 1;
-  });
+  }
 }
 
 function draw(surface: Surface): void {

@@ -7,11 +7,40 @@ export const STATUS = {
   missing: { shape: '○', token: 'caution', word: 'is missing' },
   alarm: { shape: '■', token: 'alarm', word: 'alarm' },
   failed: { shape: '✖', token: 'alarm', word: 'failed' },
+  quiet: { shape: '◇', token: 'caution', word: 'silent' },
   stale: { shape: '◌', token: 'dim', word: 'stale' },
   unknown: { shape: '?', token: 'dim', word: 'not known' },
   never: { shape: '·', token: 'dim', word: 'not received' },
 } as const;
 export type Status = keyof typeof STATUS;
+
+/** Of a condition, or of anything that holds, does not, or is not known. */
+export const held = (holds: boolean | undefined): Status => (holds === undefined ? 'unknown' : holds ? 'holds' : 'missing');
+
+/** Of a link or of the connection. down: silent for a reason that is named; lost: it should be there. */
+export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown: 'unknown' } as const satisfies Record<string, Status>;
+export type LinkLook = keyof typeof LINK_STATUS;
+
+/** A stage of a command: what was never heard of has no shape, and nothing is green by default. */
+export const STAGE_LOOKS = {
+  ok: { shape: '✓', word: 'seen' },
+  failed: { shape: '✖', word: 'failed' },
+  unknown: { shape: '?', word: 'not known' },
+  pending: { shape: '…', word: 'due' },
+  none: { shape: '', word: 'nothing known' },
+} as const;
+export type StageLook = keyof typeof STAGE_LOOKS;
+
+/** Of a packet or a tone that came live, against the recording. */
+export const VERDICTS = {
+  differs: { status: 'failed', words: 'differs', means: 'live and recording have other octets for the same packet' },
+  missing_in_recording: { status: 'failed', words: 'missing in recording', means: 'came live; the complete recording does not have it' },
+  not_decoded: { status: 'caution', words: 'not decoded', means: 'arrived, and no packet of the dictionary fits it' },
+  never_seen_live: { status: 'unknown', words: 'never seen live', means: 'known from the recording only' },
+  pending: { status: 'missing', words: 'pending', means: 'the recording is not complete yet' },
+  identical: { status: 'holds', words: 'identical', means: 'live and recording have the same octets' },
+} as const satisfies Record<string, { status: Status; words: string; means: string }>;
+export type Verdict = keyof typeof VERDICTS;
 
 /** How something became known. */
 export const SOURCES = {

@@ -8,6 +8,8 @@ const NUMBERS_EVERY_MS = 200;
 
 const drawings = new Set<() => void>();
 let lastDraw = 0;
+let lastLook = 0;
+let drawnVersion = -1;
 let lastNumbers = 0;
 let lastStep = 0;
 let shownVersion = -1;
@@ -21,8 +23,12 @@ export function onDraw(draw: () => void): () => void {
 
 function frame(now: number): void {
   requestAnimationFrame(frame);
-  if (now - lastDraw < DRAW_EVERY_MS - 4) return;
-  lastDraw = now;
+  // What has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often.
+  const changed = (store.peek()?.version ?? 0) !== drawnVersion;
+  if (now - (changed ? lastDraw : lastLook) < DRAW_EVERY_MS - 4) return;
+  drawnVersion = store.peek()?.version ?? 0;
+  if (changed) lastDraw = now;
+  lastLook = now;
   if (now - lastStep >= NUMBERS_EVERY_MS - 4) {
     const since_s = Math.min(1, (now - lastStep) / 1000);
     lastStep = now;

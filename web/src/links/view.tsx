@@ -1,5 +1,5 @@
 // The links side by side: which is up, which is silent and why, what each brought and lost.
-import { STATUS } from '../design/status';
+import { LINK_STATUS, STATUS } from '../design/status';
 import { useReport } from '../proof/report';
 import { cutoff, pastRange, runNow } from '../run/session';
 import { duration, fromEntry } from '../run/time';
@@ -7,13 +7,12 @@ import { framesKept, linkTitle, linkViews } from './model';
 import type { LinkView } from './model';
 import './style.css';
 
-const LOOKS = { up: STATUS.good, down: { ...STATUS.stale, token: 'caution' }, unknown: STATUS.unknown } as const;
 const count = (value: bigint | number) => Number(value).toLocaleString('en').replaceAll(',', ' ');
 
 const hurt = (value: bigint) => (value > 0n ? 'number status-caution' : 'number');
 
 function Row({ view }: { view: LinkView }) {
-  const look = LOOKS[view.state];
+  const look = STATUS[LINK_STATUS[view.state]];
   const { counters, judged } = view;
   const kept = counters && framesKept(counters);
   return (

@@ -8,7 +8,7 @@ import { palette } from '../draw/palette';
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../design/panel';
-import { cutoff, dictionary, store, tick } from '../run/session';
+import { cutoff, dictionary, namedChannels, store, tick } from '../run/session';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
 import { align } from './model';
@@ -135,6 +135,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       const data = run
         ? align(recorded, live, outages(run, 'uhf_live', span.to, cutoff.value), run.entrySclk, span.from, span.to, cutoff.value, per, width * 2)
         : ([[], [], []] as Aligned);
+      element.dataset['newest'] = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
       plot.batch(() => {
         plot?.setData(data as uPlot.AlignedData, false);
         plot?.setScale('x', { min: span.from, max: span.to });
@@ -177,9 +178,23 @@ function bounds(data: readonly (readonly (number | null | undefined)[])[]): [num
   return [low - margin, high + margin];
 }
 
+/** Named at ?panel=plots&channels=one,two: any of the dictionary, as many as are named. */
+const NAMED = namedChannels();
+const MOST_NAMED = 16; // ours: more cannot be read
+
 export function Plots() {
   const words = dictionary.value;
   if (!words) return null;
+  if (NAMED.length > 0) {
+    return (
+      <div class="plots plots-named">
+        {NAMED.slice(0, MOST_NAMED).map((name) => {
+          const channel = words.pick([name]);
+          return channel ? <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} digits={3} /> : <p class="none" key={name}>no channel {name} in the dictionary</p>;
+        })}
+      </div>
+    );
+  }
   const taken = new Set<number>();
   return (
     <div class="plots">

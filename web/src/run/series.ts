@@ -2,13 +2,16 @@
 // what it covers. When full, the older half is thinned to the least and the largest of each four.
 
 const LIMIT = 1 << 16; // of points: 1 MB a channel at most
+export const LIMIT_NOT_DRAWN = 1 << 11; // of a channel that is only shown as a number: its limits are judged anew in the past
 
 export class Series {
-  sclk = new Float64Array(256);
-  value = new Float64Array(256);
+  sclk = new Float64Array(64);
+  value = new Float64Array(64);
   length = 0;
   /** Counts changes, so that a drawing knows whether it is current. */
   version = 0;
+
+  constructor(private readonly limit = LIMIT) {}
 
   append(sclk: Float64Array, value: Float64Array): void {
     ++this.version;
@@ -54,6 +57,10 @@ export class Series {
     return low;
   }
 
+  get newestSclk(): number {
+    return this.length > 0 ? (this.sclk[this.length - 1] as number) : -Infinity;
+  }
+
   /** The newest sample at or before `sclk`. */
   at(sclk: number): { sclk: number; value: number } | undefined {
     const index = this.firstAfter(sclk) - 1;
@@ -79,7 +86,7 @@ export class Series {
   }
 
   private grow(): void {
-    if (this.length >= LIMIT) {
+    if (this.length >= this.limit) {
       this.thinOlderHalf();
       return;
     }

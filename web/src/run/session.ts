@@ -5,7 +5,11 @@ import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, T
 import { LAYOUT } from '../layout';
 import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
+import { access, admitted, learnAccess, mayAct } from '../access/model';
+import { refreshAlarms } from '../alarms/model';
+import { Refused, turnedAway } from './api';
 import { Dictionary } from './dictionary';
+import { firstLook } from './first_look';
 import { RunStore } from './store';
 
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
@@ -59,7 +63,7 @@ export function modeNow(): Mode {
 
 /** Whether a command can be sent from what is shown. */
 export function takesCommands(): boolean {
-  return ['live', 'rehearsal'].includes(modeNow());
+  return ['live', 'rehearsal'].includes(modeNow()) && mayAct();
 }
 
 export function backToLive(): void {
@@ -69,7 +73,10 @@ export function backToLive(): void {
 
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
+const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
+
+const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
 let worker: Worker | undefined;
 let lastAsk = 0;
@@ -131,6 +138,7 @@ function onMessage(message: FromWorker): void {
       const before = stream.value.state;
       stream.value = message;
       if (message.state === 'lost' && before !== 'lost') {
+        void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
         for (const request of requests.values()) {
           request.reject(new Error('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
@@ -149,7 +157,10 @@ function onMessage(message: FromWorker): void {
       if (store.value?.id === message.batch.run) store.value.add(message.batch);
       break;
     case 'history':
-      if (store.value?.id === message.run) store.value.addHistory(message.columns);
+      if (store.value?.id === message.run) {
+        wholeHistory.add(store.value);
+        store.value.addHistory(message.columns);
+      }
       break;
     case 'reply': {
       const request = Number(message.reply.request);
@@ -172,7 +183,10 @@ function onMessage(message: FromWorker): void {
       const question = asked.get(message.ask);
       asked.delete(message.ask);
       if (message.ok) question?.resolve(message.value);
-      else question?.reject(new Error(message.error));
+      else {
+        if (message.status === 401) turnedAway.value += 1;
+        question?.reject(new Refused(message.status, message.error));
+      }
       break;
     }
   }
@@ -184,7 +198,8 @@ function takeRun(run: RunState | undefined): void {
   if (known?.id === Number(run.run)) {
     known.update(run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
-    store.value = new RunStore(run);
+    const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
+    store.value = new RunStore(run, (channel) => drawn.has(channel));
     backToLive();
   } else {
     return;
@@ -231,17 +246,35 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
   }
 }
 
+/** Of the panel of plots at an address: ?panel=plots&channels=one,two. */
+export function namedChannels(): string[] {
+  return (new URLSearchParams(globalThis.location?.search).get('channels') ?? '').split(',').filter((name) => name !== '');
+}
+
+/** What is drawn over time: its history comes finer. */
+export function plottedChannels(): string[] {
+  const picks = [...namedChannels().map((name) => [name]), ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
+  return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
+}
+
 /** Starts the worker, learns the dictionary, chooses the run that is going on or the last one, and connects. */
 export async function begin(): Promise<void> {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
+  const first = firstLook(Number(new URL(location.href).searchParams.get('run') ?? 0), namedChannels());
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
 
   for (let attempt = 0; ; ++attempt) {
     try {
+      const knowing = learnAccess();
+      knowing.catch(() => undefined); // looked at below
       const [reply, list] = await Promise.all([
-        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'),
-      ]);
+        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'), knowing,
+      ]).catch(async (error: unknown) => {
+        if (!(error instanceof Refused) || error.status !== 401) throw error;
+        await admitted();
+        return Promise.all([ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs')]);
+      });
       dictionary.value = new Dictionary(reply);
       runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
       break;
@@ -255,14 +288,33 @@ export async function begin(): Promise<void> {
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
+  if (wanted > 0 && chosen !== wanted) notify(`Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`);
   watched.value = chosen;
   const words = dictionary.value as Dictionary;
-  const plotted = [LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase, ...LAYOUT.plots.map((plot) => plot.channel)]
-    .map((names) => words.pick(names)?.name).filter((name) => name !== undefined);
+  const plotted = plottedChannels();
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
-  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted: [...new Set(plotted)], others });
+  const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
+  takeRun(lookAt);
+  void first.then((look) => {
+    if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
+  });
+  post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
+  let wasIn = true;
+  effect(() => {
+    const isIn = access.value.state !== 'out';
+    if (isIn && !wasIn) post({ type: 'reconnect' });
+    wasIn = isIn;
+  });
+  let told = -1;
+  let since = 0;
+  void everySeconds(1, async () => {
+    const run = store.value;
+    if (!run || stream.value.state !== 'live' || (run.alarmsVersion === told && ++since < ALARMS_EVERY_S)) return;
+    [told, since] = [run.alarmsVersion, 0];
+    await refreshAlarms();
+  });
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
     if (store.value?.going) await refreshTimepoints();

@@ -6,12 +6,13 @@ import type {
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
-import { Series } from './series';
+import { LIMIT_NOT_DRAWN, Series } from './series';
 import { secondsOfDayOfYear } from './time';
 
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
+const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
 
 export interface Known<T> {
   seq: number;
@@ -68,12 +69,15 @@ export class RunStore {
   clocks: Clocks | undefined;
   completeThrough = 0;
   thinnedSinceHistory = false;
+  /** Count what came about alarms, and about notes: whoever keeps their states asks again. */
+  alarmsVersion = 0;
+  notesVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
   /** Counts changes of anything. */
   version = 0;
 
-  constructor(public run: RunState) {
+  constructor(public run: RunState, private readonly isDrawn: (channel: number) => boolean = () => true) {
     this.clocks = run.clocks;
   }
 
@@ -162,12 +166,14 @@ export class RunStore {
   private series(column: Column): Series {
     const all = column.recorded ? this.recorded : this.live;
     let series = all.get(column.id);
-    if (!series) all.set(column.id, (series = new Series()));
+    if (!series) all.set(column.id, (series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN)));
     return series;
   }
 
   private addFact(item: Fact): void {
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
+    if (ABOUT_ALARMS.has(item.kind)) ++this.alarmsVersion;
+    if (item.kind as string === 'note') ++this.notesVersion;
     switch (item.kind) {
       case 'event':
         this.addTwin(this.events, item, (a, b) => a.id === b.id && a.text === b.text);

@@ -9,16 +9,19 @@ import { closeTimepoint, stepTimepoint } from '../timeline/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
-export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'flown' | 'recorded' | 'rehearsal';
+export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'flown' | 'recorded' | 'rehearsal' | 'alarms' | 'notes' | 'users';
 export const tab = signal<Tab>('channels');
 export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
+  { id: 'alarms', title: 'Alarms', key: 'a', words: 'alarms: acknowledge, shelve, reset' },
+  { id: 'notes', title: 'Notes', key: 'n', words: 'shift log: write, search' },
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
   { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
   { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
   { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint by plan, tone, UHF and recording' },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
+  { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
 ];
 
 export function focusPanel(which: Tab): void {

@@ -1,7 +1,7 @@
-import { SHORTCUTS, helpShown } from './model';
+import { SHORTCUTS, TABS, helpShown } from './model';
 import './style.css';
 
-const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'packets', 'verdicts', 'links', 'recorded', 'rehearsal'];
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', ...TABS.map((tab) => tab.id)];
 
 /** In a corner and not over what matters: the landing goes on. */
 export function Help() {

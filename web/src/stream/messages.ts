@@ -45,7 +45,7 @@ export type FromWorker =
   | { type: 'reply'; reply: CommandReply }
   | { type: 'refusal'; reason: string }
   | { type: 'answer'; ask: number; ok: true; value: unknown }
-  | { type: 'answer'; ask: number; ok: false; error: string };
+  | { type: 'answer'; ask: number; ok: false; error: string; status: number }; // 0: no answer came
 
 export type ControlAction =
   | { action: 'start'; scenario: string; seed: number; pace: number }
@@ -77,6 +77,7 @@ export type QueueAction = 'release' | 'hold' | 'cancel' | 'approve';
 export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
+  | { type: 'reconnect' } // at once: whoever was turned away has logged in
   | { type: 'refresh_history'; all: boolean }
   | { type: 'command'; request: number; run: number; intent: CommandIntent }
   | { type: 'control'; control: ControlAction }

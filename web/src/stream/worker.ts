@@ -29,6 +29,7 @@ const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
 
 let socket: WebSocket | undefined;
 let attempt = 0;
+let retry: ReturnType<typeof setTimeout> | undefined;
 let wantedRun = 0;
 let currentRun = 0;
 let serverVersion = '';
@@ -38,6 +39,7 @@ let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
 let posting = false;
+let lastPost = -Infinity;
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
@@ -71,6 +73,7 @@ function subscribe(): void {
 }
 
 function connect(): void {
+  retry = undefined;
   say(attempt === 0 ? 'connecting' : 'lost');
   const mine = new WebSocket(socketUrl, ['aeolis.v1.protobuf']);
   mine.binaryType = 'arraybuffer';
@@ -90,7 +93,7 @@ function connect(): void {
     if (state === 'live') lost = { after: check.completeThrough, attempts: 0 };
     if (lost) lost.attempts = attempt;
     say('lost');
-    setTimeout(connect, backoffSeconds(attempt) * 1000);
+    retry = setTimeout(connect, backoffSeconds(attempt) * 1000);
   };
 }
 
@@ -172,12 +175,13 @@ function receiveBatch(batch: Batch): void {
   }
   if (!posting) {
     posting = true;
-    setTimeout(flush, POST_EVERY_MS);
+    setTimeout(flush, Math.max(0, lastPost + POST_EVERY_MS - performance.now())); // at once after a pause
   }
 }
 
 function flush(): void {
   posting = false;
+  lastPost = performance.now();
   if (collector.empty) return;
   const batch = collector.take();
   self.postMessage({ type: 'batch', batch } satisfies FromWorker,
@@ -230,7 +234,7 @@ async function askJson(path: string): Promise<unknown> {
     } catch {
       // The answer was not of our API; its text says what it says.
     }
-    throw new Error(error || `${response.status} ${response.statusText}`);
+    throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
   }
   return JSON.parse(text);
 }
@@ -255,6 +259,12 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       restart(0);
       subscribe();
       break;
+    case 'reconnect':
+      if (retry !== undefined) {
+        clearTimeout(retry);
+        connect();
+      }
+      break;
     case 'refresh_history':
       void fetchHistory(message.all);
       break;
@@ -272,7 +282,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       ask(ANSWERS[message.question], message.path).then(
         (value) => post({ type: 'answer', ask: message.ask, ok: true, value }),
         (error: unknown) => post({
-          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error),
+          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error), status: (error as { status?: number }).status ?? 0,
         }),
       );
       break;

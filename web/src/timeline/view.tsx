@@ -4,18 +4,22 @@ import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
+import { LAYOUT } from '../layout';
 import { cutoff, pastRange, replay, runNow, store, tick, timepoints } from '../run/session';
+import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { firedCount, lanesOf, nextTimepoint, pointDetail, shortReason, title } from './model';
+import { moved, predicted } from './now';
+import { firedCount, isImportant, lanesOf, nextTimepoint, pointDetail, shortReason, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
 const GUTTER = 118;
 const TOP = 26;
-const LANE = 25;
-const LANES = ['plan', 'by tone', 'by UHF, live', 'by recording'] as const;
+const CLOSE_UP_S = 180; // ours: in a shorter stretch every timepoint has room for its name
+const LABELS = 42; // two rows of names at least
+const LANES = ['plan', 'predicted', 'by tone', 'by UHF, live', 'by recording'] as const;
 const selected = signal<number | undefined>(undefined);
 
 /** By keyboard: the timepoint after or before the one that is shown; from nothing, the next that the vehicle waits for. */
@@ -33,14 +37,23 @@ export function closeTimepoint(): boolean {
   return open;
 }
 
+/** What is shown; while a command in the form would move something of the landing, the landing. */
+function shown(run: RunStore | undefined): { from: number; to: number } {
+  const span = spanNow(run);
+  const all = moved.value ?? [];
+  if (all.length === 0 || choice.value !== 'landing') return span;
+  return { from: Math.min(LAYOUT.window.from, ...all.flatMap((each) => [each.from_e_s - 20, each.to_e_s - 20])), to: span.to };
+}
+
 let hits: { x: number; y: number; id: number }[] = [];
 
 function drawTimeline({ context: c, width, height, colours }: Surface): void {
   const run = store.value;
-  const { from, to } = spanNow(run);
+  const { from, to } = shown(run);
   const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
-  const y = (lane: number) => TOP + LANE * lane + LANE / 2;
-  const bottom = TOP + LANE * LANES.length;
+  const lane_px = Math.max(16, Math.min(25, (height - TOP - LABELS) / LANES.length));
+  const y = (lane: number) => TOP + lane_px * (lane + 0.5);
+  const bottom = TOP + lane_px * LANES.length;
   hits = [];
 
   const cursor = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag stands where labels would
@@ -75,12 +88,13 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
     c.textAlign = 'center';
     const words = lanes.relay > 0 ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
       : 'the recording comes down after landing';
-    c.fillText(words, (GUTTER + width) / 2, y(3) - 0.5);
+    c.fillText(words, (GUTTER + width) / 2, y(4) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
-  marks(lanes.tones, x, y(1), (px, py) => box(c, px, py, 3.8, colours.tone), false);
-  marks(lanes.live, x, y(2), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
-  marks(lanes.recorded, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : disc(c, px, py, 3.6, colours.recording)), true);
+  drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
+  marks(lanes.tones, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), false);
+  marks(lanes.live, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
+  marks(lanes.recorded, x, y(4), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : disc(c, px, py, 3.6, colours.recording)), true);
   const chosen = hits.filter((hit) => hit.id === selected.value);
   for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
@@ -92,7 +106,7 @@ function drawOutages(
   c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, y: (lane: number) => number, width: number,
   colours: Surface['colours'],
 ): void {
-  for (const [lane, all] of [[1, lanes.toneOutages], [2, lanes.liveOutages]] as const) {
+  for (const [lane, all] of [[2, lanes.toneOutages], [3, lanes.liveOutages]] as const) {
     for (const outage of all) {
       const left = Math.max(GUTTER, x(outage.from));
       const right = Math.min(width - 14, x(outage.to));
@@ -122,6 +136,24 @@ function drawOutages(
   }
 }
 
+/** What is still to come in the colour of what comes next; behind it, as it was predicted; and where a command in the form would move it. */
+function drawPredicted(c: CanvasRenderingContext2D, x: (e: number) => number, y: number, now_e_s: number, colours: Surface['colours']): void {
+  for (const { id, e_s, fired } of predicted.value) {
+    const px = x(e_s);
+    if (px < GUTTER - 6) continue;
+    ring(c, px, y, fired ? 2.4 : 3.6, fired || e_s < now_e_s ? colours.dim : colours.accent);
+    hits.push({ x: px, y, id });
+  }
+  for (const { from_e_s, to_e_s } of moved.value ?? []) {
+    const [from, to] = [x(from_e_s), x(to_e_s)];
+    c.strokeStyle = colours.caution;
+    c.setLineDash([2, 2]);
+    line(c, from, y, to, y);
+    ring(c, to, y, 5, colours.caution);
+    c.setLineDash([]);
+  }
+}
+
 function marks(
   all: Mark[], x: (e: number) => number, y: number,
   shape: (x: number, y: number, bad: boolean) => void, hit: boolean,
@@ -139,10 +171,13 @@ function labels(
   c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number, height: number,
   colours: Surface['colours'],
 ): void {
+  const { from, to } = shown(store.value);
+  const closeUp = to - from <= CLOSE_UP_S;
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
+  for (const { id, name, e_s, fired } of predicted.value) if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
   for (const mark of [...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
-  const all = [...known.values()].sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
+  const all = [...known.values()].filter(({ mark }) => mark.important || closeUp).sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
   const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `12px ${colours.sans}`;
   c.textAlign = 'center';
@@ -250,6 +285,7 @@ function Detail() {
   const detail = pointDetail(run, timepoints.value, id, cutoff.value);
   if (!detail) return null;
   const { row } = detail;
+  const foreseen = predicted.value.find((each) => each.id === id);
   const offset = (value: number | undefined) => (value === undefined ? 'undefined' : `${value} s`);
   return (
     <div class="point" data-testid="timepoint-detail">
@@ -258,6 +294,7 @@ function Detail() {
       <dl>
         <dt>desired</dt><dd>{offset(row.desiredOffsetS)} after {row.anchor || 'the one before'}</dd>
         <dt>minimum</dt><dd>{offset(row.minimumOffsetS)} after the one before</dd>
+        {foreseen && <><dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt><dd>{fromEntry(foreseen.e_s, { tenths: true })}</dd></>}
         {row.plannedES !== undefined && <><dt>planned</dt><dd>{fromEntry(row.plannedES, { tenths: true })}</dd></>}
         {detail.triggered_e_s !== undefined && <><dt>triggered</dt><dd>{fromEntry(detail.triggered_e_s, { tenths: true })}</dd></>}
         {detail.firedLive_e_s !== undefined && <><dt>fired, by UHF</dt><dd>{fromEntry(detail.firedLive_e_s, { tenths: true })}</dd></>}
@@ -290,15 +327,15 @@ export function Timeline() {
       </>
     }>
       <Canvas
-        label="Timepoints by plan, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
+        label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
         keyOf={() => {
-          const span = spanNow(store.value);
-          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value}`;
+          const span = shown(store.value);
+          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${JSON.stringify(moved.value)}`;
         }}
         draw={drawTimeline}
         onPoint={select}
         onWheel={(px, width, delta) => {
-          const { from, to } = spanNow(store.value);
+          const { from, to } = shown(store.value);
           zoom(store.value, delta > 0 ? 1.25 : 0.8, from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from));
         }}
       />

@@ -1,10 +1,9 @@
 // A verdict as every panel shows it.
-import { STATUS } from '../design/status';
-import { VERDICT_LOOK } from './model';
-import type { Verdict } from './model';
+import { STATUS, VERDICTS } from '../design/status';
+import type { Verdict } from '../design/status';
 
 export function Mark({ verdict }: { verdict: string }) {
-  const look = VERDICT_LOOK[verdict as Verdict];
+  const look = verdict in VERDICTS ? VERDICTS[verdict as Verdict] : undefined;
   const status = look ? STATUS[look.status] : STATUS.unknown;
   return <span class={`status-${status.token}`} title={look?.means}>{status.shape} {look?.words ?? verdict.replaceAll('_', ' ')}</span>;
 }

@@ -2,18 +2,6 @@
 import type { ProofReport, ProofRow, ToneVerdict } from '../gen/aeolis/v1/run_pb';
 import type { Status } from '../design/status';
 
-export const VERDICTS = ['differs', 'missing_in_recording', 'not_decoded', 'never_seen_live', 'pending', 'identical'] as const;
-export type Verdict = (typeof VERDICTS)[number];
-
-export const VERDICT_LOOK: Record<Verdict, { status: Status; words: string; means: string }> = {
-  identical: { status: 'holds', words: 'identical', means: 'live and recording have the same octets' },
-  differs: { status: 'failed', words: 'differs', means: 'live and recording have other octets for the same packet' },
-  missing_in_recording: { status: 'failed', words: 'missing in recording', means: 'came live; the complete recording does not have it' },
-  never_seen_live: { status: 'unknown', words: 'never seen live', means: 'known from the recording only' },
-  not_decoded: { status: 'caution', words: 'not decoded', means: 'arrived, and no packet of the dictionary fits it' },
-  pending: { status: 'missing', words: 'pending', means: 'the recording is not complete yet' },
-};
-
 export interface Row {
   name: string;
   live: number;

@@ -1,18 +1,20 @@
 // Live against recorded: one sentence, then the counts by packet and by link, the tones, and any packet octet by octet.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { STATUS } from '../design/status';
+import { STATUS, VERDICTS } from '../design/status';
+import type { Verdict } from '../design/status';
 import type { PacketList, PacketRow, ProofReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { reportProblem, useReport } from '../proof/report';
 import { ask, pastRange, runNow, store } from '../run/session';
 import { fromEntry } from '../run/time';
 import { Mark } from './mark';
-import { VERDICTS, VERDICT_LOOK, diffLines, rowsOf, sentence, toneSummary, totalOf, trouble } from './model';
-import type { Octet, Row, Verdict } from './model';
+import { diffLines, rowsOf, sentence, toneSummary, totalOf, trouble } from './model';
+import type { Octet, Row } from './model';
 import './style.css';
 
 const LISTED = 100;
+const VERDICT_NAMES = Object.keys(VERDICTS) as Verdict[];
 const wanted = signal<Verdict>('differs');
 const listed = signal<{ run: number; verdict: Verdict; packets: PacketRow[]; more: boolean } | undefined>(undefined);
 const opened = signal<PacketRow | undefined>(undefined);
@@ -115,10 +117,10 @@ function Packets() {
           wanted.value = event.currentTarget.value as Verdict;
           opened.value = undefined;
         }}>
-          {VERDICTS.map((verdict) => <option key={verdict} value={verdict}>{VERDICT_LOOK[verdict].words}</option>)}
+          {VERDICT_NAMES.map((verdict) => <option key={verdict} value={verdict}>{VERDICTS[verdict].words}</option>)}
         </select></label>
         <span data-testid="verdict-count">{problem.value ? `✖ ${problem.value}` : !fits ? 'asking…' : fits.packets.length === 0 ? 'none' : fits.more ? `the first ${fits.packets.length}` : `${fits.packets.length}`}</span>
-        <small>{VERDICT_LOOK[wanted.value].means}</small>
+        <small>{VERDICTS[wanted.value].means}</small>
       </div>
       {opened.value && <Difference packet={opened.value} />}
       {fits && fits.packets.length > 0 && (

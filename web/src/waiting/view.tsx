@@ -1,3 +1,4 @@
+import { STATUS, held } from '../design/status';
 import { LAYOUT } from '../layout';
 import { openCommandLine } from '../commands/line';
 import { cutoff, dictionary, runNow, store, takesCommands, timepoints } from '../run/session';
@@ -7,9 +8,6 @@ import { inWords } from '../run/dictionary';
 import { thenNamed, waitingFor } from './model';
 import './style.css';
 
-const look = (holds: boolean | undefined) => (holds === undefined ? 'unknown' : holds ? 'holds' : 'missing');
-const SHAPES = { holds: '✓', missing: '○', unknown: '?' } as const;
-const WORDS = { holds: 'holds', missing: 'is missing', unknown: 'is not known' } as const;
 
 export function WaitingFor() {
   const run = runNow();
@@ -33,8 +31,8 @@ export function WaitingFor() {
       <p>{waiting.words}{then && <> Then <b>{inWords(then)}</b>.</>}</p>
       <ul>
         {waiting.lines.map((line) => (
-          <li key={line.words} class={look(line.holds)}>
-            <span title={WORDS[look(line.holds)]}>{SHAPES[look(line.holds)]}</span>
+          <li key={line.words} class={held(line.holds)}>
+            <span title={STATUS[held(line.holds)].word}>{STATUS[held(line.holds)].shape}</span>
             <span>{line.words}</span>
             <output>{line.value}</output>
           </li>

@@ -1,0 +1,107 @@
+// What a console meets outside the laboratory: a second browser, a slow way, a wrong clock, a huge dictionary with hostile names, a run that is gone.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { standIn } from './stand_in.mjs';
+import { waitFor, workplace } from './support.mjs';
+
+const { open, serve } = workplace();
+
+const through = async (text) => Number((await text('complete-through')).replace(/\D/g, ''));
+/** What the table says of each channel, ages left out. */
+const values = (page) => page.locator('[data-testid="channel-table"] tbody tr').evaluateAll((rows) => rows.map((row) => [...row.cells].slice(0, 4).map((cell) => cell.innerText).join(' | ')));
+
+test('two browsers agree on every value at the same sequence number, and one whose clock is days off shows the same times', { timeout: 90_000 }, async (t) => {
+    const server = await serve(t, 'two', ['--scenario', 'nominal_auto', '--pace', '50']);
+    const one = await open(server.address);
+    await one.page.waitForTimeout(4000); // the other joins late
+    const other = await open(server.address, { width: 1600, height: 900 }, () => {
+        const Real = Date;
+        globalThis.Date = class extends Real {
+            constructor(...of) { super(...(of.length > 0 ? of : [Real.now() + 3 * 86_400_000])); }
+            static now() { return Real.now() + 3 * 86_400_000; }
+        };
+    });
+    await other.shows('stream-state', /connected/);
+    await waitFor(() => one.text('timepoints-fired'), (fired) => Number.parseInt(fired, 10) >= 3, 60_000);
+    await one.page.keyboard.press('p');
+    await one.shows('badge', /paused/);
+    let before = [];
+    await waitFor(async () => {
+        const now = [await through(one.text), await through(other.text), Number((await server.get('/runs')).runs[0].last_seq)];
+        const settled = new Set(now).size === 1 && now[0] === before[0];
+        before = now;
+        await new Promise((resolve) => setTimeout(resolve, 400));
+        return settled;
+    }, (settled) => settled === true);
+    const [seen, seenToo] = [await values(one.page), await values(other.page)];
+    assert.ok(seen.length > 100 && seen.some((row) => /altitude_m \| \d/.test(row)), `${seen.length} rows`);
+    assert.deepEqual(seenToo, seen);
+    for (const id of ['clock-entry', 'clock-ert', 'clock-scet', 'clock-sclk', 'timepoints-fired', 'phases', 'tone-title']) assert.equal(await other.text(id), await one.text(id), id);
+    const events = (page) => page.locator('[data-event]').evaluateAll((rows) => rows.map((row) => row.innerText));
+    assert.deepEqual(await events(other.page), await events(one.page));
+    assert.deepEqual([...one.problems, ...other.problems], []);
+    await one.page.close();
+    await other.page.close();
+});
+
+test('over a slow way it comes up, follows, and has in the end what the server has', { timeout: 120_000 }, async (t) => {
+    const server = await serve(t, 'slow', ['--scenario', 'nominal_auto', '--pace', '20']);
+    const { page, problems, text, shows } = await open('about:blank');
+    const cdp = await page.context().newCDPSession(page);
+    await cdp.send('Network.enable');
+    await cdp.send('Network.emulateNetworkConditions', { offline: false, latency: 400, downloadThroughput: 60_000, uploadThroughput: 20_000 });
+    await page.goto(server.address);
+    await shows('badge', /REHEARSAL|ENDED/, 60_000);
+    await shows('stream-state', /connected/, 60_000);
+    await waitFor(() => text('clock-entry'), /E[−+]00:\d\d:\d\d/);
+    await page.keyboard.press('p');
+    await shows('badge', /paused/, 40_000);
+    await waitFor(async () => (await through(text)) === Number((await server.get('/runs')).runs[0].last_seq), (same) => same === true, 60_000);
+    assert.match(await text('stream-state'), /gaps 0/);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('a dictionary of 20 000 channels with hostile names is searched at once, and nothing of it is taken for markup', { timeout: 60_000 }, async (t) => {
+    const server = await serve(t, 'many', ['--scenario', 'nominal_auto', '--pace', '20']);
+    const words = await server.get('/dictionary');
+    const hostile = '<img src=x onerror="window.hit=1">';
+    const channels = [...words.channels];
+    for (let id = 50_000; channels.length < 20_000; ++id) channels.push({ id, name: id % 1000 === 0 ? `${hostile}${id}` : `made_${id}`, unit: '<b>m</b>', text: hostile, packet: `P${id >> 5}`, expected_rate_hz: 1 });
+    const commands = words.commands.map((each, i) => (i === 0 ? { ...each, text: hostile } : each));
+    const way = await standIn(server.address, { 'GET /dictionary': () => [200, { ...words, channels, commands }] });
+    t.after(() => way.close());
+    const { page, problems, text, shows } = await open(way.address);
+    await shows('stream-state', /connected/);
+    await waitFor(() => text('clock-entry'), /E/);
+    const began = Date.now();
+    await page.getByTestId('channel-filter').fill('made_69');
+    await waitFor(() => page.locator('[data-testid="channel-made_69001"]').count(), (rows) => rows === 1);
+    assert.ok(Date.now() - began < 2000, `${Date.now() - began} ms`);
+    await page.getByTestId('channel-filter').fill('onerror');
+    await waitFor(() => page.locator('[data-testid="channel-table"] tbody tr').count(), (rows) => rows >= 10);
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('/');
+    await page.keyboard.type('no op');
+    await page.keyboard.press('Enter');
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => window.hit), undefined);
+    assert.equal(await page.locator('img').count(), 0);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('a run that is not there, and one that vanishes with its server, are said to be gone', { timeout: 60_000 }, async (t) => {
+    const first = await serve(t, 'vanishing', ['--scenario', 'nominal_auto', '--pace', '100']);
+    const { page, text, shows } = await open(`${first.address}/?run=77`);
+    await shows('notices', /Run 77 is not in this archive/);
+    await shows('badge', /run 1/);
+    await waitFor(() => text('timepoints-fired'), /^[1-9]/, 30_000);
+    await first.kill();
+    await shows('stream-state', /NO CONNECTION/);
+    await serve(t, 'another', [], { port: first.port });
+    await shows('stream-state', /connected|catching up/);
+    await shows('notices', /[Rr]un 1/);
+    assert.match(await text('timepoints-fired'), /^[1-9]/, 'what was seen stays to be read');
+    await page.close();
+});

@@ -1,0 +1,86 @@
+// Who looks at the page, and what they may do. A server without accounts lets everyone on its own machine do everything.
+import { effect, signal } from '@preact/signals';
+import { Refused, call, turnedAway, wordsFor } from '../run/api';
+
+export interface Session {
+  accounts: boolean;
+  user: string;
+  role: string;
+  rights: string[];
+}
+
+/**
+ * "asking": not known yet; "open": no accounts; "in": logged in; "out": a log-in is needed, "expired" when there was one before.
+ * "none": a server that knows of no sessions.
+ */
+export type Access =
+  | { state: 'asking' | 'none' | 'open' }
+  | { state: 'out'; expired: boolean; user: string }
+  | { state: 'in'; user: string; role: string; rights: string[] };
+
+export const access = signal<Access>({ state: 'asking' });
+export const problem = signal('');
+export const busy = signal(false);
+
+/** Asks who we are; throws where no server answers. */
+export async function learnAccess(): Promise<void> {
+  try {
+    const session = await call<Session>('GET', '/session');
+    if (!session.accounts) access.value = { state: 'open' };
+    else if (session.user === '') turnAway();
+    else access.value = { state: 'in', user: session.user, role: session.role, rights: session.rights ?? [] };
+  } catch (error) {
+    if (!(error instanceof Refused) || error.status === 0) throw error;
+    if (error.status === 401) turnAway();
+    else if (error.status === 404) access.value = { state: 'none' };
+    else throw error;
+  }
+}
+
+function turnAway(): void {
+  const now = access.peek();
+  access.value = now.state === 'out' ? now : { state: 'out', expired: now.state === 'in', user: now.state === 'in' ? now.user : '' };
+}
+
+export async function logIn(user: string, password: string): Promise<void> {
+  if (busy.value) return;
+  busy.value = true;
+  problem.value = '';
+  try {
+    await call('POST', '/session', { user, password });
+    await learnAccess();
+  } catch (error) {
+    problem.value = wordsFor(error);
+  } finally {
+    busy.value = false;
+  }
+}
+
+export async function logOut(): Promise<void> {
+  try {
+    await call('DELETE', '/session');
+    location.reload(); // nothing of what was shown stays in the page
+  } catch (error) {
+    problem.value = wordsFor(error);
+  }
+}
+
+/** Resolves once what is shown may be shown. */
+export function admitted(): Promise<void> {
+  return new Promise((resolve) => {
+    const stop = effect(() => {
+      if (!['open', 'in', 'none'].includes(access.value.state)) return;
+      queueMicrotask(() => stop());
+      resolve();
+    });
+  });
+}
+
+/** Observers send nothing; for everyone else the server decides, command by command. After the end of a session what is typed stays, and is refused. */
+export function mayAct(now: Access = access.value): boolean {
+  return now.state !== 'in' || now.role !== 'observer';
+}
+
+effect(() => {
+  if (turnedAway.value > 0) turnAway();
+});

@@ -1,0 +1,68 @@
+// The log-in, in place: alone before anything may be shown, as a bar over the display when a session ended in the middle.
+import { signal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import { access, busy, logIn, logOut, mayAct, problem } from './model';
+import './style.css';
+
+const user = signal('');
+const password = signal('');
+
+function Form({ known }: { known: string }) {
+  const first = useRef<HTMLInputElement>(null);
+  useEffect(() => {
+    if (known === '') first.current?.focus();
+  }, [known]);
+  return (
+    <form data-testid="log-in" aria-label="log in" onSubmit={(event) => {
+      event.preventDefault();
+      const [name, secret] = [user.value || known, password.value];
+      password.value = '';
+      void logIn(name, secret);
+    }}>
+      <label>user <input ref={first} name="username" autocomplete="username" maxLength={64} required value={user.value || known} data-testid="log-in-user" spellcheck={false}
+        onInput={(event) => (user.value = event.currentTarget.value)} /></label>
+      <label>password <input name="password" type="password" autocomplete="current-password" maxLength={1024} required value={password.value} data-testid="log-in-password"
+        onInput={(event) => (password.value = event.currentTarget.value)} /></label>
+      <button type="submit" class="primary" disabled={busy.value}>{busy.value ? 'asking…' : 'log in'}</button>
+      {problem.value && <p role="alert" class="status-alarm" data-testid="log-in-problem">✖ {problem.value}</p>}
+    </form>
+  );
+}
+
+/** Before anything may be shown. */
+export function LogIn() {
+  return (
+    <main class="log-in-page">
+      <section class="panel log-in">
+        <h2>Log in</h2>
+        <p>This server shows its runs to those with an account only.</p>
+        <Form known="" />
+      </section>
+    </main>
+  );
+}
+
+/** In the middle of something: what stands on the screen stays, and is old. */
+export function ExpiredBar() {
+  const now = access.value;
+  if (now.state !== 'out' || !now.expired) return null;
+  return (
+    <div class="expired-bar" role="alert" data-testid="expired-bar">
+      <b>✖ Your session has ended. What is shown is old, and what you were doing was not done unless its own line says so. Log in to go on; nothing is sent again by itself.</b>
+      <Form known={now.user} />
+    </div>
+  );
+}
+
+/** In the header: who, as what. */
+export function Who() {
+  const now = access.value;
+  if (now.state === 'open') return <div class="link" data-testid="who"><b>no accounts</b><small>this machine only</small></div>;
+  if (now.state !== 'in') return null;
+  return (
+    <div class="link who" data-testid="who" title={now.rights.length > 0 ? `may: ${now.rights.join(', ')}` : 'may look'}>
+      <b>{now.user}</b>
+      <small>{now.role}{mayAct(now) ? '' : ', only looks'} <button type="button" class="quiet" data-testid="log-out" onClick={() => void logOut()}>log out</button></small>
+    </div>
+  );
+}

@@ -1,0 +1,131 @@
+// Alarms that want attention, as the ground keeps them: each with who did what about it. The stream tells that something changed.
+import { computed, signal } from '@preact/signals';
+import { uplink } from '../commands/line';
+import type { Status } from '../design/status';
+import { Refused, call, wordsFor } from '../run/api';
+import { store } from '../run/session';
+
+export interface AlarmState {
+  name: string;
+  kind: string; // limit, staleness
+  state: string; // unacknowledged, acknowledged, returned, latched, shelved, normal
+  severity: string; // now; "none": within its limits again
+  worst: string;
+  acknowledged?: boolean;
+  latches?: boolean;
+  shelved_until?: string; // ERT
+  limit?: string;
+  value?: number;
+  sclk?: number;
+  by?: string;
+  note?: string;
+}
+export type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
+
+const DISTRESS = new Set(['critical', 'severe', 'distress']);
+const ORDER = ['unacknowledged', 'latched', 'returned', 'acknowledged', 'shelved', 'normal'];
+
+/** undefined: not asked yet; 'absent': a server without this route. */
+export const alarms = signal<{ run: number; all: AlarmState[] } | 'absent' | undefined>(undefined);
+export const problem = signal('');
+export const note = signal('');
+export const shelveFor = signal('300');
+export const acting = signal<string | undefined>(undefined);
+
+export const listed = computed(() => (typeof alarms.value === 'object' && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : []));
+export const toAcknowledge = computed(() => listed.value.filter(wantsLook));
+
+export function lookOf(alarm: AlarmState): Status {
+  const severity = alarm.severity === 'none' ? alarm.worst : alarm.severity;
+  if (alarm.state === 'shelved' || alarm.state === 'normal') return 'quiet';
+  if (alarm.severity === 'none' || alarm.severity === '') return 'good';
+  return DISTRESS.has(severity) ? 'alarm' : 'caution';
+}
+
+export const wantsLook = (alarm: AlarmState) => !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
+
+/** What no one has looked at first, the worst of it on top. */
+export function sorted(all: readonly AlarmState[]): AlarmState[] {
+  const rank = (alarm: AlarmState) => [ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state), DISTRESS.has(alarm.worst) ? 0 : 1];
+  return [...all].sort((a, b) => {
+    const [x, y] = [rank(a), rank(b)];
+    return (x[0] as number) - (y[0] as number) || (x[1] as number) - (y[1] as number) || a.name.localeCompare(b.name);
+  });
+}
+
+export function actionsOn(alarm: AlarmState): Action[] {
+  if (alarm.state === 'shelved') return ['unshelve'];
+  return [...(wantsLook(alarm) ? ['acknowledge'] as const : []), 'shelve', ...(alarm.latches && alarm.severity === 'none' ? ['reset'] as const : [])];
+}
+
+/** What is new and wants a look, by its worst: for whoever does not look at the screen. */
+export function calls(before: readonly AlarmState[], after: readonly AlarmState[]): 'alarm' | 'caution' | undefined {
+  const known = new Map(before.filter(wantsLook).map((alarm) => [alarm.name, alarm.worst]));
+  const fresh = after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);
+  return fresh.some((alarm) => DISTRESS.has(alarm.worst)) ? 'alarm' : fresh.length > 0 ? 'caution' : undefined;
+}
+
+let asking = false;
+
+/** Asks for the current states. A server that does not have them is not asked again for this run. */
+export async function refreshAlarms(): Promise<void> {
+  const run = store.value;
+  if (!run || asking || alarms.value === 'absent') return;
+  asking = true;
+  try {
+    const { alarms: all = [] } = await call<{ alarms?: AlarmState[] }>('GET', `/runs/${run.id}/alarms?state=current`);
+    if (store.value !== run) return;
+    const before = typeof alarms.value === 'object' && alarms.value.run === run.id ? alarms.value.all : all;
+    alarms.value = { run: run.id, all };
+    const call_ = calls(before, all);
+    if (call_ && sound.value) beep(call_);
+  } catch (error) {
+    if (error instanceof Refused && error.status === 404) alarms.value = 'absent';
+    // Else the header says that there is no connection, or the bar that there is no session; the next round asks again.
+  } finally {
+    asking = false;
+  }
+}
+
+export async function act(name: string, action: Action): Promise<void> {
+  const run = store.value;
+  if (!run || acting.value !== undefined) return;
+  acting.value = name;
+  problem.value = '';
+  try {
+    await call('POST', `/runs/${run.id}/alarms`, {
+      channel: name, action, note: note.value.trim(), by: uplink.value.controller.trim(), ...(action === 'shelve' && { shelve_s: Number(shelveFor.value) }),
+    });
+    note.value = '';
+    await refreshAlarms();
+  } catch (error) {
+    problem.value = `${name} was not ${{ acknowledge: 'acknowledged', shelve: 'shelved', unshelve: 'unshelved', reset: 'reset' }[action]}: ${wordsFor(error)}`;
+  } finally {
+    acting.value = undefined;
+  }
+}
+
+export const sound = signal(false);
+let audio: AudioContext | undefined;
+
+/** Off until someone wants it, and silent again after a reload: a browser lets no page sound by itself. */
+export function toggleSound(): void {
+  sound.value = !sound.value;
+  if (sound.value) {
+    audio ??= new AudioContext();
+    beep('caution');
+  }
+}
+
+function beep(kind: 'alarm' | 'caution'): void {
+  if (!audio) return;
+  for (const [i, hertz] of (kind === 'alarm' ? [880, 660, 880] : [523]).entries()) {
+    const tone = audio.createOscillator();
+    const volume = audio.createGain();
+    volume.gain.value = 0.15;
+    tone.frequency.value = hertz;
+    tone.connect(volume).connect(audio.destination);
+    tone.start(audio.currentTime + i * 0.22);
+    tone.stop(audio.currentTime + i * 0.22 + 0.18);
+  }
+}

@@ -1,0 +1,90 @@
+// @vitest-environment happy-dom
+import { render } from 'preact';
+import { act as settled } from 'preact/test-utils';
+import { beforeEach, describe, expect, it } from 'vitest';
+import { access } from '../access/model';
+import { pastRange, useForTest } from '../run/session';
+import { aDictionary, aStore } from '../testing/fixtures';
+import { aServer } from '../testing/server';
+import { act, actionsOn, alarms, calls, listed, lookOf, note, problem, refreshAlarms, shelveFor, sorted, toAcknowledge } from './model';
+import type { AlarmState } from './model';
+import { Alarms } from './view';
+
+const server = aServer();
+const CURRENT = 'GET /runs/1/alarms?state=current';
+const an = (fields: Partial<AlarmState>): AlarmState => ({ name: 'altitude_m', kind: 'limit', state: 'unacknowledged', severity: 'warning', worst: 'warning', ...fields });
+
+beforeEach(() => {
+  alarms.value = undefined;
+  problem.value = '';
+  note.value = '';
+  shelveFor.value = '300';
+  access.value = { state: 'open' };
+  useForTest(aStore(), aDictionary);
+});
+
+describe('alarms', () => {
+  it('stand in the order of what no one has looked at, the worst first', () => {
+    const all = [an({ name: 'c', state: 'shelved' }), an({ name: 'b', state: 'acknowledged', acknowledged: true }), an({ name: 'a' }), an({ name: 'd', worst: 'critical' })];
+    expect(sorted(all).map((alarm) => alarm.name)).toEqual(['d', 'a', 'b', 'c']);
+  });
+  it('look by shape as severe as they are now, and quiet once they are shelved', () => {
+    expect([an({ severity: 'critical' }), an({}), an({ severity: 'none', state: 'returned' }), an({ state: 'shelved', severity: 'critical' })].map(lookOf)).toEqual(['alarm', 'caution', 'good', 'quiet']);
+  });
+  it('offer what can be done about each', () => {
+    expect([an({}), an({ state: 'acknowledged', acknowledged: true }), an({ state: 'shelved' }), an({ state: 'latched', severity: 'none', latches: true })].map(actionsOn))
+      .toEqual([['acknowledge', 'shelve'], ['shelve'], ['unshelve'], ['acknowledge', 'shelve', 'reset']]);
+  });
+  it('call once for what is new or has grown worse, and never again for the same', () => {
+    expect(calls([], [an({})])).toBe('caution');
+    expect(calls([an({})], [an({})])).toBeUndefined();
+    expect(calls([an({})], [an({ worst: 'critical' })])).toBe('alarm');
+    expect(calls([], [an({ state: 'shelved' })])).toBeUndefined();
+  });
+  it('are acted upon once, with the note, and are then what the server says', async () => {
+    server.routes[CURRENT] = { json: { alarms: [an({})] } };
+    await refreshAlarms();
+    expect(toAcknowledge.value).toHaveLength(1);
+    server.routes['POST /runs/1/alarms'] = { json: {} };
+    server.routes[CURRENT] = { json: { alarms: [an({ state: 'shelved' })] } };
+    note.value = ' seen ';
+    await Promise.all([act('altitude_m', 'shelve'), act('altitude_m', 'shelve')]);
+    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([{ channel: 'altitude_m', action: 'shelve', shelve_s: 300, note: 'seen', by: '' }]);
+    expect([listed.value[0]?.state, toAcknowledge.value.length, note.value]).toEqual(['shelved', 0, '']);
+  });
+  it('that could not be acted upon say why, and keep the note', async () => {
+    server.routes['POST /runs/1/alarms'] = { status: 403, json: { error: 'observers may not' } };
+    note.value = 'mine';
+    await act('altitude_m', 'acknowledge');
+    expect([problem.value, note.value]).toEqual(['altitude_m was not acknowledged: observers may not', 'mine']);
+    server.routes['POST /runs/1/alarms'] = { status: 0 };
+    await act('altitude_m', 'acknowledge');
+    expect(problem.value).toContain('whether it was taken is not known');
+  });
+  it('of a server without them are not asked for again', async () => {
+    await refreshAlarms();
+    await refreshAlarms();
+    expect([alarms.value, server.asked.length]).toEqual(['absent', 1]);
+  });
+});
+
+describe('the panel', () => {
+  const shown = () => {
+    const root = document.createElement('div');
+    settled(() => render(<Alarms />, root));
+    return root;
+  };
+  it('shows names with markup as text, and buttons that name their alarm', () => {
+    alarms.value = { run: 1, all: [an({ name: '<i>x</i>', limit: '> 1' })] };
+    expect(shown().querySelector('td i')).toBeNull();
+    expect(shown().querySelector('[aria-label="acknowledge <i>x</i>"]')).not.toBeNull();
+  });
+  it('gives observers nothing to press, and shows nothing of now in a view of the past', () => {
+    alarms.value = { run: 1, all: [an({})] };
+    access.value = { state: 'in', user: 'eve', role: 'observer', rights: [] };
+    expect(shown().querySelectorAll('td button')).toHaveLength(0);
+    pastRange.value = { from: -100, to: 0 };
+    expect(shown().textContent).toMatch(/not shown in a view of the past/);
+    pastRange.value = undefined;
+  });
+});

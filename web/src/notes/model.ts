@@ -1,0 +1,80 @@
+// The shift log of a run, and remarks at its instants: what people wrote down, kept with the run.
+import { signal } from '@preact/signals';
+import { uplink } from '../commands/line';
+import { Refused, call, wordsFor } from '../run/api';
+import { store } from '../run/session';
+import type { RunStore } from '../run/store';
+
+export interface NoteRow {
+  seq: number;
+  text: string;
+  by: string;
+  at: string; // ERT
+  sclk: number | undefined;
+}
+interface NoteList {
+  notes?: { seq: string | number; note: { text: string; by?: string; at?: string; sclk?: number } }[];
+  next_after?: string | number;
+}
+
+const PAGES = 20; // ours: as many answers as are put together
+export const OCTETS = 4000; // the server takes no more
+
+export const notes = signal<{ run: number; all: NoteRow[] } | 'absent' | undefined>(undefined);
+export const problem = signal('');
+export const writing = signal(false);
+
+let asking = false;
+
+export async function refreshNotes(): Promise<void> {
+  const run = store.value;
+  if (!run || asking || notes.value === 'absent') return;
+  asking = true;
+  try {
+    const known = typeof notes.value === 'object' && notes.value.run === run.id ? notes.value.all : [];
+    const all = [...known];
+    let after = all.at(-1)?.seq ?? 0;
+    for (let page = 0; page < PAGES; ++page) {
+      const list = await call<NoteList>('GET', `/runs/${run.id}/notes${after > 0 ? `?after=${after}` : ''}`);
+      for (const { seq, note } of list.notes ?? []) {
+        if (Number(seq) > (all.at(-1)?.seq ?? 0)) all.push({ seq: Number(seq), text: note.text, by: note.by ?? '', at: note.at ?? '', sclk: note.sclk });
+      }
+      after = Number(list.next_after ?? 0);
+      if (after === 0) break;
+    }
+    if (store.value === run) notes.value = { run: run.id, all };
+  } catch (error) {
+    if (error instanceof Refused && error.status === 404) notes.value = 'absent';
+  } finally {
+    asking = false;
+  }
+}
+
+/** Written once; true when it is. */
+export async function write(text: string, sclk: number | undefined): Promise<boolean> {
+  const run = store.value;
+  if (!run || writing.value) return false;
+  const octets = new TextEncoder().encode(text.trim()).length;
+  problem.value = octets === 0 ? 'there is nothing to write down' : octets > OCTETS ? `it has ${octets} octets; a note has at most ${OCTETS}` : '';
+  if (problem.value) return false;
+  writing.value = true;
+  try {
+    await call('POST', `/runs/${run.id}/notes`, { text: text.trim(), by: uplink.value.controller.trim(), ...(sclk !== undefined && { sclk }) });
+    await refreshNotes();
+    return true;
+  } catch (error) {
+    problem.value = `it was not written down: ${wordsFor(error)}`;
+    return false;
+  } finally {
+    writing.value = false;
+  }
+}
+
+/** Newest first; of the past only what had been written by then; every word must be in text or name. */
+export function found(all: readonly NoteRow[], search: string, run: Pick<RunStore, 'sclkSeenAt'>, cutoff: number): NoteRow[] {
+  const words = search.toLowerCase().split(/\s+/).filter((word) => word !== '');
+  return all.filter((row) => {
+    const text = `${row.text} ${row.by}`.toLowerCase();
+    return words.every((word) => text.includes(word)) && !(run.sclkSeenAt(row.at) > cutoff);
+  }).reverse();
+}

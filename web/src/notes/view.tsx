@@ -1,0 +1,57 @@
+// The shift log: what was written when and by whom, a line to write in, and a search.
+import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import { mayAct } from '../access/model';
+import { Signature } from '../commands/signature';
+import { cutoff, pastRange, runNow } from '../run/session';
+import { fromEntry } from '../run/time';
+import { found, notes, problem, refreshNotes, write, writing } from './model';
+import './style.css';
+
+const AGAIN_MS = 3000; // ours: while the panel is looked at, for what others write
+
+const text = signal('');
+const search = signal('');
+const atInstant = signal(false);
+
+export function Notes() {
+  const run = runNow();
+  const id = run?.id;
+  const told = run?.notesVersion;
+  useEffect(() => void refreshNotes(), [id, told]);
+  useEffect(() => {
+    const timer = setInterval(() => void refreshNotes(), AGAIN_MS);
+    return () => clearInterval(timer);
+  }, [id]);
+  if (!run) return <p class="none">no run</p>;
+  if (notes.value === 'absent') return <p class="none">This server keeps no notes.</p>;
+  const all = notes.value?.run === run.id ? notes.value.all : [];
+  const shown = found(all, search.value, run, cutoff.value);
+  const instant = Math.min(run.seenSclk, cutoff.value);
+  return (
+    <div class="table-box" data-testid="notes">
+      <form class="table-tools" onSubmit={(event) => {
+        event.preventDefault();
+        void write(text.value, atInstant.value ? instant : undefined).then((written) => written && (text.value = ''));
+      }}>
+        <input class="note-text" data-testid="note-text" aria-label="write a note" placeholder={mayAct() ? 'write a note; Enter keeps it' : 'observers write no notes'} value={text.value} disabled={!mayAct()}
+          onInput={(event) => (text.value = event.currentTarget.value)} />
+        <label><input type="checkbox" data-testid="note-instant" checked={atInstant.value} onChange={(event) => (atInstant.value = event.currentTarget.checked)} /> at {fromEntry(instant - run.entrySclk)}</label>
+        <Signature />
+        <button type="submit" disabled={!mayAct() || writing.value}>keep</button>
+        <input type="search" data-testid="note-search" aria-label="search notes" placeholder="search" value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
+      </form>
+      {problem.value && <p role="alert" class="status-alarm" data-testid="note-problem">✖ {problem.value}</p>}
+      {pastRange.value && <p class="not-past">◧ Only what had been written by then.</p>}
+      <ol class="notes table-scroll" tabIndex={0} aria-label="notes, newest first" data-testid="note-list">
+        {shown.map((row) => (
+          <li key={row.seq}>
+            <time>{row.at}</time> <b>{row.by || 'unsigned'}</b> {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
+            <p>{row.text}</p>
+          </li>
+        ))}
+        {shown.length === 0 && <li class="none">{search.value ? `no note has “${search.value}”` : 'nothing is written down yet'}</li>}
+      </ol>
+    </div>
+  );
+}

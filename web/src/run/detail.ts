@@ -1,0 +1,52 @@
+// What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
+// again, as fine as it can be drawn: what is wanted last, and one question at a time.
+import { effect } from '@preact/signals';
+import type { ChannelSeriesList } from '../gen/aeolis/v1/run_pb';
+import { seriesPath } from '../recorded/model';
+import { splitBySource } from '../stream/columns';
+import { ask, pastRange, plottedChannels, replay, store } from './session';
+import { choice, spanNow } from './window';
+
+const POINTS = 2400; // ours: of a channel, two a pixel of the widest plot
+const CHANNELS_A_QUESTION = 8; // several small questions are answered side by side
+
+let wanted = '';
+let underWay = false;
+
+/** Only where someone has zoomed or panned: what follows the run is fine enough as it comes, a fixed range as fine as it was asked for. */
+function stretch(): { from: number; to: number } | undefined {
+  return (!pastRange.value || replay.value) && typeof choice.value === 'object' ? spanNow(store.value) : undefined;
+}
+
+async function refine(): Promise<void> {
+  if (underWay) return;
+  underWay = true;
+  for (let done = ''; done !== wanted;) {
+    done = wanted;
+    const [run, span] = [store.peek(), stretch()];
+    if (!run || !span) break;
+    const [from, to] = [run.entrySclk + span.from, run.entrySclk + span.to];
+    const names = plottedChannels();
+    const questions = Array.from({ length: Math.ceil(names.length / CHANNELS_A_QUESTION) }, (_, i) => names.slice(i * CHANNELS_A_QUESTION, (i + 1) * CHANNELS_A_QUESTION));
+    try {
+      await Promise.all(questions.map(async (some) => {
+        const list = await ask<ChannelSeriesList>('series', seriesPath(run.id, some, from, to, POINTS, false));
+        if (store.peek() !== run) return;
+        performance.mark('aeolis-detail');
+        // Live samples that came while the answer was on its way are newer than it, and stay.
+        for (const column of list.channels.flatMap(splitBySource)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
+      }));
+    } catch {
+      // What is held stays; the header says when there is no connection.
+    }
+  }
+  underWay = false;
+}
+
+export function refineWhatIsLookedAt(): void {
+  effect(() => {
+    const span = stretch();
+    wanted = span ? `${store.value?.id} ${span.from} ${span.to}` : '';
+    if (span) void refine();
+  });
+}

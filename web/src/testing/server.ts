@@ -1,0 +1,29 @@
+// A server of a few routes for tests: answers what is put in, keeps what was asked.
+import { afterEach, beforeEach, vi } from 'vitest';
+
+type Answer = { status?: number; json?: unknown } | (() => { status?: number; json?: unknown });
+
+export interface FakeServer {
+  /** "GET /session" → what it answers. What is not there answers 404. */
+  routes: Record<string, Answer>;
+  asked: { method: string; path: string; body: unknown }[];
+}
+
+export function aServer(): FakeServer {
+  const server: FakeServer = { routes: {}, asked: [] };
+  beforeEach(() => {
+    server.routes = {};
+    server.asked = [];
+    vi.stubGlobal('fetch', async (url: string, options: RequestInit = {}) => {
+      const [method, path] = [options.method ?? 'GET', url.replace(/^.*\/api\/v1/, '')];
+      server.asked.push({ method, path, body: options.body === undefined ? undefined : JSON.parse(String(options.body)) });
+      const found = server.routes[`${method} ${path}`];
+      if (!found) return new Response('{"error":"no such route"}', { status: 404 });
+      const { status = 200, json } = typeof found === 'function' ? found() : found;
+      if (status === 0) throw new TypeError('Failed to fetch');
+      return new Response(json === undefined ? null : JSON.stringify(json), { status });
+    });
+  });
+  afterEach(() => void vi.unstubAllGlobals());
+  return server;
+}

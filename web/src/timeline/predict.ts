@@ -1,0 +1,128 @@
+// When each timepoint is predicted, from what is known now: the plan, moved by every anchor that was heard of, by UHF, recording
+// or tone; and what a command in the form would move.
+import { LAYOUT } from '../layout';
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { RunStore } from '../run/store';
+
+/** Times in seconds from entry. */
+export interface Prediction {
+  id: number;
+  name: string;
+  /** Of what has fired: as it was predicted before its anchor was heard of. */
+  e_s: number;
+  fired: boolean;
+}
+
+/** What a command would change; everything else stays. */
+export interface Change {
+  timepoint?: { id: number; desired_s: number; minimum_s: number | undefined };
+  anchor?: { name: string; e_s: number };
+}
+
+export type Anchors = readonly (readonly [name: string, e_s: number])[];
+
+/**
+ * The timeline's own rule (a timepoint fires once its desired offset from anchor or predecessor and its minimum offset from its
+ * predecessor have come) over predicted anchors: one that is overdue comes now at the earliest, and moves those after it along.
+ * A timepoint whose anchor nobody predicts is left out.
+ */
+export function predictions(store: RunStore, plan: readonly TimepointRow[], anchors: Anchors, cutoff: number, changes: readonly Change[] = []): Prediction[] {
+  const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
+  const heard = heardOf(store, plan, cutoff);
+  const { before, after } = anchorTimes(plan, anchors, heard, now, changes.findLast((each) => each.anchor)?.anchor);
+  const all: Prediction[] = [];
+  let previous: number | undefined;
+  for (const row of plan) {
+    const fired = heard.get(row.id);
+    const changed = fired === undefined ? changes.findLast((each) => each.timepoint?.id === row.id)?.timepoint : undefined;
+    const [desired, minimum] = changed ? [changed.desired_s, changed.minimum_s] : [row.desiredOffsetS, row.minimumOffsetS];
+    const base = row.anchor === '' ? previous : (fired === undefined ? after : before).get(row.anchor);
+    let at = base === undefined || desired === undefined ? undefined : base + desired;
+    if (at !== undefined && previous !== undefined && minimum !== undefined) at = Math.max(at, previous + minimum);
+    if (at !== undefined && Number.isFinite(at)) all.push({ id: row.id, name: row.name, e_s: at, fired: fired !== undefined });
+    previous = fired ?? at ?? previous;
+  }
+  return all;
+}
+
+/** When what has fired was triggered: UHF and recording say it, else a tone that only one timepoint asks for. */
+function heardOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Map<number, number> {
+  const heard = new Map<number, number>();
+  const asked = new Map<string, number>();
+  for (const row of plan) asked.set(row.tone, (asked.get(row.tone) ?? 0) + 1);
+  for (const row of plan) {
+    const pair = store.firings.get(row.id);
+    const firing = [pair?.live, pair?.recorded].find((each) => each !== undefined && each.firedSclk <= cutoff);
+    const tone = firing || row.tone === '' || asked.get(row.tone) !== 1 ? undefined
+      : store.tones.find(({ fact }) => fact.name === row.tone && fact.sclk <= cutoff)?.fact;
+    const sclk = firing?.triggeredSclk ?? tone?.sclk;
+    if (sclk !== undefined) heard.set(row.id, sclk - store.entrySclk);
+  }
+  return heard;
+}
+
+/** `before`: as each was predicted until it was heard of; `after`: as it is known or predicted now. */
+function anchorTimes(
+  plan: readonly TimepointRow[], anchors: Anchors, heard: ReadonlyMap<number, number>, now: number, change: Change['anchor'],
+): { before: Map<string, number>; after: Map<string, number> } {
+  const [before, after] = [new Map<string, number>(), new Map<string, number>()];
+  // A timepoint can be later than its anchor says, never earlier: the earliest tells the anchor best.
+  const told = new Map<string, number>();
+  for (const row of plan) {
+    const at = heard.get(row.id);
+    if (at === undefined || row.anchor === '' || row.desiredOffsetS === undefined) continue;
+    told.set(row.anchor, Math.min(told.get(row.anchor) ?? Infinity, at - row.desiredOffsetS));
+  }
+  // The anchors that the plan itself knows stand at their planned time.
+  for (const row of plan) {
+    if (row.plannedES !== undefined && row.desiredOffsetS !== undefined && row.anchor !== '') before.set(row.anchor, row.plannedES - row.desiredOffsetS);
+  }
+  anchors.forEach(([name, e_s], i) => {
+    const [last, last_e_s] = anchors[i - 1] ?? ['', 0];
+    if (!before.has(name)) before.set(name, (after.get(last) ?? 0) + e_s - last_e_s);
+    after.set(name, told.get(name) ?? Math.max(before.get(name) as number, i === 0 ? -Infinity : now));
+    if (change?.name === name) after.set(name, change.e_s);
+  });
+  for (const [name, e_s] of before) if (!after.has(name)) after.set(name, change?.name === name ? change.e_s : told.get(name) ?? e_s);
+  return { before, after };
+}
+
+/** What a command with these arguments changes, as far as they are known; undefined where it moves nothing. */
+export function changeOf(command: string, values: ReadonlyMap<string, number>, store: RunStore): Change | undefined {
+  const moves = LAYOUT.moves.find((each) => each.command === command);
+  if (!moves) return undefined;
+  if ('anchor' in moves) {
+    const sclk = values.get(moves.sclk);
+    return sclk === undefined ? undefined : { anchor: { name: moves.anchor, e_s: sclk - store.entrySclk } };
+  }
+  const [id, desired_s] = [values.get(moves.timepoint), values.get(moves.desired)];
+  return id === undefined || desired_s === undefined ? undefined : { timepoint: { id, desired_s, minimum_s: values.get(moves.minimum) } };
+}
+
+/** What the vehicle has carried out of such commands. */
+export function changesMade(store: RunStore, cutoff: number): Change[] {
+  return [...store.commands.values()].flatMap((row) => {
+    const executed = row.stages.get('executed')?.at(-1);
+    if (executed?.status !== 'ok' || store.sclkSeenAt(executed.at) > cutoff) return [];
+    const values = row.arguments.split(' ').map((part) => part.split('=')).filter((pair) => pair.length === 2);
+    return changeOf(row.name, new Map(values.map(([name, value]) => [name as string, Number(value)])), store) ?? [];
+  });
+}
+
+export interface Moved {
+  id: number;
+  name: string;
+  from_e_s: number;
+  to_e_s: number;
+}
+
+const LEAST_S = 1 / 64; // a cycle on board
+
+/** Each timepoint that has not fired and comes at another time, in the order of the timeline. */
+export function movedBy(before: readonly Prediction[], after: readonly Prediction[]): Moved[] {
+  const old = new Map(before.map((each) => [each.id, each]));
+  return after.flatMap((each) => {
+    const from = old.get(each.id);
+    return !from || each.fired || Math.abs(each.e_s - from.e_s) < LEAST_S ? [] : [{ id: each.id, name: each.name, from_e_s: from.e_s, to_e_s: each.e_s }];
+  });
+}
