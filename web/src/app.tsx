@@ -83,7 +83,7 @@ export function App({ panel }: { panel?: string | undefined }) {
       <PastBar />
       <ReplayBar />
       <Notices />
-      {access.value.state === 'out' && !run ? <LogIn /> : Alone ? <main class="one"><Alone /></main> : (
+      {['out', 'choose'].includes(access.value.state) && !run ? <LogIn /> : Alone ? <main class="one"><Alone /></main> : (
         <main class="grid">
           <div class="left">
             <Timeline />

@@ -7,15 +7,18 @@ export interface Session {
   user: string;
   role: string;
   rights: string[];
+  /** The password was given by another: until its owner has chosen one, nothing else is answered. */
+  choose_password?: boolean;
 }
 
 /**
  * "asking": not known yet; "open": no accounts; "in": logged in; "out": a log-in is needed, "expired" when there was one before.
- * "none": a server that knows of no sessions.
+ * "choose": a password of their own is to be chosen first. "none": a server that knows of no sessions.
  */
 export type Access =
   | { state: 'asking' | 'none' | 'open' }
   | { state: 'out'; expired: boolean; user: string }
+  | { state: 'choose'; user: string }
   | { state: 'in'; user: string; role: string; rights: string[] };
 
 export const access = signal<Access>({ state: 'asking' });
@@ -28,6 +31,7 @@ export async function learnAccess(): Promise<void> {
     const session = await call<Session>('GET', '/session');
     if (!session.accounts) access.value = { state: 'open' };
     else if (session.user === '') turnAway();
+    else if (session.choose_password) access.value = { state: 'choose', user: session.user };
     else access.value = { state: 'in', user: session.user, role: session.role, rights: session.rights ?? [] };
   } catch (error) {
     if (!(error instanceof Refused) || error.status === 0) throw error;
@@ -42,12 +46,22 @@ function turnAway(): void {
   access.value = now.state === 'out' ? now : { state: 'out', expired: now.state === 'in', user: now.state === 'in' ? now.user : '' };
 }
 
-export async function logIn(user: string, password: string): Promise<void> {
+export const logIn = (user: string, password: string): Promise<void> => enter(() => call('POST', '/session', { user, password }));
+
+/** In place of the one that another gave. */
+export async function choosePassword(given: string, chosen: string, again: string): Promise<void> {
+  const now = access.value;
+  if (now.state !== 'choose') return;
+  if (chosen !== again) problem.value = 'the two are not the same: type them again';
+  else await enter(() => call('PATCH', `/users/${encodeURIComponent(now.user)}`, { current_password: given, password: chosen }));
+}
+
+async function enter(ask: () => Promise<unknown>): Promise<void> {
   if (busy.value) return;
   busy.value = true;
   problem.value = '';
   try {
-    await call('POST', '/session', { user, password });
+    await ask();
     await learnAccess();
   } catch (error) {
     problem.value = wordsFor(error);

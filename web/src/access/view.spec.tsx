@@ -6,7 +6,7 @@ import { call } from '../run/api';
 import { takesCommands, useForTest } from '../run/session';
 import { aDictionary, aStore } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { access, learnAccess, logIn, mayAct, problem } from './model';
+import { access, choosePassword, learnAccess, logIn, mayAct, problem } from './model';
 import { ExpiredBar, LogIn, Who } from './view';
 
 const server = aServer();
@@ -37,6 +37,18 @@ describe('access', () => {
     await logIn('ann', 'y');
     expect(access.value).toEqual({ state: 'in', user: 'ann', role: 'controller', rights: ['command'] });
     expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([{ user: 'ann', password: 'x' }, { user: 'ann', password: 'y' }]);
+  });
+  it('with a password that another gave asks for one of their own before anything else', async () => {
+    server.routes['GET /session'] = { json: { accounts: true, user: 'ann', role: 'director', rights: [], choose_password: true } };
+    await learnAccess();
+    expect(access.value).toEqual({ state: 'choose', user: 'ann' });
+    await choosePassword('given', 'one of my own', 'one of my won');
+    expect([problem.value, server.asked.length]).toEqual(['the two are not the same: type them again', 1]);
+    server.routes['PATCH /users/ann'] = {};
+    server.routes['GET /session'] = session('ann', 'director');
+    await choosePassword('given', 'one of my own', 'one of my own');
+    expect(access.value.state).toBe('in');
+    expect(server.asked[1]?.body).toEqual({ current_password: 'given', password: 'one of my own' });
   });
   it('of an observer sends nothing', async () => {
     useForTest(aStore(), aDictionary);

@@ -1,7 +1,7 @@
 // The log-in, in place: alone before anything may be shown, as a bar over the display when a session ended in the middle.
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { access, busy, logIn, logOut, mayAct, problem } from './model';
+import { access, busy, choosePassword, logIn, logOut, mayAct, problem } from './model';
 import './style.css';
 
 const user = signal('');
@@ -29,8 +29,31 @@ function Form({ known }: { known: string }) {
   );
 }
 
+const CHOICE = [['given', 'the one you were given', 'current-password'], ['chosen', 'your own, 12 letters or more', 'new-password'], ['again', 'once more', 'new-password']] as const;
+
+function ChooseForm({ who }: { who: string }) {
+  return (
+    <form data-testid="choose-password" aria-label="choose a password" onSubmit={(event) => {
+      event.preventDefault();
+      const form = event.currentTarget;
+      const [given = '', chosen = '', again = ''] = CHOICE.map(([name]) => (form.elements.namedItem(name) as HTMLInputElement).value);
+      void choosePassword(given, chosen, again);
+    }}>
+      <p>{who}, this password was given to you. Choose one of your own, then everything else opens.</p>
+      {CHOICE.map(([name, label, complete]) => (
+        <label key={name}>{label} <input name={name} type="password" autocomplete={complete} required maxLength={128} data-testid={`password-${name}`} /></label>
+      ))}
+      <button type="submit" class="primary" disabled={busy.value}>{busy.value ? 'asking…' : 'choose it'}</button>
+      {problem.value && <p role="alert" class="status-alarm" data-testid="choose-problem">✖ {problem.value}</p>}
+    </form>
+  );
+}
+
 /** Before anything may be shown. */
 export function LogIn() {
+  const now = access.value;
+  if (now.state === 'choose')
+    return <main class="log-in-page"><section class="panel log-in"><h2>Choose a password</h2><ChooseForm who={now.user} /></section></main>;
   return (
     <main class="log-in-page">
       <section class="panel log-in">
@@ -45,6 +68,7 @@ export function LogIn() {
 /** In the middle of something: what stands on the screen stays, and is old. */
 export function ExpiredBar() {
   const now = access.value;
+  if (now.state === 'choose') return <div class="expired-bar" role="alert"><ChooseForm who={now.user} /></div>;
   if (now.state !== 'out' || !now.expired) return null;
   return (
     <div class="expired-bar" role="alert" data-testid="expired-bar">

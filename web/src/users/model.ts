@@ -13,18 +13,20 @@ export interface Token {
   name: string;
   role: string;
 }
-export interface AuditRow {
-  number?: string | number;
-  at?: string;
-  user?: string;
-  action?: string;
-  outcome?: string;
-  [other: string]: unknown;
+export interface AuditEntry {
+  entry: string;
+  at: string;
+  who: string;
+  from: string;
+  action: string;
+  detail: string;
+  outcome: string;
+  hash: string;
 }
 
 export const users = signal<User[]>([]);
 export const tokens = signal<Token[]>([]);
-export const audit = signal<AuditRow[]>([]);
+export const audit = signal<AuditEntry[]>([]);
 export const auditAfter = signal('');
 export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
 /** Shown once, for the server keeps no readable copy. */
@@ -37,11 +39,11 @@ export async function refreshUsers(): Promise<void> {
   try {
     const [all, programs, log] = await Promise.all([
       call<{ users?: User[] }>('GET', '/users'), call<{ tokens?: Token[] }>('GET', '/tokens'),
-      call<{ audit?: AuditRow[]; entries?: AuditRow[] }>('GET', `/audit?${auditAfter.value && `after=${auditAfter.value}&`}limit=${AUDIT_LIMIT}`),
+      call<{ entries?: AuditEntry[] }>('GET', `/audit?${auditAfter.value && `after=${auditAfter.value}&`}limit=${AUDIT_LIMIT}`),
     ]);
     users.value = all.users ?? [];
     tokens.value = programs.tokens ?? [];
-    audit.value = log.audit ?? log.entries ?? [];
+    audit.value = log.entries ?? [];
   } catch (error) {
     message.value = { good: false, text: wordsFor(error) };
   }
@@ -71,16 +73,12 @@ export const addUser = (user: string, role: string, password: string) =>
   change(`${user} is ${role} now`, () => call('POST', '/users', { user, role, password }));
 export const setRole = (user: string, role: string) => change(`${user} is ${role} now`, () => call('PATCH', at('/users', user), { role }));
 export const setPassword = (user: string, password: string) => change(`${user} has a new password`, () => call('PATCH', at('/users', user), { password }));
+export const setOwnPassword = (user: string, current: string, password: string) =>
+  change('your password is changed', () => call('PATCH', at('/users', user), { current_password: current, password }));
 export const removeUser = (user: string) => change(`${user} is removed`, () => call('DELETE', at('/users', user)));
 export const addToken = (name: string, role: string) =>
   change(`the token ${name} is made`, async () => {
-    const made = await call<{ token?: string; secret?: string }>('POST', '/tokens', { name, role });
-    newToken.value = { name, token: made.token ?? made.secret ?? '' };
+    const made = await call<{ token: string }>('POST', '/tokens', { name, role });
+    newToken.value = { name, token: made.token };
   });
 export const removeToken = (name: string) => change(`the token ${name} is void`, () => call('DELETE', at('/tokens', name)));
-
-/** Every field of an entry that is not a column of its own, as words. */
-export function auditWords(row: AuditRow): string {
-  const { number: _number, at: _at, user: _user, action: _action, outcome: _outcome, hash: _hash, ...rest } = row;
-  return Object.entries(rest).map(([name, value]) => `${name} ${typeof value === 'object' ? JSON.stringify(value) : String(value)}`).join(', ');
-}

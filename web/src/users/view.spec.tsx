@@ -4,7 +4,7 @@ import { act } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { access } from '../access/model';
 import { aServer } from '../testing/server';
-import { addToken, addUser, auditWords, message, newToken, refreshUsers, removeUser, setRole, tokens, users } from './model';
+import { addToken, addUser, audit, message, newToken, refreshUsers, removeUser, setRole, tokens, users } from './model';
 import { Users } from './view';
 
 const server = aServer();
@@ -13,7 +13,7 @@ beforeEach(() => {
   newToken.value = undefined;
   server.routes['GET /users'] = { json: { users: [{ user: 'ann', role: 'administrator' }, { user: 'bob/../x', role: 'observer' }] } };
   server.routes['GET /tokens'] = { json: { tokens: [{ name: 'plotter', role: 'observer' }] } };
-  server.routes['GET /audit?limit=100'] = { json: { audit: [{ number: 1, user: 'ann', action: 'log_in', hash: 'ff', address: '::1' }] } };
+  server.routes['GET /audit?limit=100'] = { json: { entries: [{ entry: '1', at: '2026-11-22T12:00:00Z', who: 'ann', from: '::1', action: 'log-in', detail: 'ann', outcome: 'done', hash: 'ff' }] } };
 });
 
 describe('users', () => {
@@ -36,8 +36,9 @@ describe('users', () => {
     await addToken('reader', 'observer');
     expect(newToken.value).toEqual({ name: 'reader', token: 'aeolis-123' });
   });
-  it('leave words in the audit beside its columns', () => {
-    expect(auditWords({ number: 1, user: 'ann', action: 'log_in', hash: 'ff', address: '::1', of: { run: 1 } })).toBe('address ::1, of {"run":1}');
+  it('leave entries in the audit', async () => {
+    await refreshUsers();
+    expect(audit.value.map((each) => [each.entry, each.who, each.action, each.outcome])).toEqual([['1', 'ann', 'log-in', 'done']]);
   });
 });
 

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { access } from '../access/model';
-import { ROLES, addToken, addUser, audit, auditAfter, auditWords, busy, message, newToken, refreshUsers, removeToken, removeUser, setPassword, setRole, tokens, users } from './model';
+import { ROLES, addToken, addUser, audit, auditAfter, busy, message, newToken, refreshUsers, removeToken, removeUser, setOwnPassword, setPassword, setRole, tokens, users } from './model';
 import './style.css';
 
 const name = signal('');
@@ -24,6 +24,20 @@ function Remove({ what, words, onRemove }: { what: string; words: string; onRemo
       removing.value = sure ? '' : what;
       if (sure) onRemove();
     }}>{sure ? 'press again: it is final' : 'remove'}</button>
+  );
+}
+
+function OwnPassword({ user }: { user: string }) {
+  return (
+    <form onSubmit={(event) => {
+      event.preventDefault();
+      const form = event.currentTarget;
+      const [current, chosen] = ['current', 'secret'].map((each) => form.elements.namedItem(each) as HTMLInputElement);
+      void setOwnPassword(user, current!.value, chosen!.value).then(() => form.reset());
+    }}>
+      <input name="current" type="password" autocomplete="current-password" aria-label="your password of before" placeholder="of before" required maxLength={128} />{' '}
+      <input name="secret" type="password" autocomplete="new-password" aria-label={`new password of ${user}`} placeholder="a new one" required maxLength={128} /> <button type="submit" disabled={busy.value}>set</button>
+    </form>
   );
 }
 
@@ -59,7 +73,7 @@ export function Users() {
               <tr key={each.user} data-user={each.user}>
                 <td><b>{each.user}</b>{each.user === now.user && ' (you)'}</td>
                 <td><Roles of={each.role} label={`role of ${each.user}`} onChoose={(chosen) => void setRole(each.user, chosen)} /></td>
-                <td>
+                <td>{each.user === now.user ? <OwnPassword user={each.user} /> : (
                   <form onSubmit={(event) => {
                     event.preventDefault();
                     const field = event.currentTarget.elements.namedItem('secret') as HTMLInputElement;
@@ -68,7 +82,7 @@ export function Users() {
                     void setPassword(each.user, secret);
                   }}>
                     <input name="secret" type="password" autocomplete="new-password" aria-label={`new password of ${each.user}`} placeholder="a new one" required maxLength={1024} /> <button type="submit" disabled={busy.value}>set</button>
-                  </form>
+                  </form>)}
                 </td>
                 <td>{each.user !== now.user && <Remove what={`user ${each.user}`} words={`remove ${each.user}`} onRemove={() => void removeUser(each.user)} />}</td>
               </tr>
@@ -95,10 +109,10 @@ export function Users() {
         <h3>Audit <label class="audit-after">after <input value={auditAfter.value} inputMode="numeric" placeholder="number" aria-label="audit after number" onInput={(event) => (auditAfter.value = event.currentTarget.value.replace(/\D/g, ''))}
           onChange={() => void refreshUsers()} /></label></h3>
         <table data-testid="audit">
-          <thead><tr><th class="number">number</th><th>at</th><th>user</th><th>did</th><th>outcome</th><th>of</th></tr></thead>
+          <thead><tr><th class="number">number</th><th>at</th><th>who</th><th>from</th><th>did</th><th>what</th><th>outcome</th></tr></thead>
           <tbody>
-            {audit.value.map((row, i) => (
-              <tr key={row.number ?? i}><td class="number">{row.number}</td><td>{row.at}</td><td>{row.user}</td><td>{row.action}</td><td>{row.outcome}</td><td class="audit-of">{auditWords(row)}</td></tr>
+            {audit.value.map((row) => (
+              <tr key={row.entry} title={`hash ${row.hash}`}><td class="number">{row.entry}</td><td>{row.at}</td><td>{row.who}</td><td>{row.from}</td><td>{row.action}</td><td class="audit-of">{row.detail}</td><td>{row.outcome}</td></tr>
             ))}
           </tbody>
         </table>
