@@ -114,7 +114,6 @@ async function cold(name, scripts = []) {
     const context = await chrome.newContext({ viewport: SIZE });
     for (const script of scripts) await context.addInitScript(script);
     const page = await context.newPage();
-    if (process.env.AEOLIS_BENCH_TALK) page.on('console', (m) => console.error(m.text().slice(0,300))), page.on('pageerror', (e) => console.error(String(e))), page.on('requestfailed', (r) => console.error(r.url(), r.failure())), page.on('response', (r) => r.status() >= 400 && console.error(r.status(), r.url()));
     await page.goto(`${server.address}/${PAGES[name] ?? name}`, { waitUntil: "commit" });
     const cdp = await context.newCDPSession(page);
     return { page, cdp, close: () => context.close() };

@@ -1,35 +1,43 @@
 // Under the content security policy of a server with accounts: log in, lose the session in the middle of something, log in again; acknowledge
-// and shelve an alarm, write a note, manage users. Sessions, alarms and notes are answered by a stand-in, everything else by the program.
+// and shelve an alarm, write a note, manage users. The second test's alarms are answered by a stand-in.
 import assert from 'node:assert/strict';
+import path from 'node:path';
 import { test } from 'node:test';
 import { standIn } from './stand_in.mjs';
-import { findings, focused, waitFor, workplace } from './support.mjs';
+import { findings, focused, temporaryFolder, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 
-test('with accounts: a log-in in place, an end of the session in the middle that loses and doubles nothing, and what each role may do', { timeout: 90_000 }, async (t) => {
-    const server = await serve(t, 'access', ['--scenario', 'nominal']);
-    let user;
-    let notes = [];
-    const roles = { ann: 'controller', eve: 'observer', root: 'administrator' };
-    const routes = {
-        'GET /session': () => [200, { accounts: true, user: user ?? '', role: roles[user] ?? '', rights: user ? ['look'] : [] }],
-        'POST /session': ({ user: name, password }) => (roles[name] && password === `${name}-secret` ? [200, { user: (user = name) }] : [401, { error: 'wrong user or password' }]),
-        'DELETE /session': () => [204, (user = undefined)],
-        'GET /runs/1/notes': () => [200, { notes, next_after: '0' }],
-        'POST /runs/1/notes': ({ text }) => [201, void (notes = [...notes, { seq: String(1e6 + notes.length), note: { text, by: user, at: '2012-219T04:50:00.0' } }])],
-        'GET /users': () => [200, { users: Object.entries(roles).map(([name, role]) => ({ user: name, role })) }],
-        'POST /users': ({ user: name, role }) => [201, (roles[name] = role) && {}],
-        'GET /tokens': () => [200, { tokens: [] }],
-        'POST /tokens': ({ name }) => [201, { name, token: 'shown-once-4711' }],
-        'GET /audit': () => [200, { audit: [{ number: 1, at: '2026-01-01T00:00:00Z', user: 'ann', action: 'log_in' }] }],
-    };
-    const way = await standIn(server.address, routes, (path) => path.startsWith('/session') || user !== undefined);
-    t.after(() => way.close());
-    const { page, problems, text, shows } = await open(way.address);
+/** Asks a route as a program with a cookie does; gives the answer, with the cookie that it sets. */
+async function ask(address, method, route, body, cookie) {
+    const answer = await fetch(`${address}/api/v1${route}`, { method, body: body && JSON.stringify(body), headers: cookie ? { cookie } : {} });
+    const text = await answer.text();
+    return { status: answer.status, cookie: answer.headers.get('set-cookie')?.split(';')[0], answer: text === '' ? undefined : JSON.parse(text) };
+}
+
+test('with accounts: a log-in in place, an end of the session in the middle that loses and doubles nothing, and what each role may do', { timeout: 120_000 }, async (t) => {
+    const { folder, remove } = await temporaryFolder();
+    t.after(remove);
+    const server = await serve(t, 'access', ['--scenario', 'nominal', '--accounts', path.join(folder, 'accounts.json')]);
+    await waitFor(async () => server.said(), /Aeolis is at/);
+    const first = /administrator with (\S+)/.exec(server.said())[1];
+    const { cookie } = await ask(server.address, 'POST', '/session', { user: 'administrator', password: first });
+    const administer = (method, route, body) => ask(server.address, method, route, body, cookie);
+    assert.equal((await administer('GET', '/users')).status, 403, 'the first password opens nothing');
+    assert.equal((await administer('PATCH', '/users/administrator', { current_password: first, password: 'an own long password' })).status, 200);
+    for (const [user, role] of [['ann', 'controller'], ['eve', 'observer']])
+        assert.equal((await administer('POST', '/users', { user, role, password: 'given by another' })).status, 201);
+
+    const { page, problems, text, shows } = await open(server.address);
     const logIn = async (name, password) => {
         await page.getByTestId('log-in-user').fill(name);
         await page.getByTestId('log-in-password').fill(password);
+        await page.keyboard.press('Enter');
+    };
+    const choose = async (given, chosen) => {
+        await page.getByTestId('password-given').fill(given);
+        await page.getByTestId('password-chosen').fill(chosen);
+        await page.getByTestId('password-again').fill(chosen);
         await page.keyboard.press('Enter');
     };
 
@@ -37,8 +45,13 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     assert.deepEqual(await findings(page, 'dark'), []);
     assert.equal(await page.getByTestId('panel-timeline').count(), 0, 'nothing of a run is shown');
     await logIn('ann', 'guess');
-    await shows('log-in-problem', /wrong user or password/);
-    await logIn('ann', 'ann-secret');
+    await shows('log-in-problem', /user or password is wrong/);
+    await logIn('ann', 'given by another');
+    await shows('choose-password', /Choose one of your own/);
+    assert.deepEqual(await findings(page, 'dark'), []);
+    await choose('given by another', 'short');
+    await shows('choose-problem', /12 to 128/);
+    await choose('given by another', 'a password of ann');
     await shows('badge', /REHEARSAL/);
     await shows('who', /ann[^]*controller/);
     await shows('waiting', /set edl parameters/);
@@ -52,44 +65,52 @@ test('with accounts: a log-in in place, an end of the session in the middle that
 
     // The session ends while a second note is being written.
     await page.keyboard.type('second');
-    user = undefined;
-    way.drop();
+    assert.equal((await administer('PATCH', '/users/ann', { password: 'given once more' })).status, 200);
+    await waitFor(() => text('stream-state'), /NO CONNECTION|connecting/);
+    await page.getByTestId('note-text').focus();
     await page.keyboard.press('Enter');
     await shows('note-problem', /was not written down: log in first/);
     await shows('expired-bar', /Your session has ended/);
     assert.equal(await page.getByTestId('note-text').inputValue(), 'second', 'what was typed is still there');
-    assert.match(await text('stream-state'), /NO CONNECTION|connecting/);
-    await logIn('ann', 'ann-secret');
+    await logIn('ann', 'given once more');
+    await choose('given once more', 'a password of ann');
     await waitFor(() => page.getByTestId('expired-bar').count(), (bars) => bars === 0);
     await shows('stream-state', /connected/);
-    assert.equal(notes.length, 1, 'nothing was sent again by itself');
+    const notes = async () => (await administer('GET', '/runs/latest/notes')).answer.notes.length;
+    assert.equal(await notes(), 1, 'nothing was sent again by itself');
     await page.getByTestId('note-text').focus();
     await page.keyboard.press('Enter');
     await shows('note-list', /second/);
-    assert.equal(notes.length, 2);
+    assert.equal(await notes(), 2);
     await page.keyboard.press('Escape');
 
     await page.getByTestId('log-out').click();
     await waitFor(() => page.getByTestId('log-in').count(), (forms) => forms === 1);
     assert.equal(await page.getByTestId('panel-timeline').count(), 0, 'nothing stays after log-out');
-    await logIn('eve', 'eve-secret');
+    await logIn('eve', 'given by another');
+    await choose('given by another', 'a password of eve');
     await shows('who', /eve[^]*observer, only looks/);
     await waitFor(() => page.getByTestId('command-line').isDisabled(), (disabled) => disabled);
+    await page.getByTestId('log-out').click();
 
-    user = 'root';
-    await page.reload();
-    await shows('who', /root[^]*administrator/);
+    await logIn('administrator', 'an own long password');
+    await shows('who', /administrator/);
     await page.keyboard.press('u');
     await page.getByLabel('name of the new user').fill('<i>new</i>');
-    await page.getByLabel('password of the new user').fill('long enough');
+    await page.getByLabel('password of the new user').fill('long enough for it');
     await page.keyboard.press('Enter');
-    await waitFor(() => page.locator('[data-user="<i>new</i>"]').count(), (rows) => rows === 1);
+    await shows('users-message', /a name has 1 to 32/);
+    await page.getByLabel('name of the new user').fill('dina');
+    await page.getByLabel('password of the new user').fill('long enough for it');
+    await page.keyboard.press('Enter');
+    await waitFor(() => page.locator('[data-user="dina"]').count(), (rows) => rows === 1);
     await page.getByLabel('name of the new token').fill('plotter');
     await page.keyboard.press('Enter');
-    await shows('new-token', /shown-once-4711/);
+    await shows('new-token', /plotter[^]*[A-Za-z0-9_-]{43}/);
     assert.deepEqual(await findings(page, 'dark'), []);
-    assert.match(await text('audit'), /ann[^]*log_in/);
-    assert.deepEqual(problems.filter((problem) => !/status of 401/.test(problem)), [], 'the policy forbids nothing that the page does');
+    assert.match(await text('audit'), /ann[^]*note[^]*dina/);
+    assert.doesNotMatch(await text('audit'), /given|password of|long enough/);
+    assert.deepEqual(problems.filter((problem) => !/status of (401|403|409)/.test(problem)), [], 'the policy forbids nothing that the page does');
     await page.close();
 });
 

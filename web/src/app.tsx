@@ -79,7 +79,7 @@ export function App({ panel }: { panel?: string | undefined }) {
       <Tape />
       <Header />
       <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>
-      <ExpiredBar />
+      {run && <ExpiredBar />}
       <PastBar />
       <ReplayBar />
       <Notices />

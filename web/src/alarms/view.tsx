@@ -49,7 +49,7 @@ export function Alarms() {
         <span role="status" data-testid="alarm-sentence">{listed.value.length === 0 ? '● no alarm' : toAcknowledge.value.length === 0 ? '✓ all acknowledged' : `▲ ${toAcknowledge.value.length} to acknowledge`}</span>
       </div>
       {problem.value && <p role="alert" class="status-alarm" data-testid="alarm-problem">✖ {problem.value}</p>}
-      <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms">
+      <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms, those that no one has looked at first">
         {listed.value.length > 0 && (
           <table>
             <thead><tr><th>severity</th><th>alarm</th><th>do</th><th>state</th><th class="number">value</th><th>limit</th><th class="number">since</th></tr></thead>

@@ -7,7 +7,7 @@ import { splitBySource } from '../stream/columns';
 import { ask, pastRange, plottedChannels, replay, store } from './session';
 import { choice, spanNow } from './window';
 
-const POINTS = 2400; // ours: of a channel, two a pixel of the widest plot
+const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more takes longer to come than a step of zoom may
 const CHANNELS_A_QUESTION = 8; // several small questions are answered side by side
 
 let wanted = '';
