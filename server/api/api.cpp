@@ -127,8 +127,8 @@ std::span<const Api::Route> Api::routes() {
         {"DELETE", "/api/v1/tokens/{name}", Right::administer, &Api::remove_token, "token"},
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, ""},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, ""},
-        {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command"},
-        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, "command"},
+        {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command", true},
+        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, "command", true},
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, ""},
@@ -178,18 +178,19 @@ void Api::answer(const Route& route, Asked asked) {
         if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
         refused = error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault());
-    if (!route.audit.empty()) {
-        // Of a command, a rehearsal and the like the body says what was asked; who may not even ask is noted as well.
-        asked.respond = [this, who = asked.who, action = route.audit,
-                         detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, asked.request.body),
-                         respond = std::move(asked.respond)](HttpResponse response) {
-            const bool known = who.role || !who.accounts;
-            if (known) note(who, action, detail, response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body));
-            respond(std::move(response));
-        };
-    }
-    if (refused.status != 200) return asked.respond(std::move(refused));
+    const bool refuses = refused.status != 200;
+    if (!route.audit.empty() && (refuses || !route.only_refusals)) asked.respond = noted(asked, route.audit);
+    if (refuses) return asked.respond(std::move(refused));
     (this->*route.answer)(asked);
+}
+
+Respond Api::noted(const Asked& asked, std::string_view action) {
+    if (!asked.who.role) return asked.respond; // nobody: else anyone could fill the audit
+    return [this, who = asked.who, action, detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, asked.request.body),
+            respond = asked.respond](HttpResponse response) {
+        note(who, action, detail, response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body));
+        respond(std::move(response));
+    };
 }
 
 void Api::note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
@@ -343,11 +344,11 @@ HttpResponse no_such_run(const std::string& run) {
 } // namespace
 
 void Api::post_command(const Asked& asked) {
-    const auto& respond = asked.respond;
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return asked.respond(no_such_run(asked.parts[0]));
     v1::CommandRequest command;
     if (const auto parsed = from_json(asked.request.body, command); !parsed)
-        return respond(error_response(400, parsed.error().message));
+        return asked.respond(error_response(400, parsed.error().message));
+    const auto respond = command.dry_run() ? asked.respond : noted(asked, "command");
     if (const auto right = complete(asked, command); !right) return respond(error_response(400, right.error().message));
     if (const auto allowed = may_send(asked.who, parts_.dictionary, command); !allowed)
         return respond(error_response(403, allowed.error().message));
@@ -358,11 +359,11 @@ void Api::post_command(const Asked& asked) {
 }
 
 void Api::post_sequence(const Asked& asked) {
-    const auto& respond = asked.respond;
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
+    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return asked.respond(no_such_run(asked.parts[0]));
     v1::CommandSequence sequence;
     if (const auto parsed = from_json(asked.request.body, sequence); !parsed)
-        return respond(error_response(400, parsed.error().message));
+        return asked.respond(error_response(400, parsed.error().message));
+    const auto respond = sequence.dry_run() ? asked.respond : noted(asked, "command");
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
         return respond(error_response(400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
     for (int i = 0; i < sequence.commands_size(); ++i) {

@@ -58,7 +58,8 @@ class Api {
         std::string_view path;   ///< "{…}" takes one part
         Right right;
         void (Api::*answer)(const Asked&);
-        std::string_view audit; ///< the action's word; empty: it changes nothing, or its answer writes it
+        std::string_view audit;     ///< the action's word; empty: it changes nothing, or its answer writes it
+        bool only_refusals = false; ///< the rest its answer notes: a dry run is no action
     };
     static std::span<const Route> routes();
 
@@ -94,6 +95,8 @@ class Api {
     void audit(const Asked& asked);
 
     void answer(const Route& route, Asked asked);
+    /// Answers, and notes what became of it.
+    Respond noted(const Asked& asked, std::string_view action);
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answered on a query thread; 503 when too much waits.
     void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer);

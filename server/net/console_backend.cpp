@@ -116,8 +116,9 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         if (who.accounts) request.set_controller(who.user);
         auto right = allowed(who, Right::command);
         if (right) right = may_send(who, dictionary_, request);
-        const auto noted = [this, who, detail = to_json(request), reply](const v1::CommandReply& answer) {
-            pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
+        const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), reply](const v1::CommandReply& answer) {
+            // A dry run is no action: a console asks each second while it shows what would be sent.
+            if (!dry_run) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
             reply(answer);
         };
         if (right) return desk_->command(std::move(request), noted);

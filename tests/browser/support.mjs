@@ -95,9 +95,7 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (message) => {
         // A connection that is refused while the server is down is what one of the tests is about.
-        // A server that knows of no sessions or alarms' states is asked for them once, and answers 404.
-        const optional = /404/.test(message.text()) && /\/(session|alarms\?state=current|notes)$/.test(message.location().url);
-        if (message.type() === 'error' && !optional && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(message.text());
+        if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(message.text());
     });
     page.setDefaultTimeout(20_000);
     await page.goto(address);

@@ -186,6 +186,8 @@ TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
 
 TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {
     Guarded guarded;
+    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4711","dry_run":true})");
+    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4712"})");
     guarded.ask("controller", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     web_request(guarded.server.port(), "POST", "/api/v1/session", R"({"user":"director","password":"a wrong guess"})");
@@ -198,5 +200,6 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     CHECK_THAT(audit, Catch::Contains(R"("who":"director","from":"127.0.0.1","action":"rehearsal")"));
     CHECK_THAT(audit, Catch::Contains("add 'observer' as observer"));
     CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
+    CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711")); // a dry run is no action
     CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) && !Catch::Contains("a wrong guess"));
 }

@@ -91,6 +91,7 @@ function Told({ reply }: { reply: CommandReply }) {
               : 'nothing that is planned by the clock comes after it'}
             {arrival.tooLateFor.length > 0 && <b class="caution"> ▲ Too late for {arrival.tooLateFor.slice(0, 3).map(inWords).join(', ')}{arrival.tooLateFor.length > 3 && ` and ${arrival.tooLateFor.length - 3} more`}.</b>}
           </dd>
+          {reply.timeline && <><dt>timeline</dt><dd data-testid="analysed">✓ {reply.timeline}</dd></>}
           {reply.arguments && <><dt>as encoded</dt><dd class="encoded" tabIndex={0} aria-label="arguments as encoded">{reply.arguments}</dd></>}
           <dt>{octets} octets</dt><dd class="encoded" tabIndex={0} aria-label="octets">{reply.octets.replace(/../g, '$& ')}</dd>
         </dl>
