@@ -66,7 +66,13 @@ export function linksOf(store: RunStore, cutoff: number): LinkLine[] {
 const FEW = 3;
 
 /** For the header, where there is room for few: beyond that, the orbiters' links are one entry that says how many are up. */
+/** What does not arrive, or does not stay. */
 export function headerLinks(store: RunStore, cutoff: number): LinkLine[] {
+  const fault = store.run.archiveFault;
+  return [...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []), ...radioLinks(store, cutoff)];
+}
+
+function radioLinks(store: RunStore, cutoff: number): LinkLine[] {
   const all = linksOf(store, cutoff);
   if (all.length <= FEW) return all;
   const names = [...store.links.keys()];

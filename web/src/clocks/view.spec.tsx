@@ -35,6 +35,9 @@ describe('the header', () => {
       ['UHF live', 'up', 'receiving'], ['X-band', 'up', 'receiving'], ['3 relay links', 'up', 'up: UHF MRO'],
     ]);
   });
+  it('says first that nothing is stored, in the words of the disk', () => {
+    expect(headerLinks(aStore([], aRun({ archiveFault: 'a.db: the disk is full' })), Infinity)).toEqual([{ name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full' }]);
+  });
   it('of a run of the day before, which has no clocks any more, go by what it holds', () => {
     const run = aRun({ state: 'finished', lightTimeS: 100 });
     delete (run as { clocks?: unknown }).clocks;
