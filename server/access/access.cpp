@@ -163,42 +163,49 @@ void Access::count_failure(const std::string& key, unsigned allowed) {
     if (failures_.size() >= failures_max && !failures_.contains(key))
         failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& each) { return each.second.last; }));
     auto& failures = failures_[key];
+    if (now - failures.last > longest_lock_out) failures.count = 0; // long ago
     failures.last = now;
     if (++failures.count < allowed) return;
     const auto doublings = std::min(failures.count - allowed, 5U);
     failures.locked_until = now + std::min<std::chrono::seconds>(first_lock_out * (1U << doublings), longest_lock_out);
 }
 
-Result<void> Access::check_log_in(const std::string& user, const std::string& password, const std::string& from) {
+Result<std::string> Access::check_log_in(const std::string& user, const std::string& password, const std::string& from) {
     std::string hash;
     {
         const std::scoped_lock lock{mutex_};
         refresh();
-        if (auto free = refuse_locked_out(user, from); !free) return free;
+        if (auto free = refuse_locked_out(user, from); !free) return free.error();
         if (const auto* account = find_account(file_, user)) hash = account->password_hash();
     }
     const bool matches = password.size() <= password_octets_max && password_matches(hash, password);
     const std::scoped_lock lock{mutex_};
     if (matches) {
         failures_.erase(from + ' ' + user);
-        return {};
+        return hash;
     }
     count_failure(from, tries_of_address);
     count_failure(from + ' ' + user, tries_of_user);
-    return Error{"user or password is wrong"};
+    return Error{wrong_log_in};
 }
 
 Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::string& from) {
     if (!accounts()) return no_accounts();
-    if (!check_name(asked.user())) return Error{"user or password is wrong"};
-    if (auto right = check_log_in(asked.user(), asked.password(), from); !right) return right.error();
+    if (!check_name(asked.user())) return Error{wrong_log_in};
+    const auto matched = check_log_in(asked.user(), asked.password(), from);
+    if (!matched) return matched.error();
     const auto now = settings_.now();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
-    if (account == nullptr) return Error{"user or password is wrong"};
+    if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in}; // changed meanwhile
     std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
-    if (sessions_.size() >= sessions_max)
-        sessions_.erase(std::ranges::min_element(sessions_, {}, [](const auto& each) { return each.second.expires; }));
+    const auto own = [&](const auto& each) { return each.second.user == asked.user(); };
+    const auto older = [](const auto& one, const auto& other) { return one.second.expires < other.second.expires; };
+    if (static_cast<std::size_t>(std::ranges::count_if(sessions_, own)) >= sessions_of_user_max)
+        sessions_.erase(std::ranges::min_element(sessions_, [&](const auto& one, const auto& other) {
+            return own(one) != own(other) ? own(one) : older(one, other);
+        }));
+    if (sessions_.size() >= sessions_max) sessions_.erase(std::ranges::min_element(sessions_, older));
     LoggedIn done;
     done.secret = new_secret();
     const auto hash = secret_hash(done.secret);

@@ -30,6 +30,8 @@ class Access {
     using Clock = std::chrono::system_clock;
     static constexpr std::chrono::hours session_length{12};  ///< ours: a shift, with its hand-overs
     static constexpr std::size_t sessions_max = 1'000;       ///< ours: the oldest ends
+    static constexpr std::size_t sessions_of_user_max = 16;  ///< ours: the oldest of that user ends
+    static constexpr const char* wrong_log_in = "user or password is wrong";
     static constexpr std::size_t failures_max = 4'096;       ///< ours: the oldest is forgotten
     static constexpr unsigned tries_of_user = 5;             ///< ours: then this user waits, from this address
     static constexpr unsigned tries_of_address = 20;         ///< ours: then this address waits, whatever the user
@@ -86,7 +88,8 @@ class Access {
     void count_failure(const std::string& key, unsigned allowed);
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;
     /// Without it: takes the mutex, and compares while it is free.
-    Result<void> check_log_in(const std::string& user, const std::string& password, const std::string& from);
+    /// @return the hash that it matched
+    Result<std::string> check_log_in(const std::string& user, const std::string& password, const std::string& from);
 
     Settings settings_;
     std::string first_password_;

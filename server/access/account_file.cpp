@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace aeolis::server {
@@ -83,12 +84,16 @@ Result<void> write_accounts(const std::filesystem::path& file, const v1::Account
     ::unlink(partial.c_str());
     const int out = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (out < 0) return failed();
-    const bool written = ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;
+    // Whose it was it remains: a server under a user of its own must be able to read what root has changed.
+    struct stat owner {};
+    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const bool owned = (::stat(file.c_str(), &owner) == 0 || ::stat(folder.c_str(), &owner) == 0) &&
+                       ((owner.st_uid == ::geteuid() && owner.st_gid == ::getegid()) || ::fchown(out, owner.st_uid, owner.st_gid) == 0);
+    const bool written = owned && ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;
     const auto why = failed();
     ::close(out);
     if (!written) return why;
     if (::rename(partial.c_str(), file.c_str()) != 0) return failed();
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     const int directory = ::open(folder.c_str(), O_RDONLY | O_CLOEXEC);
     const bool durable = directory >= 0 && ::fsync(directory) == 0;
     const auto not_durable = failed();

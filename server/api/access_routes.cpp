@@ -1,3 +1,4 @@
+#include "server/access/account_file.hpp"
 #include "server/api/api.hpp"
 #include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
@@ -50,8 +51,9 @@ void Api::log_in(const Asked& asked) {
         return asked.respond(error_response(400, parsed.error().message));
     aside(asked.respond, [this, wanted, who = asked.who](archive::Reader&) {
         const auto done = parts_.access.log_in(wanted, who.from);
-        const std::string asked_by = wanted.user().substr(0, 64);
-        if (done || who.accounts) note(done ? done->who : who, "log-in", asked_by, outcome_of(done.ok(), done ? "" : done.error().message));
+        // Who waits, or asks for what can be no name, is not noted: nobody else may fill the audit.
+        if (done || (who.accounts && done.error().message == Access::wrong_log_in && check_name(wanted.user())))
+            note(done ? done->who : who, "log-in", wanted.user(), outcome_of(done.ok(), done ? "" : done.error().message));
         if (!done) return error_response(who.accounts ? 401 : 409, done.error().message);
         auto response = json_response(session_of(done->who), 201);
         response.set_cookie = cookie(done->secret, Access::session_length, parts_.secure);
@@ -106,7 +108,7 @@ void Api::change_user(const Asked& asked) {
 }
 
 void Api::remove_user(const Asked& asked) {
-    asked.respond(response_of(parts_.access.remove_user(asked.parts[0])));
+    aside(asked.respond, [this, user = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); });
 }
 
 void Api::list_tokens(const Asked& asked) {
@@ -117,11 +119,11 @@ void Api::add_token(const Asked& asked) {
     v1::NewToken wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error().message));
-    asked.respond(response_of(parts_.access.add_token(wanted), 201));
+    aside(asked.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); });
 }
 
 void Api::remove_token(const Asked& asked) {
-    asked.respond(response_of(parts_.access.remove_token(asked.parts[0])));
+    aside(asked.respond, [this, name = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); });
 }
 
 void Api::audit(const Asked& asked) {

@@ -15,6 +15,7 @@
 #include <charconv>
 #include <fmt/format.h>
 #include <fstream>
+#include <spdlog/spdlog.h>
 #include <sstream>
 #include <unistd.h>
 
@@ -90,9 +91,36 @@ HttpResponse refusal_of(const Operator& who, Right right) {
                                            name_of(right), name_of(*least_role(right))));
 }
 
+namespace {
+
+/// A bug in one answer costs that answer only.
+template <typename Answer>
+HttpResponse answered(Answer answer) {
+    try {
+        return answer();
+    } catch (const std::exception& bug) {
+        spdlog::error("a question could not be answered: {}", bug.what());
+        return error_response(500, fmt::format("this is a fault of the server: {}", bug.what()));
+    }
+}
+
+/// What waits may be any command, a hazardous one too: only who may send that lets it go.
+Result<void> may_act(const Operator& who, const std::string& action) {
+    if (!who.accounts) return {};
+    if (!who.commands.empty()) return Error{fmt::format("{} may not {}: this account has a list of commands, and acts on no others", who.user, action)};
+    if ((action == "release" || action == "approve") && !may(who, Right::hazardous))
+        return Error{fmt::format("{} may not {}: it needs a {}, and {} is {}", who.user, action, name_of(*least_role(Right::hazardous)), who.user,
+                                 name_of(*who.role))};
+    if (action == "approve" && who.session.empty()) return Error{"approve: a second person does it, and " + who.user + " is none"};
+    return {};
+}
+
+} // namespace
+
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const v1::CommandRequest& request) {
+    if (!request.action().empty()) return may_act(who, request.action());
     const auto* command = dictionary.command(request.command());
-    if (command == nullptr || !request.action().empty()) return {};
+    if (command == nullptr) return {};
     if (!who.commands.empty() && std::ranges::find(who.commands, command->name) == who.commands.end())
         return Error{fmt::format("{} may not send {}: it is not among the commands of this account", who.user, command->name)};
     if (!commands::is_hazardous(*command) || request.dry_run() || may(who, Right::hazardous)) return {};
@@ -119,7 +147,7 @@ std::span<const Api::Route> Api::routes() {
         {"POST", "/api/v1/session", Right::open, &Api::log_in, ""},
         {"DELETE", "/api/v1/session", Right::open, &Api::log_out, ""},
         {"GET", "/api/v1/users", Right::administer, &Api::list_users, ""},
-        {"POST", "/api/v1/users", Right::administer, &Api::add_user, ""},
+        {"POST", "/api/v1/users", Right::administer, &Api::add_user, "user", true},
         {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user, ""}, // one's own needs no right
         {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, "user"},
         {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens, ""},
@@ -177,7 +205,7 @@ void Api::answer(const Route& route, Asked asked) {
     if (refused.status == 200 && !changes && !has_parameters && route.path.starts_with(api_prefix))
         if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
-        refused = error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault());
+        return asked.respond(error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool refuses = refused.status != 200;
     if (!route.audit.empty() && (refuses || !route.only_refusals)) asked.respond = noted(asked, route.audit);
     if (refuses) return asked.respond(std::move(refused));
@@ -186,8 +214,9 @@ void Api::answer(const Route& route, Asked asked) {
 
 Respond Api::noted(const Asked& asked, std::string_view action) {
     if (!asked.who.role) return asked.respond; // nobody: else anyone could fill the audit
-    return [this, who = asked.who, action, detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, asked.request.body),
-            respond = asked.respond](HttpResponse response) {
+    const bool has_password = asked.request.path.starts_with("/api/v1/users");
+    return [this, who = asked.who, action,
+            detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, has_password ? "" : asked.request.body), respond = asked.respond](HttpResponse response) {
         note(who, action, detail, response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body));
         respond(std::move(response));
     };
@@ -198,7 +227,9 @@ void Api::note(const Operator& who, std::string_view action, std::string detail,
 }
 
 void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer) {
-    const bool taken = parts_.queries.ask([answer = std::move(answer), respond](archive::Reader& reader) { respond(answer(reader)); });
+    const bool taken = parts_.queries.ask([answer = std::move(answer), respond](archive::Reader& reader) {
+        respond(answered([&] { return answer(reader); }));
+    });
     if (!taken) respond(error_response(503, "too many questions wait: try again"));
 }
 
@@ -241,8 +272,13 @@ void Api::ask(const Asked& asked, QueryText query, RunQuestion question) {
         } else if (const auto known = reader.run(*id); !known) {
             return respond(error_response(404, known.error().message));
         }
-        auto response = question(reader, *id, query);
-        if (!response) return;
+        bool later = false;
+        auto response = std::optional{answered([&] {
+            auto given = question(reader, *id, query);
+            later = !given;
+            return given.value_or(HttpResponse{});
+        })};
+        if (later) return;
         if (reader.stopped())
             response = error_response(503, fmt::format("the question was stopped after {} s: ask for less, by from and to, points or limit",
                                                        QueryThreads::question_seconds_max.count()));

@@ -268,6 +268,7 @@ Result<void> Archive::append(RunId run, const Batch& batch) {
 }
 
 Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
+    if (auto done = state_->in_place(); !done) return done;
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     if (auto done = archive::append_audit(state_->database, records); !done) return done;
@@ -275,6 +276,7 @@ Result<void> Archive::append_audit(std::span<const AuditRecord> records) {
 }
 
 Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
+    if (auto done = state_->in_place(); !done) return done.error();
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
     auto& last_key = state_->last_key;

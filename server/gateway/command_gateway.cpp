@@ -227,9 +227,11 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
                                      std::vector<archive::StageRecord>& stages) {
     v1::CommandReply reply;
     reply.set_request(request.request());
+    reply.set_dry_run(request.dry_run());
     const std::string& action = request.action();
     auto* command = underway(request.number());
-    const std::string refusal = perform(request, command);
+    const std::string refusal = request.dry_run() ? "dry_run: what is done about a waiting command cannot be tried out" : perform(request, command);
+    const std::string by = request.controller().empty() ? "a controller" : request.controller();
     if (!refusal.empty()) {
         reply.set_reason(refusal);
     } else {
@@ -238,7 +240,7 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
         reply.set_command(command->number);
         if (action == "cancel") {
             changes_.clear();
-            command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by a controller", now,
+            command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by " + by, now,
                                             changes_);
             append(*command, changes_, stages);
         } else if (action == "approve") {

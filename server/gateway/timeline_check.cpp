@@ -34,7 +34,10 @@ void apply(dictionary::Dictionary& changed, std::string_view command, const std:
 }
 
 bool failed(const v1::CommandHistory& command) {
-    return std::ranges::any_of(command.stages(), [](const v1::Item& item) { return item.command_stage().status() == "failed"; });
+    // That it could not be verified does not undo it.
+    return std::ranges::any_of(command.stages(), [](const v1::Item& item) {
+        return item.command_stage().status() == "failed" && item.command_stage().stage() != "verified";
+    });
 }
 
 std::vector<std::uint8_t> octets_of(std::string_view hex) {

@@ -10,6 +10,7 @@
 namespace aeolis::server {
 namespace {
 
+constexpr std::size_t body_of_nobody_octets_max = 4'096; // ours: a log-in is shorter
 constexpr unsigned stream_check_ms = 1'000; // ours: so long a client may follow after its log-in has ended
 
 /// What other machines can reach must know who asks, and must not be listened to.
@@ -94,6 +95,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
 WebServer::Handlers ConsoleBackend::web_handlers() {
     WebServer::Handlers handlers;
     handlers.request = [this](HttpRequest request, const Respond& respond) { api_->handle(std::move(request), respond); };
+    handlers.body_octets = [this](const Credentials& credentials) {
+        return access_->identify(credentials).role ? WebServer::body_octets_max : body_of_nobody_octets_max;
+    };
     handlers.admit_stream = [this](const Credentials& credentials) { return refusal_of(access_->identify(credentials), Right::watch); };
     handlers.open_stream = [this](const Credentials& credentials, StreamFormat format, std::function<void()> wake) {
         return std::make_shared<StreamSession>(*hub_, format, std::move(wake), stream_client(credentials));
@@ -105,20 +109,22 @@ WebServer::Handlers ConsoleBackend::web_handlers() {
 StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentials) {
     StreamSession::Client client;
     client.refusal = [this, credentials] { return may(access_->identify(credentials), Right::watch) ? "" : "the log-in has ended: log in again"; };
-    const auto allowed = [this](const Operator& who, Right right) -> Result<void> {
+    const auto full = [this] { return !pipeline_->audit_has_room(); };
+    const auto allowed = [this, full](const Operator& who, Right right) -> Result<void> {
+        if (!who.role) return Error{"the log-in has ended: log in again"};
         if (!may(who, right))
             return Error{fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
-        if (!pipeline_->audit_has_room()) return Error{"nothing is done that the audit cannot take: " + pipeline_->fault()};
+        if (full()) return Error{"nothing is done that the audit cannot take: " + pipeline_->fault()};
         return {};
     };
-    client.command = [this, credentials, allowed](v1::CommandRequest request, const std::function<void(v1::CommandReply)>& reply) {
+    client.command = [this, credentials, allowed, full](v1::CommandRequest request, const std::function<void(v1::CommandReply)>& reply) {
         const auto who = access_->identify(credentials);
         if (who.accounts) request.set_controller(who.user);
         auto right = allowed(who, Right::command);
         if (right) right = may_send(who, dictionary_, request);
-        const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), reply](const v1::CommandReply& answer) {
+        const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full, reply](const v1::CommandReply& answer) {
             // A dry run is no action: a console asks each second while it shows what would be sent.
-            if (!dry_run) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
+            if (!dry_run && !full()) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
             reply(answer);
         };
         if (right) return desk_->command(std::move(request), noted);

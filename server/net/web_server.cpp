@@ -265,7 +265,16 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         parser.body_limit(body_octets_max);
         parser.header_limit(header_octets_max);
         lowest.expires_after(std::chrono::seconds{request_seconds_max});
-        co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
+        co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(awaiting, error));
+        // Before anything is read of who has not said who they are: a thousand such bodies are no burden.
+        const auto field = [&](http::field name) { return std::string{plain(parser.get()[name])}; };
+        Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
+        const std::size_t octets_max = error || !handlers.body_octets ? body_octets_max : handlers.body_octets(credentials);
+        if (!error && octets_max < body_octets_max) {
+            parser.body_limit(octets_max);
+            if (parser.content_length().value_or(0) > octets_max) error = http::make_error_code(http::error::body_limit);
+        }
+        if (!error && !parser.is_done()) co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
         if (error == http::error::end_of_stream || error == beast::error::timeout) co_return;
         if (error) {
             // Only what the peer could have meant gets an answer; a broken connection gets none.
@@ -273,7 +282,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
             const bool too_long = error == http::error::body_limit || error == http::error::header_limit;
             auto reply = error_reply(
                 parser.get(), too_long ? http::status::payload_too_large : http::status::bad_request,
-                error == http::error::body_limit ? fmt::format("the body is longer than {} octets", body_octets_max)
+                error == http::error::body_limit ? fmt::format("the body is longer than {} octets", octets_max)
                 : error == http::error::header_limit
                     ? fmt::format("the header is longer than {} octets", header_octets_max)
                     : "this is not HTTP: " + error.message());
@@ -283,8 +292,6 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         }
         auto request = parser.release();
         Response response;
-        const auto field = [&](http::field name) { return std::string{plain(request[name])}; };
-        Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
         const auto target =
             boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
         if (const auto refusal = refusal_of(request); !refusal.empty()) {

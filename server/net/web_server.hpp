@@ -34,6 +34,8 @@ class WebServer {
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
+        /// How long a request's body may be, by who asks; null: body_octets_max.
+        std::function<std::size_t(const Credentials&)> body_octets;
         /// A client asks for /api/v1/stream: 200 lets it in, anything else is the answer.
         std::function<HttpResponse(const Credentials&)> admit_stream;
         /// It was let in. `wake` tells the connection that next_message() has something.

@@ -106,6 +106,8 @@ void PipelineThread::abandon() {
 void PipelineThread::audit(archive::AuditRecord record) {
     {
         const std::scoped_lock lock{audit_mutex_};
+        // What was let in while there was room still has some.
+        if (audit_.size() >= 2 * audit_waiting_max) return spdlog::error("audit: too much waits for the disk, an entry is lost: {} {}", record.who, record.action);
         audit_.push_back(std::move(record));
     }
     jobs_.try_push(Action{[] {}}); // wakes it; a full queue keeps it awake

@@ -1,8 +1,10 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 
+#include "server/gateway/timeline_check.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
@@ -61,6 +63,7 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     runner_.reset();
+    begun_ = false;
     runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,
                                                 callbacks_for(std::move(began)));
 }
@@ -70,6 +73,7 @@ void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began bega
     auto scenario = scenario_from_text(cut.scenario_text, fmt::format("the scenario of run {}", cut.run.value));
     if (!scenario) return began(scenario.error());
     runner_.reset();
+    begun_ = false;
     runner_ = std::make_unique<RehearsalRunner>(std::move(*scenario), std::move(cut), pace, dictionary_, pipeline_,
                                                 callbacks_for(std::move(began)));
 }
@@ -79,6 +83,7 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
     callbacks.on_begun = [this, began = std::move(began)](Result<v1::RunState> state) {
         post_([this, began, state = std::move(state)] {
             if (state) {
+                begun_ = true;
                 state_ = *state;
                 callbacks_.on_state(state_);
             }
@@ -130,24 +135,39 @@ void RehearsalDesk::command(v1::CommandRequest request, RehearsalRunner::Reply r
 }
 
 void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies) {
-    const auto refuse = [requests, replies](const std::string& reason) {
+    const auto refuse_by = [](const std::vector<v1::CommandRequest>& all, const Replies& give, const std::string& reason) {
         std::vector<v1::CommandReply> refusals;
-        for (const auto& request : requests) {
+        for (const auto& request : all) {
             auto& refusal = refusals.emplace_back();
             refusal.set_request(request.request());
             refusal.set_reason(reason);
         }
-        replies(std::move(refusals));
+        give(std::move(refusals));
     };
-    if (!going_on()) return refuse("no run goes on: nothing listens");
+    const auto refuse = [&](const std::string& reason) { refuse_by(requests, replies, reason); };
+    if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
     for (const auto& request : requests)
         if (request.run() != 0 && request.run() != state_.run())
             return refuse(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
+    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused.
+    if (changing_ && !only_check)
+        return later_.push_back([this, requests = std::move(requests), replies = std::move(replies)]() mutable {
+            sequence(std::move(requests), false, std::move(replies));
+        });
     const auto run = state_.run();
-    check_timeline_(archive::RunId{static_cast<std::uint32_t>(run)}, requests, [this, run, requests, only_check, replies, refuse](Result<std::string> timeline) {
-        post_([this, run, requests, only_check, replies, refuse, timeline = std::move(timeline)] {
-            if (!timeline) return refuse(timeline.error().message);
-            if (!going_on() || state_.run() != run) return refuse("no run goes on: nothing listens");
+    if (!only_check && std::ranges::any_of(requests, changes_timeline)) {
+        changing_ = true;
+        replies = [this, replies = std::move(replies)](std::vector<v1::CommandReply> answers) {
+            changing_ = false;
+            replies(std::move(answers));
+            for (auto& order : std::exchange(later_, {}))
+                order();
+        };
+    }
+    check_timeline_(archive::RunId{static_cast<std::uint32_t>(run)}, requests, [this, run, requests, only_check, replies, refuse_by](Result<std::string> timeline) {
+        post_([this, run, requests, only_check, replies, refuse_by, timeline = std::move(timeline)] {
+            if (!timeline) return refuse_by(requests, replies, timeline.error().message);
+            if (!going_on() || !begun_ || state_.run() != run) return refuse_by(requests, replies, "no run goes on: nothing listens");
             runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
                 for (auto& answer : answers)
                     answer.set_timeline(says);

@@ -7,6 +7,7 @@
 #include "server/rehearsal/rehearsal_runner.hpp"
 #include "server/scenario/scenario_library.hpp"
 
+#include <deque>
 #include <functional>
 #include <memory>
 
@@ -61,6 +62,9 @@ class RehearsalDesk {
     Callbacks callbacks_;
     v1::RunState state_;
     std::string closed_;
+    bool begun_ = false;   ///< the run that goes on is in the archive, and state_ is its own
+    bool changing_ = false; ///< a change of the timeline is looked at or under way: later orders wait for its reply
+    std::deque<std::function<void()>> later_;
     std::unique_ptr<RehearsalRunner> runner_;
 };
 

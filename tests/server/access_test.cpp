@@ -94,6 +94,26 @@ TEST_CASE("who guesses waits, longer each time, and the right password does not 
     CHECK(accounts.log_in("administrator", Accounts::password));
 }
 
+TEST_CASE("wrong passwords of long ago are forgotten, and one user's many log-ins end no other's", "[access]") {
+    Accounts accounts;
+    for (unsigned round = 0; round < 3; ++round) {
+        for (unsigned i = 0; i + 1 < Access::tries_of_user; ++i)
+            CHECK_FALSE(accounts.log_in("administrator", "a wrong password"));
+        accounts.now += Access::longest_lock_out + std::chrono::seconds{1};
+    }
+    CHECK_FALSE(accounts.log_in("administrator", "a wrong password"));
+    const auto first = accounts.log_in("administrator", Accounts::password);
+    REQUIRE(first);
+    accounts.add("carl", "controller");
+    const auto carl = accounts.log_in("carl", "given by another");
+    for (std::size_t i = 0; i < Access::sessions_of_user_max; ++i) {
+        accounts.now += std::chrono::seconds{1};
+        REQUIRE(accounts.log_in("carl", "given by another"));
+    }
+    CHECK_FALSE(accounts.who(carl->secret).role); // their own oldest
+    CHECK(accounts.who(first->secret).role);
+}
+
 TEST_CASE("a log-in ends after a shift, by logging out, with its user, and when its password is changed elsewhere", "[access]") {
     Accounts accounts;
     accounts.add("dina", "director");

@@ -136,6 +136,10 @@ TEST_CASE("each role may send over the stream what it may send by HTTP", "[acces
         {R"({"command":{"command":"NO_OP","request":7}})", "controller", "no run goes on"},
         {R"({"command":{"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"}})", "director", "no run goes on"},
         {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
+        {R"({"command":{"action":"hold","number":1}})", "controller", "no run goes on"},
+        {R"({"command":{"action":"cancel","number":1}})", "controller", "no run goes on"},
+        {R"({"command":{"action":"release","number":1}})", "director", "no run goes on"},
+        {R"({"command":{"action":"approve","number":1}})", "director", "no run goes on"},
     };
     for (const auto& message : messages) {
         bool allowed = false;
@@ -166,9 +170,37 @@ TEST_CASE("a hazardous command by HTTP needs a director, and an account's own li
     const auto file = std::string{R"({"commands":[{"command":"NO_OP"},)"} + landing + "]}";
     CHECK_THAT(guarded.ask("controller", "POST", "/api/v1/runs/latest/sequences", file).body, Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
     CHECK_THAT(send("nina", landing).body, Catch::Contains("not among the commands"));
+    CHECK_THAT(send("nina", R"({"action":"release","number":1})").body, Catch::Contains("acts on no others"));
+    const auto token = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"director"})").body;
+    const auto at = token.find(R"("token":")") + 9;
+    guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(at, 43)}};
+    CHECK_THAT(send("robot", R"({"action":"approve","number":1})").body, Catch::Contains("token robot is none"));
     CHECK(send("nina", R"({"command":"NO_OP"})").status == 409);
     CHECK(guarded.ask("administrator", "POST", "/api/v1/users",
                       R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})").status == 422);
+}
+
+TEST_CASE("who has not logged in sends no long body, and fills no audit", "[access][audit][http]") {
+    Guarded guarded;
+    const std::string long_body(5'000, ' ');
+    CHECK(guarded.ask("nobody", "POST", "/api/v1/session", long_body).status == 413);
+    CHECK(guarded.ask("observer", "POST", "/api/v1/session", long_body).status == 400);
+    const auto count = [&] {
+        const auto audit = guarded.ask("administrator", "GET", "/api/v1/audit").body;
+        std::size_t entries = 0;
+        for (auto at = audit.find("\"entry\""); at != std::string::npos; at = audit.find("\"entry\"", at + 1))
+            ++entries;
+        return entries;
+    };
+    std::this_thread::sleep_for(std::chrono::milliseconds{100}); // what the set-up did is written
+    const auto before = count();
+    for (int i = 0; i < 20; ++i) {
+        guarded.ask("nobody", "POST", "/api/v1/session", R"({"user":"Not A Name","password":"x"})");
+        guarded.ask("nobody", "POST", "/api/v1/rehearsals", "{}");
+        guarded.ask("nobody", "GET", "/api/v1/audit");
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    CHECK(count() == before);
 }
 
 TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {

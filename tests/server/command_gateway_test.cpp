@@ -307,6 +307,14 @@ TEST_CASE("a command with a time leaves then, a held one when it is released, a 
     station.gateway.pass(later(60.5), station.stages);
     CHECK(station.gateway.take_uplinks().size() == 1);
 
+    for (const char* action : {"release", "approve", "hold", "cancel"}) {
+        v1::CommandRequest tried;
+        tried.set_action(action);
+        tried.set_number(2);
+        tried.set_dry_run(true);
+        CHECK_THAT(station.send(tried).reason(), Catch::Contains("cannot be tried out"));
+    }
+    CHECK(station.gateway.take_uplinks().empty());
     CHECK(act(2, "release").accepted());
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK(act(3, "cancel").accepted());
