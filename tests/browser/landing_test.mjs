@@ -77,7 +77,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     await waitFor(() => text('timepoints-fired'), (value) => value === seen.fired);
     await waitFor(() => text('complete-through'), (value) => value === seen.through);
     await waitFor(() => text('reading-altitude'), /\d/);
-    assert.equal(await text('tone-title'), seen.tone);
+    await waitFor(() => text('tone-title'), (value) => value === seen.tone, 3_000); // drawn with the next batch, not later
     assert.equal(await stage(page, 'EDL_DO_EDL', 'executed'), seen.stages);
     assert.equal(await page.locator('[data-event="TOUCHDOWN"]').count(), 1);
 
