@@ -204,6 +204,9 @@ void Api::answer(const Route& route, Asked asked) {
     const bool has_parameters = route.answer == &Api::run_question || route.answer == &Api::audit;
     if (refused.status == 200 && !changes && !has_parameters && route.path.starts_with(api_prefix))
         if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
+    const bool of_run = route.path.starts_with("/api/v1/runs/{run}");
+    if (refused.status == 200 && of_run && asked.parts[0] != "latest" && !run_id(asked.parts[0]))
+        refused = error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", asked.parts[0]));
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
         return asked.respond(error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool refuses = refused.status != 200;
@@ -237,8 +240,6 @@ void Api::run_question(const Asked& asked) {
     const auto& run = asked.parts[0];
     const std::string what = asked.parts.size() == 2 ? asked.parts[1] : "";
     const auto& respond = asked.respond;
-    if (run != "latest" && !run_id(run))
-        return respond(error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run)));
     const auto* question = server::run_question(what);
     if (question == nullptr)
         return respond(error_response(404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
@@ -373,14 +374,9 @@ Result<void> complete(const Asked& asked, v1::CommandRequest& command) {
     return {};
 }
 
-HttpResponse no_such_run(const std::string& run) {
-    return error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", run));
-}
-
 } // namespace
 
 void Api::post_command(const Asked& asked) {
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return asked.respond(no_such_run(asked.parts[0]));
     v1::CommandRequest command;
     if (const auto parsed = from_json(asked.request.body, command); !parsed)
         return asked.respond(error_response(400, parsed.error().message));
@@ -395,7 +391,6 @@ void Api::post_command(const Asked& asked) {
 }
 
 void Api::post_sequence(const Asked& asked) {
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return asked.respond(no_such_run(asked.parts[0]));
     v1::CommandSequence sequence;
     if (const auto parsed = from_json(asked.request.body, sequence); !parsed)
         return asked.respond(error_response(400, parsed.error().message));
@@ -438,7 +433,6 @@ std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
 
 void Api::post_note(const Asked& asked) {
     const auto& respond = asked.respond;
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
     v1::NoteRequest wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return respond(error_response(400, parsed.error().message));
     if (asked.who.accounts) wanted.set_by(asked.who.user);
@@ -456,7 +450,6 @@ void Api::post_note(const Asked& asked) {
 
 void Api::post_alarm(const Asked& asked) {
     const auto& respond = asked.respond;
-    if (asked.parts[0] != "latest" && !run_id(asked.parts[0])) return respond(no_such_run(asked.parts[0]));
     v1::AlarmRequest wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return respond(error_response(400, parsed.error().message));
     if (asked.who.accounts) wanted.set_by(asked.who.user);

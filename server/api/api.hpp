@@ -72,7 +72,6 @@ class Api {
     void stream(const Asked& asked);
     void health(const Asked& asked);
     void metrics(const Asked& asked);
-    void console_file(const Asked& asked);
     void list_rehearsals(const Asked& asked);
     void current_rehearsal(const Asked& asked);
     void start_rehearsal(const Asked& asked);

@@ -156,8 +156,9 @@ Result<void> PipelineThread::finish(const archive::RunEnd& end) {
 bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done) {
     return jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
-        if (added && !insist([this] { return pipeline_.commit(); })) added = Error{fault()};
-        done(std::move(added));
+        if (!added) return done(std::move(added));
+        // Told as a command is, after the commit: a disk that refuses must not hold up what arrives meanwhile.
+        when_durable_.push_back([done, added = std::move(added)] { done(added); });
     }});
 }
 
