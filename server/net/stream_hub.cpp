@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <utility>
 
 namespace aeolis::server {
@@ -151,7 +152,7 @@ bool StreamHub::holds(archive::Sequence after) const {
 }
 
 StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
-    for (const auto& cached : cache_) {
+    for (const auto& cached : cache_ | std::views::reverse) { // the newest is what most ask for
         if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
             cached.clocks_version == clocks_version_ && cached.shape == shape) {
             ++figures.shared;

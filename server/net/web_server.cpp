@@ -2,26 +2,19 @@
 
 #include "aeolis/v1/run.pb.h"
 #include "server/api/json.hpp"
+#include "server/net/sockets.hpp"
+#include "server/net/stream_connection.hpp"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ssl/stream.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <boost/beast/websocket/ssl.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <boost/url/parse.hpp>
 #include <deque>
 #include <fmt/format.h>
@@ -31,24 +24,9 @@
 namespace aeolis::server {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
+using namespace net;
 namespace http = beast::http;
 namespace websocket = beast::websocket;
-using tcp = asio::ip::tcp;
-using error_code = boost::system::error_code;
-
-// One kind of executor by type: the sources stay small and no call goes through a type-erased one.
-using Executor = asio::io_context::executor_type;
-using Socket = asio::basic_stream_socket<tcp, Executor>;
-using Stream = beast::basic_stream<tcp, Executor>;
-using TlsStream = asio::ssl::stream<Stream>;
-using Acceptor = asio::basic_socket_acceptor<tcp, Executor>;
-using Timer =
-    asio::basic_waitable_timer<std::chrono::steady_clock, asio::wait_traits<std::chrono::steady_clock>, Executor>;
-template <typename T = void>
-using Task = asio::awaitable<T, Executor>;
-constexpr asio::use_awaitable_t<Executor> awaiting{};
 
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
@@ -131,6 +109,7 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 
 struct WebServer::State {
     asio::io_context io{1};
+    WriteTurn turn{io.get_executor()};
     Acceptor acceptor{io.get_executor()};
     std::optional<asio::ssl::context> tls;
     std::vector<std::string> names;
@@ -143,8 +122,6 @@ struct WebServer::State {
     Task<> serve(Socket socket);
     template <typename AnyStream>
     Task<> serve_requests(AnyStream& stream, std::string from);
-    template <typename AnyStream>
-    Task<> serve_stream(AnyStream stream, Request request, Credentials credentials, StreamFormat format, std::string_view subprotocol);
     Task<HttpResponse> answer(HttpRequest request);
     std::string refusal_of(const Request& request) const;
 };
@@ -163,41 +140,6 @@ std::string WebServer::State::refusal_of(const Request& request) const {
     return {};
 }
 
-namespace {
-
-/// A WebSocket client's connection: one message is written at a time, whatever else is due waits in the session.
-template <typename AnyStream>
-struct StreamConnection {
-    StreamConnection(AnyStream stream) : socket(std::move(stream)), due(socket.get_executor()) {}
-    websocket::stream<AnyStream> socket;
-    Timer due; ///< cancelled when the session has something to write
-    bool open = true;
-};
-
-template <typename AnyStream>
-Task<> write_messages(std::shared_ptr<StreamConnection<AnyStream>> connection, std::shared_ptr<StreamSession> session) {
-    error_code error;
-    while (connection->open) {
-        const auto message = session->next_message();
-        if (const auto why = session->closing(); !why.empty()) {
-            const websocket::close_reason reason{websocket::close_code::policy_error, why};
-            co_await connection->socket.async_close(reason, asio::redirect_error(awaiting, error));
-            break;
-        }
-        if (!message) {
-            connection->due.expires_at(std::chrono::steady_clock::time_point::max());
-            co_await connection->due.async_wait(asio::redirect_error(awaiting, error));
-            continue;
-        }
-        connection->socket.binary(session->format() == StreamFormat::protobuf);
-        co_await connection->socket.async_write(asio::buffer(*message), asio::redirect_error(awaiting, error));
-        if (error) break;
-    }
-    connection->open = false;
-}
-
-} // namespace
-
 Task<HttpResponse> WebServer::State::answer(HttpRequest request) {
     return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(HttpResponse)>(
         [this](auto done, HttpRequest asked) {
@@ -209,50 +151,6 @@ Task<HttpResponse> WebServer::State::answer(HttpRequest request) {
             });
         },
         awaiting, std::move(request));
-}
-
-template <typename AnyStream>
-Task<> WebServer::State::serve_stream(AnyStream stream, Request request, Credentials credentials, StreamFormat format,
-                                      std::string_view subprotocol) {
-    beast::get_lowest_layer(stream).expires_never(); // the WebSocket has time-outs of its own
-    auto connection = std::make_shared<StreamConnection<AnyStream>>(std::move(stream));
-    auto& socket = connection->socket;
-    auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
-    timeout.idle_timeout = std::chrono::seconds{silence_seconds_max};
-    timeout.keep_alive_pings = true;
-    socket.set_option(timeout);
-    socket.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
-        response.set(http::field::sec_websocket_protocol, beast::string_view{subprotocol.data(), subprotocol.size()});
-    }));
-    socket.read_message_max(0); // the limit is kept below: Beast's own closes without a word
-    error_code error;
-    co_await socket.async_accept(request, asio::redirect_error(awaiting, error));
-    if (error) co_return;
-
-    auto session = handlers.open_stream(credentials, format, [weak = std::weak_ptr{connection}] {
-        if (const auto alive = weak.lock()) alive->due.cancel();
-    });
-    asio::co_spawn(io, write_messages(connection, session), asio::detached);
-    beast::flat_buffer buffer;
-    while (connection->open) {
-        co_await socket.async_read_some(buffer, message_octets_max + 1 - buffer.size(),
-                                        asio::redirect_error(awaiting, error));
-        if (error) break;
-        if (buffer.size() > message_octets_max) {
-            spdlog::warn("stream: a client sent more than {} octets in one message and is closed", message_octets_max);
-            const websocket::close_reason reason{websocket::close_code::too_big,
-                                                 fmt::format("a message has at most {} octets", message_octets_max)};
-            co_await socket.async_close(reason, asio::redirect_error(awaiting, error));
-            break;
-        }
-        if (!socket.is_message_done()) continue;
-        session->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
-        buffer.consume(buffer.size());
-    }
-    connection->open = false;
-    connection->due.cancel();
-    error_code ignored;
-    beast::get_lowest_layer(socket).socket().close(ignored);
 }
 
 template <typename AnyStream>
@@ -302,7 +200,11 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
             auto admitted = handlers.admit_stream(credentials);
             const auto* subprotocol = chosen_subprotocol(request);
             if (admitted.status == 200 && subprotocol != nullptr) {
-                co_await serve_stream(std::move(stream), std::move(request), std::move(credentials), subprotocol->format, subprotocol->name);
+                StreamService service{turn, message_octets_max, silence_seconds_max,
+                                      [this, credentials](StreamFormat format, std::function<void()> wake) {
+                                          return handlers.open_stream(credentials, format, std::move(wake));
+                                      }};
+                co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name, std::move(service));
                 co_return;
             }
             if (admitted.status != 200) {

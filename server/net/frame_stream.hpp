@@ -1,0 +1,183 @@
+#pragma once
+
+#include "server/net/sockets.hpp"
+#include "server/net/stream_hub.hpp"
+
+#include <array>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/compose.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/websocket/teardown.hpp>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <sys/socket.h>
+#include <type_traits>
+#include <utility>
+
+namespace aeolis::server::net {
+
+/// Lies between a WebSocket and its socket: our frames of data go past the WebSocket in one system call for as long as the kernel
+/// takes them, and never into the midst of another frame, the WebSocket's own pings, pongs and closes among them.
+///
+/// In       messages by send(); whole control frames by async_write_some()
+/// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not for calling
+/// Order    frames leave in the order in which they were given
+/// Fault    a socket that fails is closed: who reads from it is told
+/// Copies are handles of the same stream.
+/// Thread   the network thread
+/// Memory   the rest of one send(), and the few control frames that a WebSocket has under way
+template <typename Next>
+class FrameStream {
+  public:
+    using executor_type = Executor;
+    using next_layer_type = Next;
+    static constexpr std::size_t messages_max = 16; ///< in one send()
+
+    explicit FrameStream(Next next) : state_(std::make_shared<State>(std::move(next))) {}
+
+    executor_type get_executor() { return state_->drained.get_executor(); }
+    next_layer_type& next_layer() { return state_->next; }
+    const next_layer_type& next_layer() const { return state_->next; }
+
+    /// Called each time when all that was kept is gone.
+    void when_drained(std::function<void()> tell) { state_->tell = std::move(tell); }
+    bool busy() const { return state_->flushing || state_->closing; }
+    /// At most messages_max of them, each a frame of its own, of octets or of text.
+    void send(std::span<const Encoded> messages, bool binary);
+
+    template <typename Buffers, typename Token>
+    auto async_read_some(const Buffers& buffers, Token&& token) {
+        return state_->next.async_read_some(buffers, std::forward<Token>(token));
+    }
+    template <typename Buffers, typename Token>
+    auto async_write_some(const Buffers& buffers, Token&& token);
+
+  private:
+    /// Lives until its last write has ended.
+    struct State {
+        explicit State(Next stream) : next(std::move(stream)), drained(next.get_executor()) {
+            if constexpr (std::is_same_v<Next, Stream>) descriptor = next.socket().native_handle();
+            drained.expires_at(std::chrono::steady_clock::time_point::max());
+        }
+        int descriptor = -1; ///< none: TLS makes its own of what is written
+        bool flushing = false, closing = false;
+        std::string kept;
+        Next next;
+        Timer drained; ///< cancelled when it happens
+        std::function<void()> tell;
+        error_code failure;
+    };
+    using Header = std::array<std::uint8_t, 10>;
+    static std::size_t write_header(std::size_t octets, bool binary, Header& header);
+    /// How much of them the kernel took.
+    static std::size_t give(State& state, std::span<iovec> parts);
+    static void flush(const std::shared_ptr<State>& state);
+    static Task<> flush_all(std::shared_ptr<State> state);
+
+    std::shared_ptr<State> state_;
+};
+
+/// RFC 6455, 5.2, unmasked.
+template <typename Next>
+std::size_t FrameStream<Next>::write_header(std::size_t octets, bool binary, Header& header) {
+    header[0] = binary ? 0x82 : 0x81;
+    if (octets < 126) {
+        header[1] = static_cast<std::uint8_t>(octets);
+        return 2;
+    }
+    const std::size_t wide = octets <= 0xFFFF ? 2 : 8;
+    header[1] = wide == 2 ? 126 : 127;
+    for (std::size_t i = 0; i < wide; ++i)
+        header[2 + i] = static_cast<std::uint8_t>(octets >> (8 * (wide - 1 - i)));
+    return 2 + wide;
+}
+
+template <typename Next>
+std::size_t FrameStream<Next>::give(State& state, std::span<iovec> parts) {
+    if (state.descriptor < 0) return 0;
+    msghdr message{};
+    message.msg_iov = parts.data();
+    message.msg_iovlen = parts.size();
+    const auto given = ::sendmsg(state.descriptor, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+    return given > 0 ? static_cast<std::size_t>(given) : 0; // what is wrong with the socket, flush() finds
+}
+
+template <typename Next>
+void FrameStream<Next>::send(std::span<const Encoded> messages, bool binary) {
+    std::array<Header, messages_max> headers;
+    std::array<iovec, 2 * messages_max> parts;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < messages.size(); ++i) {
+        auto& text = const_cast<std::string&>(*messages[i]); // iovec knows no const; nobody writes
+        parts[count++] = {headers[i].data(), write_header(text.size(), binary, headers[i])};
+        parts[count++] = {text.data(), text.size()};
+    }
+    const std::span all{parts.data(), count};
+    auto given = give(*state_, all);
+    for (const auto& part : all) {
+        if (given < part.iov_len) state_->kept.append(static_cast<const char*>(part.iov_base) + given, part.iov_len - given);
+        given -= std::min(given, part.iov_len);
+    }
+    if (!state_->kept.empty()) flush(state_);
+}
+
+template <typename Next>
+void FrameStream<Next>::flush(const std::shared_ptr<State>& state) {
+    if (std::exchange(state->flushing, true)) return;
+    asio::co_spawn(state->drained.get_executor(), flush_all(state), asio::detached);
+}
+
+template <typename Next>
+Task<> FrameStream<Next>::flush_all(std::shared_ptr<State> state) {
+    while (!state->kept.empty() && !state->failure) {
+        const auto octets = std::exchange(state->kept, {});
+        co_await asio::async_write(state->next, asio::buffer(octets), asio::redirect_error(awaiting, state->failure));
+    }
+    state->closing = state->closing || state->failure;
+    state->flushing = false;
+    state->drained.cancel();
+    if (state->failure) {
+        error_code ignored;
+        beast::get_lowest_layer(state->next).socket().close(ignored);
+    } else if (state->tell) {
+        state->tell();
+    }
+}
+
+/// Takes all of it. Ends when nothing is kept any more, so that a WebSocket has one control frame of a kind under way.
+template <typename Next>
+template <typename Buffers, typename Token>
+auto FrameStream<Next>::async_write_some(const Buffers& buffers, Token&& token) {
+    constexpr char close_frame = '\x88';
+    const auto octets = beast::buffers_to_string(buffers);
+    state_->closing = state_->closing || octets.starts_with(close_frame); // no data after it
+    state_->kept += octets;
+    flush(state_);
+    return asio::async_compose<Token, void(error_code, std::size_t)>(
+        [state = state_, size = octets.size()](auto& self, error_code = {}) {
+            if (state->flushing)
+                state->drained.async_wait(std::move(self));
+            else
+                self.complete(state->failure, state->failure ? 0 : size);
+        },
+        token, state_->drained);
+}
+
+// How a WebSocket ends the connection below it.
+template <typename Next>
+void teardown(beast::role_type role, FrameStream<Next>& stream, error_code& error) {
+    using beast::websocket::teardown;
+    teardown(role, stream.next_layer(), error);
+}
+template <typename Next, typename Handler>
+void async_teardown(beast::role_type role, FrameStream<Next>& stream, Handler&& handler) {
+    using beast::websocket::async_teardown;
+    async_teardown(role, stream.next_layer(), std::forward<Handler>(handler));
+}
+
+} // namespace aeolis::server::net

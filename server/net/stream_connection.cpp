@@ -1,0 +1,163 @@
+#include "server/net/stream_connection.hpp"
+
+#include "server/net/frame_stream.hpp"
+
+#include <array>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace aeolis::server::net {
+namespace {
+
+namespace websocket = beast::websocket;
+
+constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
+
+/// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
+template <typename AnyStream>
+class Connection final : public WriteTurn::Writer, public std::enable_shared_from_this<Connection<AnyStream>> {
+  public:
+    Connection(AnyStream stream, StreamService service) : frames_(std::move(stream)), socket_(frames_), service_(std::move(service)) {}
+
+    Task<> serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol);
+    void write() override;
+
+  private:
+    Task<bool> accept(UpgradeRequest request, std::string_view subprotocol);
+    Task<> read();
+    Task<> close(websocket::close_reason reason);
+    bool gather(std::span<Encoded> messages, std::size_t& count);
+
+    bool open_ = true;
+    FrameStream<AnyStream> frames_;
+    std::shared_ptr<StreamSession> session_;
+    websocket::stream<FrameStream<AnyStream>> socket_; ///< over frames_
+    StreamService service_;
+};
+
+template <typename AnyStream>
+Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol) {
+    const auto self = this->shared_from_this();
+    if (!co_await accept(std::move(request), subprotocol)) co_return;
+    const auto wake = [weak = this->weak_from_this()] {
+        if (auto alive = weak.lock()) {
+            auto& turn = alive->service_.turn;
+            turn.add(std::move(alive));
+        }
+    };
+    session_ = service_.open(format, wake);
+    frames_.when_drained(wake);
+    wake();
+    co_await read();
+    open_ = false;
+    error_code ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
+}
+
+template <typename AnyStream>
+Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_view subprotocol) {
+    beast::get_lowest_layer(socket_).expires_never(); // the WebSocket has time-outs of its own
+    auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
+    timeout.idle_timeout = std::chrono::seconds{service_.silence_seconds_max};
+    timeout.keep_alive_pings = true;
+    socket_.set_option(timeout);
+    socket_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
+        response.set(beast::http::field::sec_websocket_protocol, beast::string_view{subprotocol.data(), subprotocol.size()});
+    }));
+    socket_.read_message_max(0); // the limit is kept below: Beast's own closes without a word
+    error_code error;
+    co_await socket_.async_accept(request, asio::redirect_error(awaiting, error));
+    co_return !error;
+}
+
+template <typename AnyStream>
+Task<> Connection<AnyStream>::read() {
+    beast::flat_buffer buffer;
+    error_code error;
+    while (open_) {
+        co_await socket_.async_read_some(buffer, service_.message_octets_max + 1 - buffer.size(), asio::redirect_error(awaiting, error));
+        if (error) co_return;
+        if (buffer.size() > service_.message_octets_max) {
+            spdlog::warn("stream: a client sent more than {} octets in one message and is closed", service_.message_octets_max);
+            // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
+            const websocket::close_reason reason{websocket::close_code::too_big,
+                                                 fmt::format("a message has at most {} octets", service_.message_octets_max)};
+            co_await close(reason);
+            co_return;
+        }
+        if (!socket_.is_message_done()) continue;
+        session_->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
+        buffer.consume(buffer.size());
+    }
+}
+
+template <typename AnyStream>
+Task<> Connection<AnyStream>::close(websocket::close_reason reason) {
+    const auto self = this->shared_from_this();
+    error_code ignored;
+    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored));
+    open_ = false;
+}
+
+/// Whether there may be more than what fits into one turn.
+template <typename AnyStream>
+bool Connection<AnyStream>::gather(std::span<Encoded> messages, std::size_t& count) {
+    std::size_t octets = 0;
+    while (count < messages.size() && octets < turn_octets_max) {
+        auto message = session_->next_message();
+        if (!message) return false;
+        octets += message->size();
+        messages[count++] = std::move(message);
+    }
+    return true;
+}
+
+template <typename AnyStream>
+void Connection<AnyStream>::write() {
+    std::array<Encoded, FrameStream<AnyStream>::messages_max> messages;
+    std::size_t count = 0;
+    const bool more = open_ && !frames_.busy() && gather(messages, count);
+    if (auto why = session_->closing(); open_ && !why.empty()) {
+        open_ = false;
+        asio::co_spawn(socket_.get_executor(), close({websocket::close_code::policy_error, why}), asio::detached);
+        return;
+    }
+    if (count == 0) return;
+    frames_.send(std::span{messages}.first(count), session_->format() == StreamFormat::protobuf);
+    if (more) service_.turn.add(this->shared_from_this());
+}
+
+} // namespace
+
+void WriteTurn::add(std::shared_ptr<Writer> writer) {
+    if (std::exchange(writer->due_, true)) return;
+    if (due_.empty()) asio::post(executor_, [this] { write_all(); });
+    due_.push_back(std::move(writer));
+}
+
+void WriteTurn::write_all() {
+    std::swap(due_, now_);
+    for (const auto& writer : now_) {
+        writer->due_ = false;
+        writer->write();
+    }
+    now_.clear();
+}
+
+Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service) {
+    const auto connection = std::make_shared<Connection<Stream>>(std::move(stream), std::move(service));
+    co_await connection->serve(std::move(request), format, subprotocol);
+}
+
+Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service) {
+    const auto connection = std::make_shared<Connection<TlsStream>>(std::move(stream), std::move(service));
+    co_await connection->serve(std::move(request), format, subprotocol);
+}
+
+} // namespace aeolis::server::net
