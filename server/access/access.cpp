@@ -93,8 +93,16 @@ void Access::refresh() {
     file_ = std::move(*accounts);
 }
 
-Result<void> Access::store(v1::AccountFile changed) {
+Result<void> Access::change_file(const std::function<Result<void>(v1::AccountFile&)>& change) {
+    const std::scoped_lock one_at_a_time{changing_};
+    auto changed = [&] {
+        const std::scoped_lock lock{mutex_};
+        refresh();
+        return file_;
+    }();
+    if (auto done = change(changed); !done) return done;
     if (auto written = write_accounts(settings_.file, changed); !written) return written;
+    const std::scoped_lock lock{mutex_};
     file_ = std::move(changed);
     std::error_code ignored;
     file_time_ = std::filesystem::last_write_time(settings_.file, ignored);
@@ -222,6 +230,7 @@ void Access::log_out(const Operator& who) {
 }
 
 void Access::end_sessions(const std::string& user, const std::string& but) {
+    const std::scoped_lock lock{mutex_};
     std::erase_if(sessions_, [&](const auto& each) { return each.second.user == user && each.first != but; });
 }
 
@@ -245,12 +254,12 @@ Result<v1::User> Access::add_user(const v1::NewUser& user) {
     account.set_password_hash(password_hash(user.password()));
     account.set_choose_password(true);
     *account.mutable_commands() = user.commands();
-    const std::scoped_lock lock{mutex_};
-    refresh();
-    if (find_account(file_, user.user()) != nullptr) return Error{fmt::format("there is a user '{}' already", user.user())};
-    auto changed = file_;
-    *changed.add_accounts() = account;
-    if (auto stored = store(std::move(changed)); !stored) return stored.error();
+    const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
+        if (find_account(file, user.user()) != nullptr) return Error{fmt::format("there is a user '{}' already", user.user())};
+        *file.add_accounts() = account;
+        return {};
+    });
+    if (!done) return done.error();
     return user_of(account);
 }
 
@@ -270,36 +279,36 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
                 return Error{"current_password: " + right.error().message};
         hash = password_hash(change.password());
     }
-    const std::scoped_lock lock{mutex_};
-    refresh();
-    auto changed = file_;
-    auto* account = find_account(changed, user);
-    if (account == nullptr) return no_user(user);
-    if (!change.role().empty()) account->set_role(change.role());
-    if (!hash.empty()) {
-        account->set_password_hash(hash);
-        account->set_choose_password(!own);
-    }
-    if (std::ranges::none_of(changed.accounts(), is_administrator)) return Error{"role: one administrator must remain"};
-    const auto shown = user_of(*account);
-    if (auto stored = store(std::move(changed)); !stored) return stored.error();
+    v1::User shown;
+    const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
+        auto* account = find_account(file, user);
+        if (account == nullptr) return no_user(user);
+        if (!change.role().empty()) account->set_role(change.role());
+        if (!hash.empty()) {
+            account->set_password_hash(hash);
+            account->set_choose_password(!own);
+        }
+        if (std::ranges::none_of(file.accounts(), is_administrator)) return Error{"role: one administrator must remain"};
+        shown = user_of(*account);
+        return {};
+    });
+    if (!done) return done.error();
     if (!hash.empty()) end_sessions(user, who.session);
     return shown;
 }
 
 Result<void> Access::remove_user(const std::string& user) {
     if (!accounts()) return no_accounts();
-    const std::scoped_lock lock{mutex_};
-    refresh();
-    auto changed = file_;
-    auto& all = *changed.mutable_accounts();
-    const auto found = std::ranges::find(all, user, &v1::Account::user);
-    if (found == all.end()) return no_user(user);
-    all.erase(found);
-    if (std::ranges::none_of(all, is_administrator)) return Error{"one administrator must remain"};
-    if (auto stored = store(std::move(changed)); !stored) return stored;
-    end_sessions(user, "");
-    return {};
+    auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
+        auto& all = *file.mutable_accounts();
+        const auto found = std::ranges::find(all, user, &v1::Account::user);
+        if (found == all.end()) return no_user(user);
+        all.erase(found);
+        if (std::ranges::none_of(all, is_administrator)) return Error{"one administrator must remain"};
+        return {};
+    });
+    if (done) end_sessions(user, "");
+    return done;
 }
 
 v1::TokenList Access::tokens() {
@@ -318,33 +327,33 @@ Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     if (asked.days() > token_days_max) return Error{fmt::format("days: {} at most", token_days_max)};
     const auto secret = new_secret();
     const auto now = settings_.now();
-    const std::scoped_lock lock{mutex_};
-    refresh();
-    if (std::ranges::find(file_.tokens(), asked.name(), &v1::AccessToken::name) != file_.tokens().end())
-        return Error{fmt::format("there is a token '{}' already", asked.name())};
-    auto changed = file_;
-    auto& token = *changed.add_tokens();
+    v1::AccessToken token;
     token.set_name(asked.name());
     token.set_role(asked.role());
     token.set_secret_hash(secret_hash(secret));
     token.set_created(iso_text(now));
     if (asked.days() > 0) token.set_expires(iso_text(now + std::chrono::hours{24} * asked.days()));
+    const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
+        if (std::ranges::find(file.tokens(), asked.name(), &v1::AccessToken::name) != file.tokens().end())
+            return Error{fmt::format("there is a token '{}' already", asked.name())};
+        *file.add_tokens() = token;
+        return {};
+    });
+    if (!done) return done.error();
     auto shown = token_of(token);
-    if (auto stored = store(std::move(changed)); !stored) return stored.error();
     shown.set_token(secret);
     return shown;
 }
 
 Result<void> Access::remove_token(const std::string& name) {
     if (!accounts()) return no_accounts();
-    const std::scoped_lock lock{mutex_};
-    refresh();
-    auto changed = file_;
-    auto& all = *changed.mutable_tokens();
-    const auto found = std::ranges::find(all, name, &v1::AccessToken::name);
-    if (found == all.end()) return Error{fmt::format("there is no token '{}'", name)};
-    all.erase(found);
-    return store(std::move(changed));
+    return change_file([&](v1::AccountFile& file) -> Result<void> {
+        auto& all = *file.mutable_tokens();
+        const auto found = std::ranges::find(all, name, &v1::AccessToken::name);
+        if (found == all.end()) return Error{fmt::format("there is no token '{}'", name)};
+        all.erase(found);
+        return {};
+    });
 }
 
 } // namespace aeolis::server

@@ -80,10 +80,11 @@ class Access {
         unsigned count = 0;
         Clock::time_point last, locked_until;
     };
+    /// Makes the change, writes the file, and counts from then on; the disk holds up nobody who only identifies. Without mutex_.
+    Result<void> change_file(const std::function<Result<void>(v1::AccountFile&)>& change);
+    void end_sessions(const std::string& user, const std::string& but); ///< without mutex_, too
     // With mutex_ held:
     void refresh();
-    Result<void> store(v1::AccountFile changed);
-    void end_sessions(const std::string& user, const std::string& but);
     Result<void> refuse_locked_out(const std::string& user, const std::string& from);
     void count_failure(const std::string& key, unsigned allowed);
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;
@@ -93,6 +94,7 @@ class Access {
 
     Settings settings_;
     std::string first_password_;
+    std::mutex changing_; ///< taken before mutex_
     std::mutex mutex_;
     v1::AccountFile file_;
     std::filesystem::file_time_type file_time_;

@@ -93,7 +93,10 @@ void Api::change_user(const Asked& asked) {
     if (!asked.who.accounts) return asked.respond(refusal_of(asked.who, Right::administer));
     const auto& user = asked.parts[0];
     if (user != asked.who.user)
-        if (auto refused = refusal_of(asked.who, Right::administer); refused.status != 200) return asked.respond(std::move(refused));
+        if (auto refused = refusal_of(asked.who, Right::administer); refused.status != 200) {
+            note(asked.who, "user", fmt::format("change '{}'", user.substr(0, 64)), outcome_of(false, refused.body));
+            return asked.respond(std::move(refused));
+        }
     v1::UserChange change;
     if (const auto parsed = from_json(asked.request.body, change); !parsed)
         return asked.respond(error_response(400, parsed.error().message));

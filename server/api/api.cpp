@@ -153,14 +153,15 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens, ""},
         {"POST", "/api/v1/tokens", Right::administer, &Api::add_token, "token"},
         {"DELETE", "/api/v1/tokens/{name}", Right::administer, &Api::remove_token, "token"},
-        {"GET", "/api/v1/audit", Right::administer, &Api::audit, ""},
+        {"GET", "/api/v1/audit", Right::administer, &Api::audit, "", false, true},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, ""},
         {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, "command", true},
         {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, "command", true},
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, "note"},
-        {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, ""},
-        {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, ""},
+        {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, "", false, true},
+        {"GET", "/api/v1/runs/{run}/samples", Right::watch, &Api::export_samples, "", false, true},
+        {"GET", "/api/v1/runs/{run}/{question}", Right::watch, &Api::run_question, "", false, true},
         {"GET", "/api/v1/scenarios", Right::watch, &Api::list_scenarios, ""},
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary, ""},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi, ""},
@@ -201,8 +202,7 @@ void Api::handle(HttpRequest request, const Respond& respond) {
 void Api::answer(const Route& route, Asked asked) {
     const bool changes = route.method != "GET";
     auto refused = refusal_of(asked.who, route.right);
-    const bool has_parameters = route.answer == &Api::run_question || route.answer == &Api::audit;
-    if (refused.status == 200 && !changes && !has_parameters && route.path.starts_with(api_prefix))
+    if (refused.status == 200 && !changes && !route.parameters && route.path.starts_with(api_prefix))
         if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
     const bool of_run = route.path.starts_with("/api/v1/runs/{run}");
     if (refused.status == 200 && of_run && asked.parts[0] != "latest" && !run_id(asked.parts[0]))

@@ -60,11 +60,13 @@ class Api {
         void (Api::*answer)(const Asked&);
         std::string_view audit;     ///< the action's word; empty: it changes nothing, or its answer writes it
         bool only_refusals = false; ///< the rest its answer notes: a dry run is no action
+        bool parameters = false;    ///< behind '?': its answer reads them; else there are none
     };
     static std::span<const Route> routes();
 
   private:
     void run_question(const Asked& asked);
+    void export_samples(const Asked& asked); // sample_export.cpp
     void list_runs(const Asked& asked);
     void list_scenarios(const Asked& asked);
     void dictionary(const Asked& asked);

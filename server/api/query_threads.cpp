@@ -4,7 +4,8 @@ namespace aeolis::server {
 
 Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::path& archive,
                                                          const dictionary::Dictionary& dictionary,
-                                                         const telemetry::OtherMission* other) {
+                                                         const telemetry::OtherMission* other,
+                                                         std::chrono::milliseconds question_max) {
     const auto open = [archive, &dictionary, other] { return archive::Reader::open(archive, dictionary, other); };
     std::vector<archive::Reader> readers;
     for (std::size_t i = 0; i < threads; ++i) {
@@ -12,23 +13,24 @@ Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::
         if (!reader) return reader.error();
         readers.push_back(std::move(reader).value());
     }
-    return std::unique_ptr<QueryThreads>{new QueryThreads{std::move(readers), open}};
+    return std::unique_ptr<QueryThreads>{new QueryThreads{std::move(readers), open, question_max}};
 }
 
-QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open) : readers_(std::move(readers)) {
+QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open, std::chrono::milliseconds question_max)
+    : readers_(std::move(readers)) {
     for (auto& reader : readers_)
-        threads_.emplace_back([this, &reader, open] {
+        threads_.emplace_back([this, &reader, open, question_max] {
             while (const auto asked = jobs_.pop()) {
                 if (reader.outdated())
                     if (auto fresh = open()) reader = std::move(*fresh);
-                answer(*asked, reader);
+                answer(*asked, reader, question_max);
             }
         });
 }
 
-void QueryThreads::answer(const Asked& asked, archive::Reader& reader) {
-    const auto deadline = std::chrono::steady_clock::now() + question_seconds_max;
-    reader.stop_when([deadline, gone = asked.gone] { return (gone && *gone) || std::chrono::steady_clock::now() > deadline; });
+void QueryThreads::answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
+    const auto deadline = std::chrono::steady_clock::now() + question_max;
+    reader.stop_when([deadline, gone = asked.gone] { return (gone && gone()) || std::chrono::steady_clock::now() > deadline; });
     asked.job(reader);
     reader.stop_when({});
 }
@@ -39,7 +41,7 @@ QueryThreads::~QueryThreads() {
         thread.join();
 }
 
-bool QueryThreads::ask(Job job, std::shared_ptr<std::atomic<bool>> gone) {
+bool QueryThreads::ask(Job job, std::function<bool()> gone) {
     if (!jobs_.try_push({std::move(job), std::move(gone)})) return false;
     ++asked_;
     return true;

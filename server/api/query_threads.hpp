@@ -21,30 +21,31 @@ class QueryThreads {
     static constexpr std::size_t threads = 2;
     static constexpr std::size_t waiting_max = 256; ///< ours: more is refused, "busy"
 
+    /// A question that takes longer, or whose asker has gone, is stopped: its reader then says stopped().
+    static constexpr std::chrono::seconds question_seconds_max{20}; ///< ours: proof() of a whole landing takes one
+
     using Job = std::function<void(archive::Reader&)>;
 
     /// The archive has been made. The dictionary must outlive this.
     static Result<std::unique_ptr<QueryThreads>> open(const std::filesystem::path& archive,
                                                       const dictionary::Dictionary& dictionary,
-                                                      const telemetry::OtherMission* other = nullptr);
+                                                      const telemetry::OtherMission* other = nullptr,
+                                                      std::chrono::milliseconds question_max = question_seconds_max);
     ~QueryThreads(); ///< does what waits, then ends
 
-    /// A question that takes longer, or whose asker has gone, is stopped: its reader then says stopped().
-    static constexpr std::chrono::seconds question_seconds_max{20}; ///< ours: proof() of a whole landing takes one
-
     /// False, and nothing done, when too much waits.
-    bool ask(Job job, std::shared_ptr<std::atomic<bool>> gone = {});
+    bool ask(Job job, std::function<bool()> gone = {});
     std::uint64_t asked() const { return asked_; }
     std::size_t waiting() const { return jobs_.size(); }
 
   private:
     using Open = std::function<Result<archive::Reader>()>;
-    QueryThreads(std::vector<archive::Reader> readers, const Open& open);
+    QueryThreads(std::vector<archive::Reader> readers, const Open& open, std::chrono::milliseconds question_max);
     struct Asked {
         Job job;
-        std::shared_ptr<std::atomic<bool>> gone; ///< null: never told
+        std::function<bool()> gone; ///< null: never told
     };
-    static void answer(const Asked& asked, archive::Reader& reader);
+    static void answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max);
     BoundedQueue<Asked> jobs_{waiting_max};
     std::vector<archive::Reader> readers_;
     std::atomic<std::uint64_t> asked_{0};

@@ -22,16 +22,6 @@ HttpResponse answer(const Result<Message>& result) {
     return response;
 }
 
-Result<archive::SclkRange> range_of(const QueryText& query) {
-    const auto from = query.number("from");
-    if (!from) return from.error();
-    const auto to = query.number("to");
-    if (!to) return to.error();
-    if (*from && *to && **from > **to)
-        return Error{fmt::format("from {} is after to {}: the range is upside down", **from, **to)};
-    return archive::SclkRange{*from, *to};
-}
-
 struct Page {
     archive::Sequence after = 0;
     std::size_t limit = 0;
@@ -287,6 +277,16 @@ const std::array questions{
 };
 
 } // namespace
+
+Result<archive::SclkRange> range_of(const QueryText& query) {
+    const auto from = query.number("from");
+    if (!from) return from.error();
+    const auto to = query.number("to");
+    if (!to) return to.error();
+    if (*from && *to && **from > **to)
+        return Error{fmt::format("from {} is after to {}: the range is upside down", **from, **to)};
+    return archive::SclkRange{*from, *to};
+}
 
 const RunQuestionEntry* run_question(std::string_view name) {
     const auto* const found = std::ranges::find(questions, name, &RunQuestionEntry::name);

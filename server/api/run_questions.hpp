@@ -20,6 +20,9 @@ struct RunQuestionEntry {
     HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
+/// Of the parameters "from" and "to", seconds of SCLK.
+Result<archive::SclkRange> range_of(const QueryText& query);
+
 /// Null when there is no such question.
 const RunQuestionEntry* run_question(std::string_view name);
 std::string run_question_names();

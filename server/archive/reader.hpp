@@ -89,6 +89,11 @@ struct ChannelValue {
     Source source{};
 };
 
+struct SamplePage {
+    std::vector<ChannelValue> samples;
+    std::optional<double> next_s; ///< from where to ask on; none: that was all
+};
+
 /// Questions to an archive, while its writer goes on or after.
 ///
 /// In       run, names, ranges: anything a client may send        Out   the schema's messages, or an Error in words
@@ -139,6 +144,8 @@ class Reader {
     /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
     Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range, const TakeSamples& take);
+    /// The first of them, in order of SCLK, and where the rest begins.
+    Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range);
     /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 

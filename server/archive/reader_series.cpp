@@ -12,7 +12,7 @@ namespace aeolis::archive {
 namespace {
 
 constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON
-constexpr std::size_t window_samples = 100'000; ///< ours: that each_sample has in hand; at most four times as many
+constexpr std::size_t window_samples = 100'000; ///< ours: that are in hand at once; at most four times as many
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
 constexpr char unit_span_sql[] = "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
@@ -261,38 +261,60 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
     return series;
 }
 
-Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {
+namespace {
+
+/// The samples of a range of time, a window of about window_samples at a time.
+class SampleWindows {
+  public:
+    static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked);
+
+    bool at_end() const { return from_s_ > to_s_; }
+    double from_s() const { return from_s_; } ///< of the next window
+    /// Of the next window, in order of SCLK; there may be none in it.
+    Result<void> next(std::vector<ChannelValue>& samples);
+
+  private:
+    SampleWindows(Reader::State& reader, RunInfo run) : reader_(&reader), run_(std::move(run)) {}
+
+    Reader::State* reader_;
+    RunInfo run_;
+    std::vector<const dictionary::Channel*> channels_;
+    double from_s_ = 0.0, to_s_ = 0.0;
+    double width_s_ = 0.0; ///< a first guess, then by what was found
+};
+
+Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked) {
     const auto range = closed(asked);
     if (!range) return range.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
+    const auto info = reader.info(run);
     if (!info) return info.error();
-    if (auto same = state_->same_dictionary(*info); !same) return same.error();
-    std::vector<const dictionary::Channel*> wanted;
+    if (auto same = reader.same_dictionary(*info); !same) return same.error();
+    SampleWindows windows(reader, *info);
     if (channels.empty()) {
-        for (const auto& channel : state_->dictionary.channels)
-            if (!state_->columns.places(channel.id).empty()) wanted.push_back(&channel);
+        for (const auto& channel : reader.dictionary.channels)
+            if (!reader.columns.places(channel.id).empty()) windows.channels_.push_back(&channel);
     } else {
-        auto found = find_channels(state_->dictionary, channels);
+        auto found = find_channels(reader.dictionary, channels);
         if (!found) return found.error();
-        wanted = std::move(found).value();
+        windows.channels_ = std::move(found).value();
     }
-    const auto span = sample_span(*state_, *info);
+    const auto span = sample_span(reader, *info);
     if (!span) return span.error();
-    double from_s = std::max(range->from_s, span->range.from_s);
-    const double to_s = std::min(range->to_s, span->range.to_s);
-    // Windows of time that hold about window_samples: a first guess, then by what was found.
-    double width_s = (span->range.to_s - span->range.from_s) * window_samples /
-                     static_cast<double>(std::max<std::uint64_t>(1, span->samples * wanted.size()));
-    std::vector<ChannelValue> samples;
-    while (from_s <= to_s) {
-        const double next_s = std::max(from_s + width_s, std::nextafter(from_s, to_s + 1.0));
-        const ClosedRange window{from_s, std::min(to_s, std::nextafter(next_s, from_s))};
+    windows.from_s_ = std::max(range->from_s, span->range.from_s);
+    windows.to_s_ = std::min(range->to_s, span->range.to_s);
+    windows.width_s_ = (span->range.to_s - span->range.from_s) * window_samples /
+                       static_cast<double>(std::max<std::uint64_t>(1, span->samples * windows.channels_.size()));
+    return windows;
+}
+
+Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
+    for (;;) {
+        const double next_s = std::max(from_s_ + width_s_, std::nextafter(from_s_, to_s_ + 1.0));
+        const ClosedRange window{from_s_, std::min(to_s_, std::nextafter(next_s, from_s_))};
         samples.clear();
         bool whole = true;
-        for (const auto* channel : wanted) {
-            auto found = samples_of(*state_, *info, channel->id, window);
+        for (const auto* channel : channels_) {
+            auto found = samples_of(*reader_, run_, channel->id, window);
             if (!found) return found.error();
             for (const Sample& sample : *found)
                 samples.push_back({channel->id, sample.value, Sclk{sample.sclk_s}, sample.source});
@@ -300,16 +322,42 @@ Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& chan
             if (!whole) break;
         }
         if (!whole) {
-            width_s /= 2.0;
+            width_s_ /= 2.0;
             continue;
         }
         std::ranges::stable_sort(samples, {}, [](const ChannelValue& sample) { return sample.sclk.seconds; });
-        if (!samples.empty())
-            if (auto done = take(samples); !done) return done;
-        if (samples.size() < window_samples / 4) width_s = std::max(2.0 * width_s, std::nextafter(0.0, 1.0));
-        from_s = next_s;
+        if (samples.size() < window_samples / 4) width_s_ = std::max(2.0 * width_s_, std::nextafter(0.0, 1.0));
+        from_s_ = next_s;
+        return {};
+    }
+}
+
+} // namespace
+
+Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    auto windows = SampleWindows::of(*state_, run, channels, asked);
+    if (!windows) return windows.error();
+    std::vector<ChannelValue> samples;
+    while (!windows->at_end()) {
+        if (auto done = windows->next(samples); !done) return done;
+        if (samples.empty()) continue;
+        if (auto done = take(samples); !done) return done;
     }
     return {};
+}
+
+Result<SamplePage> Reader::sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& asked) {
+    auto snapshot = sqlite::Transaction::begin_read(state_->database);
+    if (!snapshot) return snapshot.error();
+    auto windows = SampleWindows::of(*state_, run, channels, asked);
+    if (!windows) return windows.error();
+    SamplePage page;
+    while (!windows->at_end() && page.samples.empty())
+        if (auto done = windows->next(page.samples); !done) return done.error();
+    if (!windows->at_end()) page.next_s = windows->from_s();
+    return page;
 }
 
 Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> at) {

@@ -1,14 +1,14 @@
+#include "server/api/sample_text.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_table.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 
-#include <cmath>
 #include <cstdio>
 #include <fmt/format.h>
-#include <iterator>
 #include <memory>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -32,15 +32,6 @@ int each_row(const ExportOptions& options, const char* command, const TakeRows& 
     return done ? 0 : said(done.error());
 }
 
-const char* name_of(archive::Source source) {
-    return source == archive::Source::realtime ? "realtime" : "recorded";
-}
-
-/// JSON has no infinities: they are texts.
-std::string json_number(double value) {
-    return std::isfinite(value) ? fmt::format("{}", value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
-}
-
 struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
@@ -54,31 +45,22 @@ int export_samples(const ExportOptions& options) {
         if (file == nullptr) return failed(fmt::format("export: {} cannot be made, or is there already", options.out.string()));
     }
     std::FILE* const to = file != nullptr ? file.get() : stdout;
-    const auto write = [&](const fmt::memory_buffer& text) -> Result<void> {
+    const auto write = [&](std::string_view text) -> Result<void> {
         if (std::fwrite(text.data(), 1, text.size(), to) == text.size()) return {};
         return Error{(file != nullptr ? options.out.string() : std::string("the standard output")) + " takes no more"};
     };
-    const bool csv = options.format == "csv";
-    fmt::memory_buffer text;
-    bool head = csv;
+    const auto format = row_format(options.format);
+    if (!format) return failed("export: " + format.error().message);
+    std::string text;
+    bool begun = false; // nothing is written of what cannot be asked
     const int ended = each_row(options, "export", [&](auto samples, Sclk entry, const auto& dictionary) {
-        text.clear();
-        const auto into = std::back_inserter(text);
-        if (std::exchange(head, false)) fmt::format_to(into, "sclk,e_s,channel,value,unit,source\n");
-        for (const auto& sample : samples) {
-            const auto& channel = dictionary.channels[sample.channel.value];
-            const double sclk_s = sample.sclk.seconds, e_s = sclk_s - entry.seconds;
-            if (csv)
-                fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel.name, sample.value, channel.type.unit, name_of(sample.source));
-            else
-                fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":"{}","value":{},"unit":"{}","source":"{}"}})"
-                                     "\n",
-                               sclk_s, e_s, channel.name, json_number(sample.value), channel.type.unit, name_of(sample.source));
-        }
+        text = std::exchange(begun, true) ? "" : head_of(*format);
+        append_rows(text, *format, samples, entry, dictionary);
         return write(text);
     });
     if (ended != 0) return ended;
-    if (head) std::fputs("sclk,e_s,channel,value,unit,source\n", to);
+    if (!begun)
+        if (auto done = write(head_of(*format)); !done) return failed("export: " + done.error().message);
     return std::fflush(to) == 0 ? 0 : failed("export: what was written could not be kept");
 }
 

@@ -1,10 +1,9 @@
 #pragma once
 
+#include "common/result.hpp"
 #include "server/access/access.hpp"
 
-#include <atomic>
 #include <functional>
-#include <memory>
 #include <string>
 
 namespace aeolis::server {
@@ -15,8 +14,11 @@ struct HttpRequest {
     std::string query; ///< as it stands after '?', still percent-encoded
     std::string body;
     Credentials credentials{};
-    std::shared_ptr<std::atomic<bool>> gone{}; ///< true once who asked has left: what still works on it may stop; null: never told
+    std::function<bool()> gone{}; ///< whether who asked has left: what still works on it may stop; from any thread; null: never told
 };
+
+/// The next part of a body; empty: that was all.
+using BodyPart = Result<std::string>;
 
 struct HttpResponse {
     unsigned status = 200;
@@ -24,6 +26,9 @@ struct HttpResponse {
     std::string cache_control = "no-store";
     std::string body;
     std::string set_cookie{}; ///< empty: none
+    /// Null: the body is all. Else it is the first part, and this is called for each further one, when the one before it has been
+    /// taken by the client; the answer may come from any thread. An Error breaks the connection off: the client sees that it has not all.
+    std::function<void(std::function<void(BodyPart)>)> more{};
 };
 
 /// To be called once, from any thread.

@@ -2,6 +2,7 @@
 
 #include "aeolis/v1/run.pb.h"
 #include "server/api/json.hpp"
+#include "server/net/connection_count.hpp"
 #include "server/net/sockets.hpp"
 #include "server/net/stream_connection.hpp"
 
@@ -12,14 +13,16 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <boost/url/parse.hpp>
 #include <deque>
 #include <fmt/format.h>
+#include <list>
+#include <poll.h>
 #include <spdlog/spdlog.h>
-#include <sys/socket.h>
 
 namespace aeolis::server {
 namespace {
@@ -32,6 +35,7 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr const char* stream_path = "/api/v1/stream";
+constexpr unsigned peers_looked_at_ms = 250; // ours: a question goes on for so long after its client has left
 struct Subprotocol {
     std::string_view name;
     StreamFormat format;
@@ -79,15 +83,43 @@ Response error_reply(const Request& request, http::status status, const std::str
     return response;
 }
 
-/// True once the peer has closed. What it sends meanwhile is left to be read; over TLS its farewell is such a thing, and not seen.
-std::shared_ptr<std::atomic<bool>> watch_peer(Socket& socket) {
-    auto gone = std::make_shared<std::atomic<bool>>(false);
-    socket.async_wait(Socket::wait_read, [gone, descriptor = socket.native_handle()](error_code error) {
-        char first = 0;
-        if (!error && ::recv(descriptor, &first, 1, MSG_PEEK | MSG_DONTWAIT) == 0) *gone = true;
-    });
-    return gone;
-}
+struct Peer {
+    int descriptor = -1;
+    std::shared_ptr<std::atomic<bool>> gone;
+};
+
+/// Connections whose question is being answered, so that one can stop when its client leaves.
+///
+/// Looks at all a few times a second, by whether the peer has closed its side: what it sent before, a farewell of TLS too, may lie
+/// unread. Over a network that falls silent nothing is seen; the time-out of a question bounds that.
+class WaitingPeers {
+  public:
+    /// One of them, for as long as this lives.
+    class Waiting {
+      public:
+        Waiting(WaitingPeers& all, int descriptor) : all_(all), place_(all.waiting_.insert(all.waiting_.end(), {descriptor, std::make_shared<std::atomic<bool>>(false)})) {}
+        ~Waiting() { all_.waiting_.erase(place_); }
+        Waiting(const Waiting&) = delete;
+        Waiting& operator=(const Waiting&) = delete;
+        /// From any thread, also when this is no more.
+        std::function<bool()> gone() const {
+            return [gone = place_->gone] { return gone->load(std::memory_order_relaxed); };
+        }
+
+      private:
+        WaitingPeers& all_;
+        std::list<Peer>::iterator place_;
+    };
+    void look() {
+        for (const auto& peer : waiting_) {
+            pollfd asked{peer.descriptor, POLLRDHUP, 0};
+            if (::poll(&asked, 1, 0) > 0) peer.gone->store(true, std::memory_order_relaxed); // POLLERR and POLLHUP come unasked
+        }
+    }
+
+  private:
+    std::list<Peer> waiting_;
+};
 
 /// Of certificate and key, or what is wrong with them; none: no TLS.
 Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& settings) {
@@ -108,13 +140,15 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 } // namespace
 
 struct WebServer::State {
+    // What the coroutines of connections know of; they end with io.
+    ConnectionCount connections{connections_max, connections_each_max};
+    WaitingPeers waiting;
     asio::io_context io{1};
     WriteTurn turn{io.get_executor()};
     Acceptor acceptor{io.get_executor()};
     std::optional<asio::ssl::context> tls;
     std::vector<std::string> names;
     Handlers handlers;
-    std::size_t connections = 0;
     std::deque<Timer> timers; ///< of every()
 
     Task<> accept();
@@ -122,7 +156,10 @@ struct WebServer::State {
     Task<> serve(Socket socket);
     template <typename AnyStream>
     Task<> serve_requests(AnyStream& stream, std::string from);
-    Task<HttpResponse> answer(HttpRequest request);
+    template <typename AnyStream>
+    Task<bool> write_parts(AnyStream& stream, Response first, decltype(HttpResponse::more) more);
+    template <typename T, typename Ask>
+    Task<T> told(Ask ask);
     std::string refusal_of(const Request& request) const;
 };
 
@@ -140,17 +177,53 @@ std::string WebServer::State::refusal_of(const Request& request) const {
     return {};
 }
 
-Task<HttpResponse> WebServer::State::answer(HttpRequest request) {
-    return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(HttpResponse)>(
-        [this](auto done, HttpRequest asked) {
+/// What `ask` tells, from whatever thread.
+template <typename T, typename Ask>
+Task<T> WebServer::State::told(Ask ask) {
+    return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(T)>(
+        [this](auto done, Ask asking) {
             auto shared = std::make_shared<decltype(done)>(std::move(done));
-            handlers.request(std::move(asked), [this, shared](HttpResponse response) {
-                asio::post(io, [shared, response = std::move(response)]() mutable {
-                    std::move (*shared)(std::move(response));
+            asking([this, shared](T answer) {
+                asio::post(io, [shared, answer = std::move(answer)]() mutable {
+                    std::move (*shared)(std::move(answer));
                 });
             });
         },
-        awaiting, std::move(request));
+        awaiting, std::move(ask));
+}
+
+/// A body that comes in parts, each asked for when the client has taken the one before it. False: the connection is over.
+template <typename AnyStream>
+Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decltype(HttpResponse::more) more) {
+    auto& lowest = beast::get_lowest_layer(stream);
+    const bool chunked = first.version() >= 11; // before that a body ended with its connection
+    if (!chunked) first.keep_alive(false);
+    const bool keep = first.keep_alive();
+    BodyPart part{std::move(first.body())};
+    http::response<http::empty_body> head{std::move(first.base())};
+    head.chunked(chunked);
+    http::response_serializer<http::empty_body> serializer{head};
+    error_code error;
+    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    co_await http::async_write_header(stream, serializer, asio::redirect_error(awaiting, error));
+    while (!error && part && !part->empty()) {
+        lowest.expires_after(std::chrono::seconds{request_seconds_max});
+        const auto octets = asio::buffer(*part);
+        if (chunked) {
+            const auto chunk = http::make_chunk(octets);
+            co_await asio::async_write(stream, chunk, asio::redirect_error(awaiting, error));
+        } else {
+            co_await asio::async_write(stream, octets, asio::redirect_error(awaiting, error));
+        }
+        lowest.expires_never();
+        if (!error) part = co_await told<BodyPart>(more);
+    }
+    if (error || !part) co_return false;
+    if (!chunked) co_return false;
+    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    const auto end = http::make_chunk_last();
+    co_await asio::async_write(stream, end, asio::redirect_error(awaiting, error));
+    co_return keep && !error;
 }
 
 template <typename AnyStream>
@@ -190,6 +263,8 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         }
         auto request = parser.release();
         Response response;
+        std::optional<WaitingPeers::Waiting> waiting_here;
+        decltype(HttpResponse::more) more;
         const auto target =
             boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
         if (const auto refusal = refusal_of(request); !refusal.empty()) {
@@ -216,16 +291,18 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
                             "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
         } else {
             lowest.expires_never();
+            waiting_here.emplace(waiting, lowest.socket().native_handle());
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
-            HttpRequest asked{std::string{plain(request.method_string())}, target->path(),
-                              std::string{target->encoded_query()}, std::move(request.body()), std::move(credentials), watch_peer(lowest.socket())};
-            auto answered = co_await answer(std::move(asked));
-            lowest.socket().cancel(error); // the watch on the peer: nothing else waits
+            HttpRequest asked{std::string{plain(request.method_string())}, target->path(), std::string{target->encoded_query()},
+                              std::move(request.body()), std::move(credentials), waiting_here->gone()};
+            const auto ask = [this, &asked](Respond respond) { handlers.request(std::move(asked), respond); };
+            auto answered = co_await told<HttpResponse>(ask);
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
             response.set(http::field::cache_control, answered.cache_control);
             if (!answered.set_cookie.empty()) response.set(http::field::set_cookie, answered.set_cookie);
             response.body() = std::move(answered.body);
+            more = std::move(answered.more);
         }
         response.set(http::field::server, "aeolis");
         response.set("X-Content-Type-Options", "nosniff");
@@ -234,8 +311,13 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         response.set("Cross-Origin-Opener-Policy", "same-origin");
         if (tls && !is_loopback_name(host_of(plain(request[http::field::host])))) response.set("Strict-Transport-Security", "max-age=31536000");
         response.keep_alive(request.keep_alive());
+        if (more && request.method() != http::verb::head) {
+            if (!co_await write_parts(stream, std::move(response), std::move(more))) co_return;
+            continue;
+        }
         response.prepare_payload();
         if (request.method() == http::verb::head) response.body().clear();
+        if (more) response.erase(http::field::content_length); // nobody knows it
         lowest.expires_after(std::chrono::seconds{request_seconds_max});
         co_await http::async_write(stream, response, asio::redirect_error(awaiting, error));
         if (error || !response.keep_alive()) co_return;
@@ -243,26 +325,22 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
 }
 
 Task<> WebServer::State::serve(Socket socket) {
-    struct Counted {
-        explicit Counted(std::size_t& open) : count(open) { ++count; }
-        ~Counted() { --count; }
-        std::size_t& count;
-    } counted{connections};
     error_code ignored;
+    const auto peer = socket.remote_endpoint(ignored);
+    const std::string from = ignored ? "unknown" : peer.address().to_string();
+    const std::string refused = connections.enter(from, peer.address().is_loopback());
+    const std::shared_ptr<void> counted{nullptr, [this, &from](void*) { connections.leave(from); }};
     socket.set_option(tcp::no_delay{true}, ignored);
     Stream stream{std::move(socket)};
-    if (connections > connections_max) {
-        auto reply = error_reply({}, http::status::service_unavailable,
-                                 fmt::format("{} connections are open already", connections_max));
+    if (!refused.empty()) {
+        auto reply = error_reply({}, http::status::service_unavailable, refused);
         reply.keep_alive(false);
         stream.expires_after(std::chrono::seconds{1});
         co_await http::async_write(stream, reply, asio::redirect_error(awaiting, ignored));
         co_return;
     }
-    const auto peer = stream.socket().remote_endpoint(ignored);
-    std::string from = ignored ? "unknown" : peer.address().to_string();
     if (!tls) {
-        co_await serve_requests(stream, std::move(from));
+        co_await serve_requests(stream, from);
         if (stream.socket().is_open()) stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
         co_return;
     }
@@ -272,7 +350,7 @@ Task<> WebServer::State::serve(Socket socket) {
     error_code error;
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
     if (error) co_return; // it speaks no TLS, or does not trust us
-    co_await serve_requests(secure, std::move(from));
+    co_await serve_requests(secure, from);
     if (!lowest.socket().is_open()) co_return;
     lowest.expires_after(std::chrono::seconds{1});
     co_await secure.async_shutdown(asio::redirect_error(awaiting, error));
@@ -332,7 +410,9 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const Settings& settings, Han
                                  address, port)};
     if (error) return Error{fmt::format("--listen {}:{}: {}", address, port, error.message())};
     asio::co_spawn(state->io, state->accept(), asio::detached);
-    return std::unique_ptr<WebServer>{new WebServer{std::move(state)}};
+    auto server = std::unique_ptr<WebServer>{new WebServer{std::move(state)}};
+    server->every(peers_looked_at_ms, [waiting = &server->state_->waiting] { waiting->look(); });
+    return server;
 }
 
 bool WebServer::is_loopback(const std::string& address) {
@@ -360,7 +440,7 @@ bool WebServer::secure() const {
     return state_->tls.has_value();
 }
 std::size_t WebServer::connections() const {
-    return state_->connections;
+    return state_->connections.all();
 }
 
 void WebServer::every(unsigned milliseconds, std::function<void()> action) {

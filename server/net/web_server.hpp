@@ -28,6 +28,7 @@ class WebServer {
     static constexpr std::size_t header_octets_max = 16 << 10;  ///< ours
     static constexpr std::size_t message_octets_max = 64 << 10; ///< ours: a command with every argument is under 2 KiB
     static constexpr std::size_t connections_max = 1000;        ///< ours: below the usual 1024 open files
+    static constexpr std::size_t connections_each_max = 100;    ///< ours: of one address that is not this machine's own
     static constexpr unsigned request_seconds_max = 30;         ///< ours: for the next request to arrive whole
     static constexpr unsigned silence_seconds_max =
         20; ///< ours: a WebSocket peer that answers no ping for so long is dead

@@ -69,6 +69,7 @@ const Row rows[] = {
     {"POST", "/api/v1/runs/{run}/alarms", "controller", "/api/v1/runs/latest/alarms", "{", 400},
     {"POST", "/api/v1/runs/{run}/notes", "controller", "/api/v1/runs/latest/notes", "{", 400},
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
+    {"GET", "/api/v1/runs/{run}/samples", "observer", "/api/v1/runs/latest/samples", "", 404},
     {"GET", "/api/v1/runs/{run}/{question}", "observer", "/api/v1/runs/latest/events", "", 404},
     {"GET", "/api/v1/scenarios", "observer", "/api/v1/scenarios", "", 200},
     {"GET", "/api/v1/dictionary", "observer", "/api/v1/dictionary", "", 200},
@@ -222,6 +223,7 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4712"})");
     guarded.ask("controller", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
+    CHECK(guarded.ask("controller", "PATCH", "/api/v1/users/director", R"({"role":"observer"})").status == 403);
     web_request(guarded.server.port(), "POST", "/api/v1/session", R"({"user":"director","password":"a wrong guess"})");
     std::string audit;
     for (int i = 0; i < 100 && audit.find("director\",\"outcome\":\"refused") == std::string::npos; ++i) {
@@ -231,6 +233,7 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     CHECK_THAT(audit, Catch::Contains(R"("who":"controller","from":"127.0.0.1","action":"rehearsal")") && Catch::Contains("refused (403)"));
     CHECK_THAT(audit, Catch::Contains(R"("who":"director","from":"127.0.0.1","action":"rehearsal")"));
     CHECK_THAT(audit, Catch::Contains("add 'observer' as observer"));
+    CHECK_THAT(audit, Catch::Contains("change 'director'\",\"outcome\":\"refused"));
     CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
     CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711")); // a dry run is no action
     CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) && !Catch::Contains("a wrong guess"));

@@ -20,16 +20,16 @@ struct Recorded {
     archive::Archive archive = std::move(archive::Archive::open(file)).value();
     std::unique_ptr<QueryThreads> threads;
 
-    Recorded() {
+    explicit Recorded(std::chrono::milliseconds question_max = QueryThreads::question_seconds_max) {
         pipeline::Pipeline pipeline(archive, dictionary);
         REQUIRE(pipeline.begin({}).ok());
         for (std::uint16_t i = 0; i < 3000; ++i)
             REQUIRE(pipeline.accept(live(navigation_packet(i, 1000.0 + i, 9000.0F, 3.0F))).ok());
         REQUIRE(pipeline.commit().ok());
-        threads = std::move(QueryThreads::open(file, dictionary)).value();
+        threads = std::move(QueryThreads::open(file, dictionary, nullptr, question_max)).value();
     }
     /// What a question over all units comes to.
-    std::string ask(const std::shared_ptr<std::atomic<bool>>& gone) const {
+    std::string ask(const std::function<bool()>& gone) const {
         std::promise<std::string> answered;
         REQUIRE(threads->ask(
             [&](archive::Reader& reader) {
@@ -45,12 +45,19 @@ struct Recorded {
 
 TEST_CASE("a question whose asker has left is stopped, and the next question is answered", "[http][bounds]") {
     const Recorded recorded;
-    const auto gone = std::make_shared<std::atomic<bool>>(false);
+    std::atomic<bool> left{false};
+    const auto gone = [&] { return left.load(); };
     CHECK(recorded.ask(nullptr) == "answered");
     CHECK(recorded.ask(gone) == "answered");
-    *gone = true;
+    left = true;
     CHECK(recorded.ask(gone) == "stopped");
     CHECK(recorded.ask(gone) == "stopped");
     for (std::size_t i = 0; i < 2 * QueryThreads::threads; ++i) // the next question is not stopped by that
         CHECK(recorded.ask(nullptr) == "answered");
+}
+
+TEST_CASE("a question that takes longer than questions may is stopped", "[http][bounds]") {
+    const Recorded recorded{std::chrono::milliseconds{0}};
+    CHECK(recorded.ask(nullptr) == "stopped");
+    CHECK(recorded.ask(nullptr) == "stopped");
 }

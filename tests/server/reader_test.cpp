@@ -103,6 +103,38 @@ TEST_CASE("all samples of a run come in order of time, whole, whatever is asked 
     CHECK(full.error().message == "full");
 }
 
+TEST_CASE("pages of samples, one after the other, are all samples, each once", "[reader][export]") {
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    auto archive = std::move(Archive::open(folder / "a.db")).value();
+    pipeline::Pipeline pipeline(archive, dictionary);
+    REQUIRE(pipeline.begin({}).ok());
+    constexpr std::size_t packets = 70'000; // of two samples: more than a page; with a long silence in the middle
+    for (std::size_t i = 0; i < packets; ++i)
+        REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), (i < packets / 2 ? 0.0 : 1e6) + static_cast<double>(i) / 64.0,
+                                                       static_cast<float>(i), 3.0F))).ok());
+    REQUIRE(pipeline.commit().ok());
+    auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
+
+    std::size_t pages = 0, seen = 0;
+    double last_s = -1.0;
+    archive::SclkRange range;
+    for (bool more = true; more; ++pages) {
+        const auto page = reader.sample_page(RunId{1}, {}, range);
+        REQUIRE(page.ok());
+        REQUIRE(std::ranges::is_sorted(page->samples, {}, [](const auto& sample) { return sample.sclk.seconds; }));
+        if (!page->samples.empty()) {
+            CHECK(page->samples.front().sclk.seconds > last_s);
+            last_s = page->samples.back().sclk.seconds;
+        }
+        seen += page->samples.size();
+        more = page->next_s.has_value();
+        range.from_s = page->next_s;
+    }
+    CHECK(pages > 1);
+    CHECK(seen == 2 * packets);
+}
+
 TEST_CASE("a range includes both its ends", "[reader]") {
     const bool finished = GENERATE(false, true);
     Recorded run(finished);

@@ -7,6 +7,7 @@
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
+#include <future>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
@@ -18,6 +19,7 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
+using error_code = boost::system::error_code;
 using tcp = asio::ip::tcp;
 
 /// A certificate for localhost, signed by itself, and its key.
@@ -109,6 +111,36 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     response = {};
     http::read(bare, buffer, response, error);
     CHECK(error);
+}
+
+TEST_CASE("over TLS, too, a client that leaves is noticed while its question is answered", "[access][http][bounds]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    std::promise<std::pair<std::function<bool()>, server::Respond>> asked;
+    server::WebServer::Handlers handlers;
+    handlers.request = [&](const server::HttpRequest& request, const server::Respond& respond) { asked.set_value({request.gone, respond}); };
+    server::WebServer::Settings settings;
+    settings.certificate = folder / "cert.pem";
+    settings.key = folder / "key.pem";
+    const auto server = std::move(server::WebServer::open(settings, handlers)).value();
+    std::thread network{[&] { server->run(); }};
+
+    SecureClient client{folder / "cert.pem"};
+    auto stream = std::make_unique<beast::ssl_stream<beast::tcp_stream>>(client.connect(server->port()));
+    http::request<http::string_body> request{http::verb::get, "/", 11};
+    request.set(http::field::host, "localhost");
+    http::write(*stream, request);
+    const auto [gone, respond] = asked.get_future().get();
+    CHECK_FALSE(gone());
+    error_code ignored;
+    stream->next_layer().socket().shutdown(tcp::socket::shutdown_send, ignored);
+    stream.reset();
+    for (int i = 0; i < 500 && !gone(); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    CHECK(gone());
+    respond({});
+    server->stop();
+    network.join();
 }
 
 TEST_CASE("a certificate or key that cannot serve is named", "[access][http]") {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace aeolis::server {
+
+/// Connections that are open, in all and from each address, so that one address cannot take the places of all others. Loopback is
+/// this machine: whoever is on it can do worse, and a proxy in front of the server brings everybody from there.
+class ConnectionCount {
+  public:
+    ConnectionCount(std::size_t all_max, std::size_t each_max) : all_max_(all_max), each_max_(each_max) {}
+
+    /// Why one more from there may not stay; empty: it may. Counted either way, until leave().
+    std::string enter(const std::string& address, bool loopback);
+    void leave(const std::string& address);
+    std::size_t all() const { return all_; }
+
+  private:
+    std::size_t all_max_, each_max_;
+    std::size_t all_ = 0;
+    std::map<std::string, std::size_t> from_;
+};
+
+} // namespace aeolis::server

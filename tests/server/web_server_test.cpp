@@ -1,0 +1,126 @@
+// Connections without what is said over them: bodies in parts, and clients that leave.
+
+#include "server/net/web_server.hpp"
+#include "tests/server/web_client.hpp"
+#include "tests/support/catch.hpp"
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <fmt/format.h>
+#include <thread>
+
+using namespace aeolis;
+using namespace aeolis::test;
+using namespace std::chrono_literals;
+using server::WebServer;
+
+namespace {
+
+/// A server whose answers a test gives.
+struct Connections {
+    std::unique_ptr<WebServer> server;
+    std::thread network;
+
+    explicit Connections(std::function<void(server::HttpRequest, server::Respond)> request) {
+        WebServer::Handlers handlers;
+        handlers.request = std::move(request);
+        server = std::move(WebServer::open({}, std::move(handlers))).value();
+        network = std::thread{[this] { server->run(); }};
+    }
+    ~Connections() {
+        server->stop();
+        network.join();
+    }
+};
+
+/// `count` parts, of `octets` each; an Error in the place of the one `broken`.
+server::HttpResponse in_parts(std::size_t count, std::size_t octets, std::atomic<std::size_t>& asked, std::size_t broken = SIZE_MAX) {
+    server::HttpResponse response;
+    response.body = "begin ";
+    response.more = [=, &asked](const std::function<void(server::BodyPart)>& tell) {
+        const auto i = asked++;
+        if (i == broken) return tell(Error{"the disk is gone"});
+        tell(i < count ? std::string(octets, static_cast<char>('a' + i % 26)) : std::string{});
+    };
+    return response;
+}
+
+bool soon(const std::function<bool()>& what) {
+    for (int i = 0; i < 500 && !what(); ++i)
+        std::this_thread::sleep_for(10ms);
+    return what();
+}
+
+} // namespace
+
+TEST_CASE("a body in parts comes whole, and the connection goes on", "[http]") {
+    std::atomic<std::size_t> asked{0};
+    const Connections here{[&](const server::HttpRequest& request, const server::Respond& respond) {
+        respond(request.path == "/long" ? in_parts(3, 100'000, asked) : server::HttpResponse{});
+    }};
+    const auto reply = web_request(here.server->port(), "GET", "/long");
+    CHECK(reply.status == 200);
+    CHECK(reply.body == "begin " + std::string(100'000, 'a') + std::string(100'000, 'b') + std::string(100'000, 'c'));
+
+    asked = 0;
+    const auto both = raw_exchange(here.server->port(), "GET /long HTTP/1.1\r\nHost: localhost\r\n\r\nGET /short HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    CHECK_THAT(both, Catch::Contains("Transfer-Encoding: chunked") && Catch::Contains("\r\n0\r\n\r\nHTTP/1.1 200"));
+    asked = 0;
+    const auto old = raw_exchange(here.server->port(), "GET /long HTTP/1.0\r\nHost: localhost\r\n\r\n");
+    CHECK_THAT(old, !Catch::Contains("chunked") && Catch::Contains("\r\n\r\nbegin aaa") && Catch::EndsWith("ccc"));
+    asked = 0;
+    const auto head = raw_exchange(here.server->port(), "HEAD /long HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    CHECK_THAT(head, Catch::StartsWith("HTTP/1.1 200") && Catch::EndsWith("\r\n\r\n") && !Catch::Contains("Content-Length"));
+    CHECK(asked == 0);
+}
+
+TEST_CASE("a body of which a part cannot be had breaks off, so that nobody takes it for whole", "[http]") {
+    std::atomic<std::size_t> asked{0};
+    const Connections here{[&](const server::HttpRequest&, const server::Respond& respond) { respond(in_parts(3, 1000, asked, 2)); }};
+    CHECK(web_request(here.server->port(), "GET", "/").status == 0);
+    asked = 0;
+    const auto octets = raw_exchange(here.server->port(), "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    CHECK_THAT(octets, Catch::Contains("bbb") && !Catch::Contains("\r\n0\r\n\r\n"));
+}
+
+TEST_CASE("a client that does not read is asked for no more than its connection holds", "[http][bounds]") {
+    std::atomic<std::size_t> asked{0};
+    const Connections here{[&](const server::HttpRequest&, const server::Respond& respond) { respond(in_parts(100'000, 1 << 20, asked)); }};
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket client{io};
+    client.connect({boost::asio::ip::make_address("127.0.0.1"), here.server->port()});
+    const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n";
+    boost::asio::write(client, boost::asio::buffer(request));
+    REQUIRE(soon([&] { return asked > 0; }));
+    std::size_t before = 0;
+    REQUIRE(soon([&] { // it stands still
+        std::this_thread::sleep_for(100ms);
+        return std::exchange(before, asked.load()) == asked;
+    }));
+    CHECK(asked < 64); // what the kernel keeps of a connection is some megabytes
+    CHECK(web_request(here.server->port(), "HEAD", "/").status == 200); // others are served
+}
+
+TEST_CASE("who asks and leaves is noticed, so that the question can stop", "[http][bounds]") {
+    std::function<bool()> gone;
+    server::Respond answer;
+    std::atomic<bool> asked{false};
+    const Connections here{[&](const server::HttpRequest& request, const server::Respond& respond) {
+        gone = request.gone;
+        answer = respond;
+        asked = true;
+    }};
+    boost::asio::io_context io;
+    auto client = std::make_unique<boost::asio::ip::tcp::socket>(io);
+    client->connect({boost::asio::ip::make_address("127.0.0.1"), here.server->port()});
+    const std::string request = "GET / HTTP/1.1\r\nHost: localhost\r\n\r\nGET / HT"; // what else it sends does not matter
+    boost::asio::write(*client, boost::asio::buffer(request));
+    REQUIRE(soon([&] { return asked.load(); }));
+    std::this_thread::sleep_for(600ms);
+    CHECK_FALSE(gone());
+    client.reset();
+    CHECK(soon(gone));
+    answer({});
+}
