@@ -10,26 +10,27 @@ namespace {
 
 /// What is asked for, and how far it has come.
 struct SampleExport : std::enable_shared_from_this<SampleExport> {
-    SampleExport(QueryThreads& threads, const dictionary::Dictionary& words) : queries(threads), dictionary(words) {}
+    SampleExport(QueryThreads& threads, SampleText lines) : queries(threads), text(std::move(lines)) {}
     QueryThreads& queries;
-    const dictionary::Dictionary& dictionary;
+    SampleText text;
     archive::RunId run;
     std::vector<std::string> channels;
     archive::SclkRange range;
-    RowFormat format{};
-    Sclk entry;
     bool done = false;
     std::function<bool()> gone;
 
     /// The next page as text; empty: there is none.
     BodyPart page(archive::Reader& reader) {
-        const auto samples = reader.sample_page(run, channels, range);
-        if (!samples) return samples.error();
-        std::string text;
-        append_rows(text, format, samples->samples, entry, dictionary);
-        done = !samples->next_s;
-        if (!done) range.from_s = samples->next_s;
-        return text;
+        std::string lines;
+        while (lines.empty() && !done) {
+            const auto samples = reader.sample_page(run, channels, range);
+            if (!samples) return samples.error();
+            text.append(lines, samples->samples);
+            range.from_s = samples->next_s;
+            done = !samples->next_s;
+        }
+        if (done) text.finish(lines);
+        return lines;
     }
     void tell_next(const std::function<void(BodyPart)>& tell) {
         if (done) return tell(std::string{});
@@ -41,28 +42,27 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
 } // namespace
 
 void Api::export_samples(const Asked& asked) {
-    auto query = QueryText::parse(asked.request.query, {"names", "from", "to", "format"});
+    auto query = QueryText::parse(asked.request.query, {"names", "from", "to", "format", "align"});
     if (!query) return asked.respond(error_response(400, query.error().message));
-    const auto format = row_format(query->text("format").value_or("csv"));
-    if (!format) return asked.respond(error_response(400, format.error().message));
     const auto range = range_of(*query);
     if (!range) return asked.respond(error_response(400, range.error().message));
-    auto wanted = std::make_shared<SampleExport>(parts_.queries, parts_.dictionary);
-    wanted->channels = query->list("names");
+    auto channels = query->list("names");
+    auto text = SampleText::make(parts_.dictionary, channels, {query->text("format").value_or("csv"), query->text("align").value_or("")});
+    if (!text) return asked.respond(error_response(400, text.error().message));
+    auto wanted = std::make_shared<SampleExport>(parts_.queries, std::move(*text));
+    wanted->channels = std::move(channels);
     wanted->range = *range;
-    wanted->format = *format;
     wanted->gone = asked.request.gone;
     ask(asked, std::move(*query), [wanted](archive::Reader& reader, archive::RunId run, const QueryText&) -> std::optional<HttpResponse> {
         const auto state = reader.run(run);
         if (!state) return error_response(500, state.error().message);
         wanted->run = run;
-        wanted->entry = Sclk{state->entry_sclk()};
+        wanted->text.set_entry(Sclk{state->entry_sclk()});
         auto first = wanted->page(reader);
         if (!first) return error_response(400, first.error().message);
-        const bool csv = wanted->format == RowFormat::csv;
         HttpResponse response;
-        response.content_type = csv ? "text/csv; charset=utf-8" : "application/x-ndjson";
-        response.body = std::string{head_of(wanted->format)} + *first;
+        response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
+        response.body = wanted->text.head() + *first;
         if (!wanted->done) response.more = [wanted](const auto& tell) { wanted->tell_next(tell); };
         return response;
     });

@@ -1,5 +1,7 @@
 #include "server/api/sample_text.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <iterator>
@@ -11,35 +13,100 @@ const char* word_for(archive::Source source) {
     return source == archive::Source::realtime ? "realtime" : "recorded";
 }
 
+/// JSON has no infinities: they are texts.
 std::string json_number(double value) {
     return std::isfinite(value) ? fmt::format("{}", value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
 }
 
+std::optional<double> seconds_of(const std::string& text) {
+    double seconds = 0.0;
+    const auto* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data(), end, seconds);
+    if (error != std::errc{} || stopped != end) return std::nullopt;
+    return seconds;
+}
+
 } // namespace
 
-Result<RowFormat> row_format(std::string_view name) {
-    if (name == "csv") return RowFormat::csv;
-    if (name == "jsonl") return RowFormat::jsonl;
-    return Error{fmt::format("format: '{}' is neither csv nor jsonl", name)};
-}
-
-std::string_view head_of(RowFormat format) {
-    return format == RowFormat::csv ? "sclk,e_s,channel,value,unit,source\n" : "";
-}
-
-void append_rows(std::string& text, RowFormat format, std::span<const archive::ChannelValue> samples, Sclk entry,
-                 const dictionary::Dictionary& dictionary) {
-    const auto into = std::back_inserter(text);
-    for (const auto& sample : samples) {
-        const auto& channel = dictionary.channels[sample.channel.value];
-        const double sclk_s = sample.sclk.seconds, e_s = sclk_s - entry.seconds;
-        if (format == RowFormat::csv)
-            fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel.name, sample.value, channel.type.unit, word_for(sample.source));
-        else
-            fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":"{}","value":{},"unit":"{}","source":"{}"}})"
-                                 "\n",
-                           sclk_s, e_s, channel.name, json_number(sample.value), channel.type.unit, word_for(sample.source));
+Result<SampleText> SampleText::make(const dictionary::Dictionary& dictionary, const std::vector<std::string>& channels, const Options& options) {
+    SampleText text(dictionary);
+    if (options.format != "csv" && options.format != "jsonl") return Error{fmt::format("format: '{}' is neither csv nor jsonl", options.format)};
+    text.csv_ = options.format == "csv";
+    if (options.align.empty()) return text;
+    if (channels.empty()) return Error{"align: the columns are the channels that are named, and none is"};
+    for (const auto& name : channels) {
+        const auto* channel = dictionary.channel(name);
+        if (channel == nullptr) return Error{fmt::format("no channel '{}'", name)};
+        if (std::ranges::find(text.columns_, channel) != text.columns_.end()) return Error{fmt::format("channel '{}' is named twice", name)};
+        text.columns_.push_back(channel);
+        if (name == options.align) text.leader_ = channel;
     }
+    text.values_.resize(channels.size());
+    if (text.leader_ != nullptr) return text;
+    const auto step_s = seconds_of(options.align);
+    if (!step_s) return Error{fmt::format("align: '{}' is neither one of the channels nor seconds", options.align)};
+    if (!(*step_s >= align_s_min && *step_s <= align_s_max))
+        return Error{fmt::format("align: {} s is not within {} … {} s", *step_s, align_s_min, align_s_max)};
+    text.step_s_ = *step_s;
+    return text;
+}
+
+std::string SampleText::head() const {
+    if (!csv_) return {};
+    if (columns_.empty()) return "sclk,e_s,channel,value,unit,source\n";
+    std::string line = "sclk,e_s";
+    for (const auto* channel : columns_)
+        line += ',' + channel->name;
+    return line + '\n';
+}
+
+void SampleText::append(std::string& text, std::span<const archive::ChannelValue> samples) {
+    for (const auto& sample : samples)
+        columns_.empty() ? append_sample(text, sample) : append_aligned(text, sample);
+}
+
+void SampleText::finish(std::string& text) {
+    if (line_s_) append_line(text, *line_s_);
+    line_s_.reset();
+}
+
+void SampleText::append_sample(std::string& text, const archive::ChannelValue& sample) const {
+    const auto into = std::back_inserter(text);
+    const auto& channel = dictionary_->channels[sample.channel.value];
+    const double sclk_s = sample.sclk.seconds, e_s = sclk_s - entry_.seconds;
+    if (csv_)
+        fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel.name, sample.value, channel.type.unit, word_for(sample.source));
+    else
+        fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":"{}","value":{},"unit":"{}","source":"{}"}})"
+                             "\n",
+                       sclk_s, e_s, channel.name, json_number(sample.value), channel.type.unit, word_for(sample.source));
+}
+
+void SampleText::append_aligned(std::string& text, const archive::ChannelValue& sample) {
+    const auto column = std::ranges::find(columns_, sample.channel, &dictionary::Channel::id);
+    if (column == columns_.end()) return;
+    const double sclk_s = sample.sclk.seconds;
+    if (line_s_ && sclk_s > *line_s_) finish(text); // all of that instant have come
+    values_[static_cast<std::size_t>(column - columns_.begin())] = sample.value;
+    if (leader_ == nullptr)
+        line_s_ = std::ceil(sclk_s / step_s_) * step_s_;
+    else if (sample.channel == leader_->id)
+        line_s_ = sclk_s;
+}
+
+void SampleText::append_line(std::string& text, double sclk_s) const {
+    const auto into = std::back_inserter(text);
+    if (csv_)
+        fmt::format_to(into, "{},{}", sclk_s, sclk_s - entry_.seconds);
+    else
+        fmt::format_to(into, R"({{"sclk":{},"e_s":{})", sclk_s, sclk_s - entry_.seconds);
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        if (csv_)
+            text += values_[i] ? fmt::format(",{}", *values_[i]) : ",";
+        else
+            fmt::format_to(into, R"(,"{}":{})", columns_[i]->name, values_[i] ? json_number(*values_[i]) : "null");
+    }
+    text += csv_ ? "\n" : "}\n";
 }
 
 } // namespace aeolis::server

@@ -71,9 +71,10 @@ struct ExportOptions {
     std::vector<std::string> channels; ///< empty: all
     std::optional<double> from_s, to_s; ///< SCLK, both included
     std::string format = "csv";        ///< csv, jsonl
+    std::string align;                 ///< as SampleText::Options has it
     std::filesystem::path out;         ///< empty: the standard output
 };
-/// Writes a row a sample.
+/// Writes a line a sample, or a line an instant.
 int export_samples(const ExportOptions& options);
 /// The same rows as a table of an SQLite file `out`.
 int archive_samples(const ExportOptions& options);

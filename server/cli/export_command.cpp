@@ -8,16 +8,16 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 #include <utility>
 
 namespace aeolis::server {
 namespace {
 
-/// Takes some thousands of rows at a time.
-using TakeRows = std::function<Result<void>(std::span<const archive::ChannelValue>, Sclk entry, const dictionary::Dictionary&)>;
+using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
 
-/// Asks for the samples, hands them on. @return the exit code
-int each_row(const ExportOptions& options, const char* command, const TakeRows& take) {
+/// Says of which run and in whose words, then hands on its samples, some thousands at a time. @return the exit code
+int each_row(const ExportOptions& options, const char* command, const Begin& begin, const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
     int exit_code = 0;
     const auto words = recorded_words(options.of.shared.dictionary, options.of.xtce, exit_code);
@@ -27,8 +27,8 @@ int each_row(const ExportOptions& options, const char* command, const TakeRows& 
     const archive::RunId run{options.of.run.value_or(0)};
     const auto state = reader->run(run);
     if (!state) return said(state.error());
-    const auto done = reader->each_sample(run, options.channels, {options.from_s, options.to_s},
-                                          [&](auto samples) { return take(samples, Sclk{state->entry_sclk()}, words->dictionary); });
+    if (auto begun = begin(*state, words->dictionary); !begun) return said(begun.error());
+    const auto done = reader->each_sample(run, options.channels, {options.from_s, options.to_s}, take);
     return done ? 0 : said(done.error());
 }
 
@@ -49,18 +49,26 @@ int export_samples(const ExportOptions& options) {
         if (std::fwrite(text.data(), 1, text.size(), to) == text.size()) return {};
         return Error{(file != nullptr ? options.out.string() : std::string("the standard output")) + " takes no more"};
     };
-    const auto format = row_format(options.format);
-    if (!format) return failed("export: " + format.error().message);
+    std::optional<SampleText> lines; // once it is known which words the run has
     std::string text;
-    bool begun = false; // nothing is written of what cannot be asked
-    const int ended = each_row(options, "export", [&](auto samples, Sclk entry, const auto& dictionary) {
-        text = std::exchange(begun, true) ? "" : head_of(*format);
-        append_rows(text, *format, samples, entry, dictionary);
-        return write(text);
-    });
+    const int ended = each_row(
+        options, "export",
+        [&](const auto& state, const auto& dictionary) -> Result<void> {
+            auto made = SampleText::make(dictionary, options.channels, {options.format, options.align});
+            if (!made) return made.error();
+            lines = std::move(*made);
+            lines->set_entry(Sclk{state.entry_sclk()});
+            return write(lines->head());
+        },
+        [&](auto samples) {
+            text.clear();
+            lines->append(text, samples);
+            return write(text);
+        });
     if (ended != 0) return ended;
-    if (!begun)
-        if (auto done = write(head_of(*format)); !done) return failed("export: " + done.error().message);
+    text.clear();
+    lines->finish(text);
+    if (auto done = write(text); !done) return failed("export: " + done.error().message);
     return std::fflush(to) == 0 ? 0 : failed("export: what was written could not be kept");
 }
 
@@ -69,10 +77,19 @@ int archive_samples(const ExportOptions& options) {
     if (!table) return failed("archive samples: " + table.error().message);
     const archive::RunId run{options.of.run.value_or(0)};
     std::size_t rows = 0;
-    const int ended = each_row(options, "archive samples", [&](auto samples, Sclk entry, const auto& dictionary) {
-        rows += samples.size();
-        return table->add(run, entry, dictionary, samples);
-    });
+    Sclk entry;
+    const dictionary::Dictionary* words = nullptr;
+    const int ended = each_row(
+        options, "archive samples",
+        [&](const auto& state, const auto& dictionary) -> Result<void> {
+            entry = Sclk{state.entry_sclk()};
+            words = &dictionary;
+            return {};
+        },
+        [&](auto samples) {
+            rows += samples.size();
+            return table->add(run, entry, *words, samples);
+        });
     if (ended != 0) return ended;
     if (auto done = table->finish(); !done) return failed("archive samples: " + done.error().message);
     fmt::print("{} samples of run {} are the table 'samples' of {}\n", rows, run.value, options.out.string());

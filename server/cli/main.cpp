@@ -317,6 +317,8 @@ int main(int argc, char** argv) {
                                                         "sample, in the same memory however many");
     add_selection(*export_command, exporting);
     export_command->add_option("--format", exporting.format, "csv or jsonl")->check(CLI::IsMember({"csv", "jsonl"}))->capture_default_str();
+    export_command->add_option("--align", exporting.align, "a line an instant and a column a channel: at the times of this one of the channels, "
+                                                           "or at multiples of so many seconds; of each the newest value");
     export_command->add_option("--out", exporting.out, "a new file; left out: standard output");
     export_command->callback([&] { exit_code = export_samples(exporting); });
 

@@ -126,6 +126,8 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     const auto rows = says("export --run 1 --channels altitude_m,speed_mps --archive " + in("b.db"), "sclk,e_s,channel,value,unit,source\n");
     const auto objects = says("export --run 1 --channels altitude_m,speed_mps --format jsonl --archive " + in("b.db"), R"("channel":"altitude_m")");
     CHECK(std::count(rows.begin(), rows.end(), '\n') == std::count(objects.begin(), objects.end(), '\n') + 1);
+    const auto aligned = says("export --run 1 --channels altitude_m,speed_mps --align 1 --archive " + in("b.db"), "sclk,e_s,altitude_m,speed_mps\n");
+    CHECK(std::count(aligned.begin(), aligned.end(), '\n') > 100);
     says("archive samples --run 1 --channels altitude_m,speed_mps --archive " + in("b.db") + " --out " + in("samples.db"),
          (std::to_string(std::count(objects.begin(), objects.end(), '\n')) + " samples of run 1").c_str());
     says("archive rebuild --archive " + in("b.db"), "run 1: made again from its units");

@@ -37,6 +37,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=csv", "", 200, "channel,unit,sclk_s,value,source"},
         {"GET", "/api/v1/runs/1/samples?names=altitude_m", "", 200, "sclk,e_s,channel,value,unit,source\n"},
         {"GET", "/api/v1/runs/1/samples?format=jsonl&to=1", "", 200, ""},
+        {"GET", "/api/v1/runs/1/samples?names=speed_mps,altitude_m&align=speed_mps", "", 200, "sclk,e_s,speed_mps,altitude_m\n"},
+        {"GET", "/api/v1/runs/1/samples?names=speed_mps&align=mach", "", 400, "align: 'mach'"},
         {"GET", "/api/v1/runs/1/samples?format=xlsx", "", 400, "neither csv nor jsonl"},
         {"GET", "/api/v1/runs/1/samples?names=altitud", "", 400, "altitud"},
         {"GET", "/api/v1/runs/1/samples?from=2&to=1", "", 400, "upside down"},
