@@ -14,10 +14,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fmt/format.h>
-#include <fstream>
 #include <spdlog/spdlog.h>
-#include <sstream>
-#include <unistd.h>
 
 namespace aeolis::server {
 namespace {
@@ -56,13 +53,6 @@ std::optional<std::vector<std::string>> parts_of(std::string_view pattern, std::
             return std::nullopt;
     }
     return parts;
-}
-
-std::uint64_t resident_octets() {
-    std::ifstream statm{"/proc/self/statm"};
-    std::uint64_t size_pages = 0, resident_pages = 0;
-    statm >> size_pages >> resident_pages;
-    return resident_pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 } // namespace
@@ -474,36 +464,6 @@ v1::RunState Api::current_run() const {
         state.set_archive_fault(parts_.pipeline.fault());
     }
     return state;
-}
-
-void Api::metrics(const Asked& asked) {
-    const auto pipeline = parts_.pipeline.figures();
-    const auto& hub = parts_.hub.figures;
-    std::ostringstream text;
-    const auto write = [&](const char* name, const char* type, const char* help, double value) {
-        text << "# HELP aeolis_" << name << ' ' << help << "\n# TYPE aeolis_" << name << ' ' << type << "\naeolis_"
-             << name << ' ' << fmt::format("{}", value) << '\n';
-    };
-    const auto count = [](auto value) { return static_cast<double>(value); };
-    write("archive_deliveries_total", "counter", "deliveries taken by the pipeline", count(pipeline.deliveries));
-    write("archive_deliveries_waiting", "gauge", "deliveries in the pipeline's queue", count(pipeline.waiting));
-    write("archive_commits_published_total", "counter", "group commits published", count(pipeline.published_batches));
-    write("archive_failed_commits_total", "counter", "commits that failed and were tried again",
-          count(pipeline.failed_commits));
-    write("items_published_total", "counter", "items made durable and published", count(pipeline.published_items));
-    write("connections", "gauge", "open HTTP and WebSocket connections", count(parts_.connections()));
-    write("stream_clients", "gauge", "WebSocket clients", count(parts_.hub.sessions()));
-    write("stream_encodings_total", "counter", "batches encoded", count(hub.encodings));
-    write("stream_shared_total", "counter", "batches sent in another client's encoding", count(hub.shared));
-    write("stream_archive_pages_total", "counter", "pages that clients read from the archive",
-          count(hub.archive_pages));
-    write("stream_refusals_total", "counter", "client messages that were refused", count(hub.refusals));
-    write("queries_total", "counter", "questions to the archive", count(parts_.queries.asked()));
-    write("queries_waiting", "gauge", "questions that wait for a query thread", count(parts_.queries.waiting()));
-    write("run", "gauge", "number of the current run", count(parts_.desk.current().run()));
-    write("run_attained_pace", "gauge", "seconds of the vehicle a second", parts_.desk.current().attained_pace());
-    write("resident_memory_bytes", "gauge", "resident memory of the process", count(resident_octets()));
-    asked.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", text.str()});
 }
 
 } // namespace aeolis::server

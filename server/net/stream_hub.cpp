@@ -141,6 +141,10 @@ void StreamHub::remove(StreamSession& session) {
     if (sessions_.empty()) services_.want_items(false);
 }
 
+std::size_t StreamHub::sessions_behind() const {
+    return static_cast<std::size_t>(std::ranges::count_if(sessions_, [](const auto* session) { return session->behind(); }));
+}
+
 void StreamHub::wake_all() {
     for (auto* session : sessions_)
         session->wake();

@@ -87,6 +87,7 @@ class StreamHub {
     /// Clients that may follow no longer are closed.
     void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
+    std::size_t sessions_behind() const; ///< that have not been given all there is for them
 
     // ---- for sessions ------------------------------------------------------------------------------------------
     const Services& services() const { return services_; }
@@ -109,6 +110,7 @@ class StreamHub {
 
     struct Figures {
         std::uint64_t items = 0, encodings = 0, shared = 0, archive_pages = 0, refusals = 0;
+        std::uint64_t messages = 0, octets = 0; ///< given to clients
     };
     Figures figures;
 

@@ -148,7 +148,20 @@ Encoded StreamSession::welcome() {
     return encode(message, shape_.format);
 }
 
+bool StreamSession::behind() const {
+    return !replies_.empty() || (subscribed_ && run_ != 0 && (follows_current() ? cursor_ < hub_.last_seq() : !exhausted_));
+}
+
 Encoded StreamSession::next_message() {
+    auto message = next_due();
+    if (message) {
+        ++hub_.figures.messages;
+        hub_.figures.octets += message->size();
+    }
+    return message;
+}
+
+Encoded StreamSession::next_due() {
     if (!refusal_.empty()) return nullptr;
     if (!replies_.empty()) {
         auto message = replies_.front();

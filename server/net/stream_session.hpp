@@ -41,6 +41,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     void on_message(std::string_view payload);
     /// What to write next; null when there is nothing now: wake() comes when that changes.
     Encoded next_message();
+    /// Whether there is something for it that it has not been given.
+    bool behind() const;
     /// Why the connection should close; empty: it should not.
     std::string closing() const;
     /// Looks again whether the client may follow.
@@ -52,6 +54,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     void refuse(std::string reason);
     void reply(const v1::ServerMessage& message);
     void follow(std::uint64_t run, archive::Sequence after);
+    Encoded next_due();
     Encoded welcome();
     Encoded next_items();
     Encoded from_page();

@@ -138,8 +138,33 @@ Result<void> PipelineThread::write_audit() {
 }
 
 Result<void> PipelineThread::commit(std::optional<std::chrono::steady_clock::time_point> when_due) {
+    const bool waited = pipeline_.pending_items() != 0;
+    const auto begun = std::chrono::steady_clock::now();
     auto committed = when_due ? pipeline_.commit_if_due(*when_due) : pipeline_.commit();
+    if (waited && pipeline_.pending_items() == 0) note_commit(std::chrono::steady_clock::now() - begun);
     return committed ? write_audit() : committed;
+}
+
+void PipelineThread::note_commit(std::chrono::steady_clock::duration took) {
+    const double took_s = std::chrono::duration<double>(took).count();
+    const std::scoped_lock lock{figures_mutex_};
+    ++commits_;
+    commit_s_ += took_s;
+    longest_commit_s_ = std::max(longest_commit_s_, took_s);
+}
+
+void PipelineThread::note_received(const Delivery& delivery) {
+    const std::scoped_lock lock{figures_mutex_};
+    const auto add = [&](const std::string& link, std::size_t octets) {
+        auto& received = links_[link];
+        ++received.units;
+        received.octets += octets;
+    };
+    for (const auto& entry : delivery.entries) {
+        if (const auto* packet = std::get_if<simulation::ReceivedPacket>(&entry)) add(packet->link.name, packet->octets.size());
+        if (const auto* packet = std::get_if<pipeline::DownlinkPacket>(&entry)) add("downlink", packet->octets.size());
+        if (std::holds_alternative<simulation::ReceivedTone>(entry)) add("tones", 0);
+    }
 }
 
 bool PipelineThread::deliver(Delivery delivery) {
@@ -168,7 +193,22 @@ std::string PipelineThread::fault() const {
 }
 
 PipelineThread::Figures PipelineThread::figures() const {
-    return {deliveries_, failed_commits_, batches_, items_, jobs_.size()};
+    Figures figures;
+    figures.deliveries = deliveries_;
+    figures.failed_commits = failed_commits_;
+    figures.published_batches = batches_;
+    figures.published_items = items_;
+    figures.waiting = jobs_.size();
+    {
+        const std::scoped_lock lock{audit_mutex_};
+        figures.audit_waiting = audit_.size();
+    }
+    const std::scoped_lock lock{figures_mutex_};
+    figures.commits = commits_;
+    figures.commit_s = commit_s_;
+    figures.longest_commit_s = longest_commit_s_;
+    figures.links = links_;
+    return figures;
 }
 
 void PipelineThread::run() {
@@ -203,6 +243,7 @@ void PipelineThread::finish(Finish& finish) {
 
 void PipelineThread::take(Delivery& delivery) {
     ++deliveries_;
+    note_received(delivery);
     for (auto& entry : delivery.entries) {
         const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
         // Refused only while too much waits for a failing disk: then that must be committed first.

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <map>
 #include <optional>
 #include <thread>
 #include <variant>
@@ -77,9 +78,15 @@ class PipelineThread {
     /// Given up, or held right now; empty when all is well.
     std::string fault() const;
 
+    struct Received {
+        std::uint64_t units = 0, octets = 0;
+    };
     struct Figures {
         std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
-        std::size_t waiting = 0;
+        std::size_t waiting = 0, audit_waiting = 0;
+        std::uint64_t commits = 0; ///< that had something to make durable
+        double commit_s = 0.0, longest_commit_s = 0.0; ///< of all of them; of one
+        std::map<std::string, Received> links; ///< by name: packets and tones that reached Earth
     };
     Figures figures() const;
 
@@ -109,6 +116,8 @@ class PipelineThread {
     bool noted(const Result<void>& result);
     bool waits() const;
     Result<void> write_audit();
+    void note_received(const Delivery& delivery);
+    void note_commit(std::chrono::steady_clock::duration took);
     /// Of the run and of the audit; the run's when it is due, or at once.
     Result<void> commit(std::optional<std::chrono::steady_clock::time_point> when_due);
 
@@ -119,6 +128,10 @@ class PipelineThread {
     BoundedQueue<Job> jobs_{deliveries_max};
     std::atomic<bool> items_wanted_{true}, given_up_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    mutable std::mutex figures_mutex_;
+    std::map<std::string, Received> links_;
+    std::uint64_t commits_ = 0;
+    double commit_s_ = 0.0, longest_commit_s_ = 0.0;
     mutable std::mutex audit_mutex_;
     std::vector<archive::AuditRecord> audit_;
     std::vector<std::function<void()>> when_durable_; ///< of what waits

@@ -29,7 +29,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
     }
     const Asked table[] = {
         {"GET", "/healthz", "", 200, "ok"},
-        {"GET", "/metrics", "", 200, "aeolis_resident_memory_bytes"},
+        {"GET", "/metrics", "", 200, "\naeolis_resident_memory_bytes "},
+        {"GET", "/metrics", "", 200, "\naeolis_archive_commit_seconds_count "},
         {"GET", "/api/v1/openapi.yaml", "", 200, "openapi: 3"},
         {"GET", "/api/v1/runs", "", 200, "\"scenario\":\"nominal\""},
         {"GET", "/api/v1/runs/latest", "", 200, "\"state\":\"running\""},

@@ -204,4 +204,7 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
     const auto durable = reader->last_seq(archive::RunId{1});
     REQUIRE(durable);
     CHECK(*durable >= client.complete_through); // published means durable
+    const auto metrics = web_request(server.port(), "GET", "/metrics").body;
+    CHECK_THAT(metrics, Catch::Contains("aeolis_link_units_total{link=\"uhf_live\"} ") && Catch::Contains("aeolis_link_units_total{link=\"tones\"} "));
+    CHECK_THAT(metrics, Catch::Contains("aeolis_stream_clients_behind ") && !Catch::Contains("aeolis_stream_octets_total 0\n"));
 }

@@ -1,0 +1,98 @@
+// GET /metrics: figures of each queue, link, commit and client, in Prometheus' text format.
+
+#include "server/api/api.hpp"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace aeolis::server {
+namespace {
+
+double resident_octets() {
+    std::ifstream statm{"/proc/self/statm"};
+    std::uint64_t size_pages = 0, resident_pages = 0;
+    statm >> size_pages >> resident_pages;
+    return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+double cpu_s() {
+    rusage used{};
+    ::getrusage(RUSAGE_SELF, &used);
+    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+    return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+class MetricsText {
+  public:
+    template <typename Value>
+    void gauge(std::string_view name, std::string_view help, Value value) {
+        begin(name, "gauge", help);
+        line(name, "", value);
+    }
+    template <typename Value>
+    void counter(std::string_view name, std::string_view help, Value value) {
+        begin(name, "counter", help);
+        line(name, "", value);
+    }
+    void begin(std::string_view name, std::string_view type, std::string_view help) {
+        fmt::format_to(std::back_inserter(text), "# HELP aeolis_{0} {2}\n# TYPE aeolis_{0} {1}\n", name, type, help);
+    }
+    template <typename Value>
+    void line(std::string_view name, std::string_view labels, Value value) {
+        fmt::format_to(std::back_inserter(text), "aeolis_{}{} {}\n", name, labels, value);
+    }
+    std::string text;
+};
+
+void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
+    text.counter("archive_deliveries_total", "deliveries taken by the pipeline", pipeline.deliveries);
+    text.gauge("archive_deliveries_waiting", "deliveries in the pipeline's queue", pipeline.waiting);
+    text.gauge("audit_waiting", "entries of the audit that are not durable yet", pipeline.audit_waiting);
+    text.counter("archive_commits_published_total", "group commits published", pipeline.published_batches);
+    text.counter("archive_failed_commits_total", "commits that failed and were tried again", pipeline.failed_commits);
+    text.begin("archive_commit_seconds", "summary", "time of a commit to the disk");
+    text.line("archive_commit_seconds_sum", "", pipeline.commit_s);
+    text.line("archive_commit_seconds_count", "", pipeline.commits);
+    text.gauge("archive_longest_commit_seconds", "the longest of them", pipeline.longest_commit_s);
+    text.counter("items_published_total", "items made durable and published", pipeline.published_items);
+    text.begin("link_units_total", "counter", "packets, or decoded tones, received over a link");
+    for (const auto& [link, received] : pipeline.links)
+        text.line("link_units_total", fmt::format("{{link=\"{}\"}}", link), received.units);
+    text.begin("link_octets_total", "counter", "octets of packets received over a link");
+    for (const auto& [link, received] : pipeline.links)
+        text.line("link_octets_total", fmt::format("{{link=\"{}\"}}", link), received.octets);
+}
+
+void write(MetricsText& text, const StreamHub& hub) {
+    const auto& figures = hub.figures;
+    text.gauge("stream_clients", "WebSocket clients", hub.sessions());
+    text.gauge("stream_clients_behind", "of them, those that have not been given all that is published for them", hub.sessions_behind());
+    text.counter("stream_messages_total", "messages given to clients", figures.messages);
+    text.counter("stream_octets_total", "octets of them", figures.octets);
+    text.counter("stream_encodings_total", "batches encoded", figures.encodings);
+    text.counter("stream_shared_total", "batches sent in another client's encoding", figures.shared);
+    text.counter("stream_archive_pages_total", "pages that clients read from the archive", figures.archive_pages);
+    text.counter("stream_refusals_total", "client messages that were refused", figures.refusals);
+}
+
+} // namespace
+
+void Api::metrics(const Asked& asked) {
+    MetricsText text;
+    write(text, parts_.pipeline.figures());
+    write(text, parts_.hub);
+    text.gauge("connections", "open HTTP and WebSocket connections", parts_.connections());
+    text.counter("queries_total", "questions to the archive", parts_.queries.asked());
+    text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());
+    const auto run = parts_.desk.current();
+    text.gauge("run", "number of the current run", run.run());
+    text.gauge("run_attained_pace", "seconds of the vehicle a second", run.attained_pace());
+    text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());
+    text.gauge("resident_memory_bytes", "resident memory of the process", resident_octets());
+    asked.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});
+}
+
+} // namespace aeolis::server
