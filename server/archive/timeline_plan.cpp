@@ -50,7 +50,7 @@ Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times&
         const auto& row = dictionary.anchors[i];
         const auto predicted = i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt;
         if (!anchors.before[i] && predicted)
-            anchors.before[i] = last ? *anchors.now[*last] + *predicted - *dictionary.predicted_anchor_e_s[*last] : *predicted;
+            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *dictionary.predicted_anchor_e_s[*last]) : *predicted; // by its distance to the last
         const bool from_parent = row.parent && row.parent->value < i && row.offset_s && anchors.now[row.parent->value];
         anchors.now[i] = told[i] ? told[i] : from_parent ? sum(anchors.now[row.parent->value], row.offset_s) : anchors.before[i];
         if (predicted) last = i;
