@@ -29,11 +29,20 @@ bool CommandQueue::approve(std::uint64_t number) {
 
 std::vector<std::uint64_t> CommandQueue::take_due(Ert now) {
     std::vector<std::uint64_t> due;
-    const auto is_due = [&](const Entry& each) { return !each.held && !each.needs_approval && (!each.release_at || *each.release_at <= now); };
     for (const Entry& each : entries_)
-        if (is_due(each)) due.push_back(each.number);
-    std::erase_if(entries_, is_due);
+        if (is_due(each, now)) due.push_back(each.number);
+    std::erase_if(entries_, [&](const Entry& each) { return is_due(each, now); });
     return due;
+}
+
+std::vector<std::uint64_t> CommandQueue::postpone_due(Ert now, Ert until) {
+    std::vector<std::uint64_t> postponed;
+    for (Entry& each : entries_) {
+        if (!is_due(each, now)) continue;
+        each.release_at = until;
+        postponed.push_back(each.number);
+    }
+    return postponed;
 }
 
 } // namespace aeolis::commands

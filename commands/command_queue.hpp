@@ -33,11 +33,16 @@ class CommandQueue {
 
     /// Takes out those that are due, in the order in which they leave.
     std::vector<std::uint64_t> take_due(Ert now);
+    /// Those that are due wait until then instead; their numbers.
+    std::vector<std::uint64_t> postpone_due(Ert now, Ert until);
 
     /// In the order in which they would leave.
     const std::vector<Entry>& waiting() const { return entries_; }
 
   private:
+    static bool is_due(const Entry& entry, Ert now) {
+        return !entry.held && !entry.needs_approval && (!entry.release_at || *entry.release_at <= now);
+    }
     bool set_held(std::uint64_t number, bool held);
 
     std::vector<Entry> entries_;

@@ -60,6 +60,11 @@ std::optional<Ert> ert_from_day_of_year(std::string_view text) {
     return Ert{microseconds{since}.count() + ((*hour * 60 + *minute) * 60 + *second) * 1'000'000 + microsecond};
 }
 
+std::optional<Scet> scet_from_day_of_year(std::string_view text) {
+    const auto time = ert_from_day_of_year(text);
+    return time ? std::optional{Scet{time->microseconds}} : std::nullopt;
+}
+
 std::string day_of_year_text(Scet time) {
     return text(time.microseconds);
 }

@@ -39,14 +39,23 @@ std::string day_of_year_text(Scet time);
 std::string day_of_year_text(Ert time);
 /// Back from that form; fractions of a second may be left out. None for what is no such text or no such day.
 std::optional<Ert> ert_from_day_of_year(std::string_view text);
+std::optional<Scet> scet_from_day_of_year(std::string_view text);
 
-/// SCLK and SCET run together through one known instant. Drift and leap seconds come with the time service.
+/// SCLK and SCET meet at one known instant, and from there on UTC runs `rate` times as fast as the clock on board. A row of the
+/// dictionary's clock_correlation.csv, or of a clock that only its scenario knows: version 0.
 struct ClockCorrelation {
     Sclk sclk;
     Scet scet;
+    double rate = 1.0;              ///< seconds of UTC a second of SCLK; 1 + drift
+    std::int32_t leap_seconds = 0;  ///< TAI - UTC [s] at `scet`; 0: not known
+    std::uint32_t version = 0;
 
     constexpr Scet scet_of(Sclk t) const {
-        return {scet.microseconds + static_cast<std::int64_t>((t - sclk) * 1.0e6)};
+        return {scet.microseconds + static_cast<std::int64_t>((t - sclk) * rate * 1.0e6)};
+    }
+    /// Not cut to a tick.
+    constexpr Sclk sclk_of(Scet t) const {
+        return sclk + static_cast<double>(t.microseconds - scet.microseconds) * 1.0e-6 / rate;
     }
 };
 

@@ -40,6 +40,11 @@ const Event* Dictionary::event(EvrId wanted) const {
 const Event* Dictionary::event(std::string_view name) const {
     return first(events, [&](const Event& e) { return e.name == name; });
 }
+const ClockCorrelation* Dictionary::clock_at(Sclk t) const {
+    const auto after = std::ranges::find_if(clock, [&](const ClockRow& row) { return row.valid_from > t; });
+    return after == clock.begin() ? nullptr : &std::prev(after)->correlation;
+}
+
 const Packet* Dictionary::packet(std::string_view name) const {
     return first(packets, [&](const Packet& p) { return p.name == name; });
 }

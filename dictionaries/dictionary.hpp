@@ -268,6 +268,14 @@ struct ConstraintRow {
     unsigned line = 0;  ///< in constraints.csv
 };
 
+/// A row of clock_correlation.csv: how SCLK leads to SCET from `valid_from` until the next row's.
+struct ClockRow {
+    Sclk valid_from;
+    ClockCorrelation correlation; ///< its version is the row's
+    std::string note;
+    unsigned line = 0;  ///< in clock_correlation.csv
+};
+
 // ---- the whole -------------------------------------------------------------------------------------------------
 
 struct Dictionary {
@@ -287,6 +295,8 @@ struct Dictionary {
     std::vector<OwnerRow> owners;
     std::vector<TelemetryPlanRow> telemetry_plan;
     MfskWaveform mfsk;                 ///< how tones are sent: mfsk.csv
+    std::vector<ClockRow> clock;       ///< by valid_from. Ground's alone, as the next
+    std::vector<std::optional<double>> predicted_anchor_e_s; ///< by anchor: seconds from entry; none: not predicted
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -294,6 +304,8 @@ struct Dictionary {
     const Event* event(EvrId id) const;
     const Event* event(std::string_view name) const;
     const Packet* packet(std::string_view name) const;
+    /// That holds at `t`; none before the first row.
+    const ClockCorrelation* clock_at(Sclk t) const;
 };
 
 /// One broken rule: "timeline.csv:12: timepoint 'x': desired offset 0.3 s is not a multiple of 1/64 s".
@@ -311,9 +323,9 @@ struct Loaded {
 };
 
 /// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv,
-/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv. All are on board, so `id` follows each; only the timeline's own two
-/// change what it does, so `timeline_version` follows those alone. DIR may also be one file that holds them all:
-/// dictionaries/mission_files.hpp.
+/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv, all of them on board, so that `id` follows each; only the
+/// timeline's own two change what it does, so `timeline_version` follows those alone. And what only ground has, which changes
+/// neither: clock_correlation.csv, predicted_anchors.csv. DIR may also be one file that holds them all: dictionaries/mission_files.hpp.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

@@ -98,6 +98,13 @@ Loaded load(const std::filesystem::path& path) {
         return read_owners(text, owned, findings);
     });
 
+    const File& clock_csv = files.sheet("clock_correlation.csv");
+    auto clock = read(clock_csv, read_clock_correlation);
+    const File& predicted_csv = files.sheet("predicted_anchors.csv");
+    auto predicted = read(predicted_csv, [&](std::string_view text, Findings& findings) {
+        return read_predicted_anchors(text, anchors && is_sound(anchors_csv) ? &*anchors : nullptr, findings);
+    });
+
     std::ranges::stable_sort(
         all, [](const Finding& a, const Finding& b) { return std::tie(a.file, a.line) < std::tie(b.file, b.line); });
     if (!all.empty()) return loaded;
@@ -121,6 +128,8 @@ Loaded load(const std::filesystem::path& path) {
     dictionary.state_machines = std::move(*state_machines);
     dictionary.owners = std::move(*owners);
     dictionary.telemetry_plan = std::move(*telemetry_plan);
+    dictionary.clock = std::move(*clock);
+    dictionary.predicted_anchor_e_s = std::move(*predicted);
     loaded.dictionary = std::move(dictionary);
     return loaded;
 }

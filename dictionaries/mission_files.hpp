@@ -20,9 +20,9 @@ struct MissionFile {
 
 /// The texts that a mission's dictionary is read from.
 struct MissionFiles {
-    static constexpr std::array<std::string_view, 9> sheet_names{
-        "anchors.csv",  "constraints.csv",    "mfsk.csv",           "owners.csv", "parameters.csv",
-        "timeline.csv", "state_machines.csv", "telemetry_plan.csv", "tones.csv"};
+    static constexpr std::array<std::string_view, 11> sheet_names{
+        "anchors.csv",  "clock_correlation.csv", "constraints.csv",    "mfsk.csv",           "owners.csv", "parameters.csv",
+        "predicted_anchors.csv", "timeline.csv", "state_machines.csv", "telemetry_plan.csv", "tones.csv"};
 
     MissionFile xtce;
     std::vector<MissionFile> sheets; ///< one for each of sheet_names, in their order

@@ -78,6 +78,7 @@ const char* name_of(Outcome outcome) {
 
 struct Landing::State {
     Scenario scenario;
+    ClockCorrelation clock;
     std::vector<EventReportName> reports;
     World world;
     Computers computers;
@@ -112,8 +113,8 @@ struct Landing::State {
     CycleReport report;
 
     State(const Scenario& s, const flight::Load& load, std::uint64_t seed_in, std::uint64_t case_number_in,
-          std::vector<EventReportName> names)
-        : scenario(s), reports(std::move(names)), world(s, seed_in, case_number_in),
+          std::vector<EventReportName> names, const std::optional<ClockCorrelation>& known_clock)
+        : scenario(s), clock(known_clock.value_or(clock_of_scenario(s))), reports(std::move(names)), world(s, seed_in, case_number_in),
           computers(load, world.sclk()), uhf(s.radio),
           x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
           passes(passes_of(s, seed_in, links_case(s, case_number_in))), relay_radio(s.radio.light_time_s),
@@ -128,6 +129,12 @@ struct Landing::State {
         if (s.test_venue == TestVenue::all_but_gnc) gnc_stand_in.emplace(load);
     }
 
+    static ClockCorrelation clock_of_scenario(const Scenario& s) {
+        ClockCorrelation own;
+        own.sclk = s.entry_sclk;
+        own.scet = s.entry_scet;
+        return own;
+    }
     static std::vector<OrbiterPass> passes_of(const Scenario& s, std::uint64_t seed, std::uint64_t case_number);
     static std::uint64_t links_case(const Scenario& s, std::uint64_t case_number) {
         return disperses_later(s) ? 0 : case_number;
@@ -140,7 +147,7 @@ struct Landing::State {
     }
 
     Sclk sclk() const { return world.sclk() + static_cast<double>(ticks_without_computer) * seconds_per_tick; }
-    ClockCorrelation correlation() const { return {scenario.entry_sclk, scenario.entry_scet}; }
+    const ClockCorrelation& correlation() const { return clock; }
     std::int64_t now_us() const { return correlation().scet_of(sclk()).microseconds; }
 
     void fly();
@@ -385,8 +392,8 @@ void Landing::State::read_event_reports() {
 }
 
 Landing::Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                 std::vector<EventReportName> reports)
-    : state_(std::make_unique<State>(scenario, load_for(scenario), seed, case_number, std::move(reports))) {}
+                 std::vector<EventReportName> reports, std::optional<ClockCorrelation> clock)
+    : state_(std::make_unique<State>(scenario, load_for(scenario), seed, case_number, std::move(reports), clock)) {}
 Landing::Landing(const Landing& other) : state_(std::make_unique<State>(*other.state_)) {
     // What was reported of the last cycle points into the original.
     state_->report = {};
@@ -413,10 +420,13 @@ const CycleReport& Landing::step() {
     s.report.events.clear();
 
     const std::int64_t cycle_start_us = s.now_us();
-    if (s.computer_on)
+    if (s.computer_on) {
         s.fly();
-    else
+    } else {
         ++s.ticks_without_computer;
+        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told}) // nobody drives the transmitters any more
+            if (told->up) s.tell(*told, false, "computer off", cycle_start_us);
+    }
     s.relay_recording(cycle_start_us);
 
     const std::int64_t now_us = s.now_us();

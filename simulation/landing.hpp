@@ -172,8 +172,9 @@ class Landing {
     /// `case_number` selects an independent draw of all dispersions under the same seed. Without `reports` the events
     /// decided on board are missing from the truth's. When the scenario has its dispersions drawn later than at the
     /// start, up to that tick nothing depends on the case: not the links' fortune either, which is case 0's throughout.
+    /// `clock`: how its clock runs against UTC; none: as UTC does, from the scenario's instant of entry.
     Landing(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number = 0,
-            std::vector<EventReportName> reports = {});
+            std::vector<EventReportName> reports = {}, std::optional<ClockCorrelation> clock = {});
     Landing(const Landing&);
     Landing& operator=(const Landing&);
     Landing(Landing&&) noexcept;

@@ -172,6 +172,18 @@ void check_relay_passes(const Radio& radio, std::vector<std::string>& found) {
         found.push_back("radio.delivery_restarts_after_touchdown_s: are not in order");
 }
 
+void check_tracking_passes(const std::vector<TrackingPass>& passes, std::vector<std::string>& found) {
+    constexpr double most_s = 1.0e6; // ours: eleven days
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        const TrackingPass& pass = passes[i];
+        const std::string name = "radio.tracking_passes[" + std::to_string(i) + "]";
+        if (pass.station.empty() || pass.station.size() > 32) found.push_back(name + ".station: a name of 1 … 32 octets is wanted");
+        if (!(pass.begin_after_entry_s >= -most_s && pass.end_after_entry_s <= most_s && pass.end_after_entry_s > pass.begin_after_entry_s))
+            found.push_back(name + ": begin_after_entry_s " + number(pass.begin_after_entry_s) + " to end_after_entry_s " +
+                            number(pass.end_after_entry_s) + " is no stretch of time within " + number(most_s) + " s of entry");
+    }
+}
+
 void check_tone_outages(const std::vector<ToneOutage>& outages, std::vector<std::string>& found) {
     for (std::size_t i = 0; i < outages.size(); ++i) {
         const std::string name = "radio.tone_outages[" + std::to_string(i) + "]";
@@ -335,6 +347,7 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_target_range(scenario, found);
     check_masses(scenario.masses, found);
     check_relay_passes(scenario.radio, found);
+    check_tracking_passes(scenario.radio.tracking_passes, found);
     check_tone_outages(scenario.radio.tone_outages, found);
     check_density_scale(scenario.density_scale, found);
     check_dispersion_moment(scenario, found);

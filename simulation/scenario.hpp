@@ -133,6 +133,13 @@ struct ToneOutage {
     double from_s = 0.0, to_s = 0.0; ///< after the event
 };
 
+/// When a station on Earth can send to the vehicle: begin and end of track by Earth's clock, as seconds after the UTC of
+/// entry. What leaves then is at the vehicle a light time later.
+struct TrackingPass {
+    std::string station; ///< "DSS-43"
+    double begin_after_entry_s = 0.0, end_after_entry_s = 0.0;
+};
+
 struct Radio {
     double light_time_s = 0.0;
     double uhf_rate_bps = 8000.0;
@@ -154,6 +161,7 @@ struct Radio {
     double uhf_loss_range_km = 1000.0;
     double uhf_hand_over_s = 0.0;           ///< nothing arrives for so long when the vehicle changes antennas. Ours
     std::vector<RelayPass> relay_passes;    ///< none: one bent pipe, always in view, without regard to range
+    std::vector<TrackingPass> tracking_passes; ///< none: some station always sees the vehicle
     std::vector<double> delivery_restarts_after_touchdown_s; ///< the rover's delivery of files begins anew: a fault
 };
 

@@ -1,6 +1,7 @@
 #include "telemetry/staleness.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace aeolis::telemetry {
@@ -39,6 +40,19 @@ double StalenessMonitor::interval_s(const Expected& expected) const {
     return state_ ? expected.interval_s[*state_] : 0.0;
 }
 
+double StalenessMonitor::reckon(const Expected& expected, Ert ert) {
+    const double interval = interval_s(expected);
+    if (expected.last && !expected.stale && interval > 0.0) {
+        const double remembered = std::exp(-seconds_between(reckoned_, ert) / stale_memory_s);
+        reckoned_ = ert;
+        due_ = due_ * remembered + seconds_between(expected.since, ert) / interval;
+        came_ = came_ * remembered + 1.0;
+    }
+    if (came_ >= due_) return stale_intervals;
+    const double lost = std::min(1.0 - came_ / due_, 0.99);
+    return std::clamp(std::log(stale_chance) / std::log(lost), stale_intervals, stale_intervals_max);
+}
+
 void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert now, std::vector<StalenessChange>& out) const {
     if (!std::exchange(expected.stale, false)) return;
     out.push_back({expected.packet, false, seconds_between(*expected.last, now), 0.0, reason});
@@ -47,6 +61,7 @@ void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert 
 void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
     const auto found = std::ranges::find(expected_, packet, &Expected::packet);
     if (found == expected_.end()) return;
+    found->intervals = reckon(*found, ert);
     clear(*found, "heard again", ert, out);
     found->last = found->since = ert;
 }
@@ -79,7 +94,7 @@ void StalenessMonitor::pass(Ert now, std::vector<StalenessChange>& out) {
     for (Expected& expected : expected_) {
         const double interval = interval_s(expected);
         if (expected.stale || !expected.last || interval == 0.0) continue;
-        if (seconds_between(expected.since, now) <= std::max(stale_intervals * interval, stale_least_s)) continue;
+        if (seconds_between(expected.since, now) <= std::max(expected.intervals * interval, stale_least_s)) continue;
         expected.stale = true;
         out.push_back({expected.packet, true, seconds_between(*expected.last, now), interval, {}});
     }

@@ -11,7 +11,10 @@
 
 namespace aeolis::telemetry {
 
-inline constexpr double stale_intervals = 4.0; ///< ours: so many packets in a row are not lost by chance
+inline constexpr double stale_intervals = 4.0; ///< ours: so many packets in a row are not lost by chance on a link that loses few
+inline constexpr double stale_chance = 1.0e-5; ///< ours: nor so many that the link's losses explain them less often than this
+inline constexpr double stale_intervals_max = 12.0; ///< ours: however bad the link
+inline constexpr double stale_memory_s = 60.0; ///< ours: over which the link's losses are reckoned
 inline constexpr double stale_least_s = 5.0;   ///< ours: a burst of losses and the link's queue fit in
 
 inline constexpr auto stale_severity = dictionary::Severity::warning; ///< ours: what one acts upon may be old
@@ -30,8 +33,11 @@ struct StalenessChange {
 /// Out      changes, appended to `out`
 /// Rule     A packet is expected at its rate (DefaultRateInStream) thinned by the rows of telemetry_plan.csv that hold in
 ///          every plan, once it has come at all. It is stale when nothing of it came for `stale_intervals` of that, and
-///          `stale_least_s`, while a link was up and the phase as it is for as long. While no link is up nothing is
-///          expected: silence is then the link's, which says why.
+///          `stale_least_s`, while a link was up and the phase as it is for as long. Of a link that loses much it takes
+///          more: as many intervals as losses like those before its last packet explain by `stale_chance`. While no link
+///          is up nothing is expected: silence is then the link's, which says why.
+/// Losses   of all packets, each time one comes again that was not stale: one came of as many as were due since the last.
+///          Both numbers fade with `stale_memory_s`
 /// Memory   a row for each packet with a rate
 class StalenessMonitor {
   public:
@@ -51,14 +57,19 @@ class StalenessMonitor {
         std::vector<double> interval_s; ///< by state of the vehicle; 0: none. One entry where the plan does not name it
         std::optional<Ert> last{};      ///< none: never came
         Ert since{};                    ///< from then on its absence counts
+        double intervals = stale_intervals; ///< of absence that it takes, by the losses before it was last heard
         bool stale = false;
     };
     double interval_s(const Expected& expected) const;
+    /// One has come again: how many of its intervals its absence now takes.
+    double reckon(const Expected& expected, Ert ert);
     void clear(Expected& expected, const std::string& reason, Ert now, std::vector<StalenessChange>& out) const;
 
     std::vector<Expected> expected_;
     std::map<std::string, bool, std::less<>> links_;
     bool any_link_ = false;
+    double due_ = 0.0, came_ = 0.0; ///< packets
+    Ert reckoned_{};
     std::string phase_;
     std::optional<std::size_t> state_; ///< of the vehicle; none: not known
 };

@@ -28,6 +28,15 @@ std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings)
 
 std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, Findings& findings);
 
+/// clock_correlation.csv, by valid_from: versions and times rise, rates are those of a clock, and where one row follows another
+/// both give the same SCET but for leap seconds and what a clock is off by.
+std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view text, Findings& findings);
+
+/// predicted_anchors.csv, by anchor: when each comes in the design, in seconds from entry. `anchors` null: unknown because
+/// their file could not be read, so names are not checked.
+std::optional<std::vector<std::optional<double>>>
+read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anchors, Findings& findings);
+
 /// What a timeline may refer to; a null pointer: unknown because its own file could not be read, so not checked.
 struct TimelineContext {
     struct DeclaredEvent {

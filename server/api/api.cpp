@@ -118,6 +118,17 @@ Result<void> may_send(const Operator& who, const dictionary::Dictionary& diction
                              who.user, name_of(*who.role))};
 }
 
+Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start) {
+    const auto& script = start.inline_scenario().commands();
+    for (int i = 0; i < script.size(); ++i) {
+        v1::CommandRequest scripted;
+        scripted.set_command(script[i].command());
+        if (const auto allowed = may_send(who, dictionary, scripted); !allowed)
+            return Error{fmt::format("inline_scenario.commands[{}]: {}", i, allowed.error().message)};
+    }
+    return {};
+}
+
 archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
     if (detail.size() > audit_detail_max) detail = detail.substr(0, audit_detail_max) + fmt::format(" … ({} octets)", detail.size());
     archive::AuditRecord record;
@@ -338,6 +349,8 @@ void Api::start_rehearsal(const Asked& asked) {
     v1::StartRehearsal start;
     if (const auto parsed = from_json(asked.request.body, start); !parsed)
         return asked.respond(error_response(400, parsed.error().message));
+    if (const auto allowed = may_start(asked.who, parts_.dictionary, start); !allowed)
+        return asked.respond(error_response(403, allowed.error().message));
     parts_.desk.start(start, tell_begun(asked.respond, parts_.desk.going_on()));
 }
 
@@ -345,6 +358,8 @@ void Api::control_rehearsal(const Asked& asked) {
     v1::RehearsalControl control;
     if (const auto parsed = from_json(asked.request.body, control); !parsed)
         return asked.respond(error_response(400, parsed.error().message));
+    if (const auto allowed = may_start(asked.who, parts_.dictionary, control.start()); !allowed)
+        return asked.respond(error_response(403, allowed.error().message));
     const bool going_on = parts_.desk.going_on();
     const bool starts = control.action_case() == v1::RehearsalControl::kStart;
     const auto done = parts_.desk.control(control, tell_begun(asked.respond, going_on));

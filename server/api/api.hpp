@@ -118,6 +118,9 @@ HttpResponse refusal_of(const Operator& who, Right right);
 /// Whether they may send this command, by its significance and their own list.
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const v1::CommandRequest& request);
 
+/// Whether the operator may start this: of an inline scenario each command of its script must be one that they may send.
+Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start);
+
 /// An entry of the audit, now.
 archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
 

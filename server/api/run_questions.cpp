@@ -231,8 +231,25 @@ HttpResponse proof(const Ground&, archive::Reader& reader, archive::RunId run, c
     return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
 }
 
-HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
-    return answer(reader.as_flown(run));
+std::string csv_of(const v1::AsFlownReport& report) {
+    std::string csv = "timepoint,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict\n";
+    const auto cell = [](bool known, double value) { return known ? fmt::format("{:.6f}", value) : std::string{}; };
+    for (const auto& row : report.timepoints())
+        fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{}\n", row.name(), cell(row.has_planned_e_s(), row.planned_e_s()),
+                       cell(row.has_predicted_e_s(), row.predicted_e_s()), cell(row.has_tone_e_s(), row.tone_e_s()),
+                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()),
+                       cell(row.has_margin_s(), row.margin_s()), row.tone(), row.verdict());
+    return csv;
+}
+
+/// As CSV its timepoints alone.
+HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto format = query.text("format").value_or("json");
+    if (format != "json" && format != "csv")
+        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
+    const auto report = reader.as_flown(run);
+    if (format == "json" || !report) return answer(report);
+    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
 }
 
 /// The newest value of every channel at an instant: a series of one sample each.
@@ -272,7 +289,7 @@ const std::array questions{
     RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates"}, explanations},
     RunQuestionEntry{"recording", {}, recording},
     RunQuestionEntry{"proof", {"format"}, proof},
-    RunQuestionEntry{"report", {}, report},
+    RunQuestionEntry{"report", {"format"}, report},
     RunQuestionEntry{"state", {"at"}, state},
 };
 

@@ -246,6 +246,10 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
         .bind(15, std::int64_t{dictionary.id})
         .bind(16, std::string_view(start.scenario_text));
     if (auto done = row->run(); !done) return done.error();
+    auto clock = database.prepare("INSERT INTO run_clocks VALUES (?,?,?,?)");
+    if (!clock) return clock.error();
+    clock->bind(1, *next).bind(2, std::int64_t{start.correlation.version}).bind(3, start.correlation.rate).bind(4, std::int64_t{start.correlation.leap_seconds});
+    if (auto done = clock->run(); !done) return done.error();
     auto solution = database.prepare("INSERT INTO run_solution VALUES (?,?,?,?)");
     if (!solution) return solution.error();
     std::int64_t position = 0;

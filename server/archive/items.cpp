@@ -102,6 +102,9 @@ v1::Item to_item(const StageRecord& record) {
     stage.set_at(day_of_year_text(record.at));
     stage.set_arguments(record.arguments);
     stage.set_count(record.count);
+    stage.set_held(record.held);
+    stage.set_needs_approval(record.needs_approval);
+    stage.set_asked_by(record.asked_by);
     return item;
 }
 
@@ -199,6 +202,16 @@ v1::Item to_item(const NoteRecord& record) {
     note.set_written(record.written);
     if (record.sclk_s) note.set_sclk(*record.sclk_s);
     return item;
+}
+
+v1::ClockReply to_reply(const ClockCorrelation& clock) {
+    v1::ClockReply reply;
+    reply.set_version(clock.version);
+    reply.set_sclk(clock.sclk.seconds);
+    reply.set_scet(day_of_year_text(clock.scet));
+    reply.set_rate(clock.rate);
+    reply.set_leap_seconds(clock.leap_seconds);
+    return reply;
 }
 
 } // namespace aeolis::archive

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "aeolis/v1/items.pb.h"
+#include "aeolis/v1/run.pb.h"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 
@@ -25,6 +26,8 @@ v1::Item to_item(const AlarmRecord& record);
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
 v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
+
+v1::ClockReply to_reply(const ClockCorrelation& clock);
 
 inline v1::Item to_item(const Annotation& annotation) {
     return std::visit([](const auto& record) { return to_item(record); }, annotation);

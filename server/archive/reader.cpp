@@ -1,5 +1,6 @@
 #include "server/archive/reader.hpp"
 
+#include "server/archive/items.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
 
@@ -152,7 +153,8 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
 namespace {
 constexpr char runs_sql[] =
     "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
-    " light_time_s, tone_model, digest, coalesce(progress, 0) FROM runs r LEFT JOIN recordings c ON c.run = r.run"
+    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, rate, leap_seconds, version"
+    " FROM runs r LEFT JOIN recordings c ON c.run = r.run LEFT JOIN run_clocks k ON k.run = r.run"
     " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
 constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
 } // namespace
@@ -175,6 +177,9 @@ Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     state.set_tone_model(std::string(row.text(13)));
     state.set_digest(std::string(row.text(14)));
     state.set_relay_progress(row.real(15));
+    const ClockCorrelation clock{Sclk{row.real(16)}, Scet{row.integer(17)}, row.is_null(18) ? 1.0 : row.real(18),
+                                 static_cast<std::int32_t>(row.integer(19)), static_cast<std::uint32_t>(row.integer(20))};
+    *state.mutable_clock() = to_reply(clock);
     auto last = row.is_null(9) ? last_seq(run) : Result<Sequence>(static_cast<Sequence>(row.integer(9)));
     if (!last) return last.error();
     state.set_last_seq(*last);

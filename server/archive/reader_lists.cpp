@@ -32,7 +32,8 @@ constexpr char found_explanations[] =
     "SELECT key, unit, sclk, decision, verdict, subject, text, source, duplicate FROM explanations WHERE key IN"
     " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
 constexpr char found_stages[] =
-    "SELECT key, command, name, stage, status, evidence, at_us, arguments, count FROM command_stages WHERE key IN"
+    "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
+    " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key IN"
     " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
 constexpr char found_notes[] = "SELECT key, text, author, at_us, written, sclk FROM notes WHERE key IN"
                                " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
@@ -228,6 +229,10 @@ Result<v1::CommandList> Reader::commands(RunId run, const std::string& text) {
             history.set_command(stage.command);
             history.set_name(stage.name);
             history.set_arguments(stage.arguments);
+        }
+        if (stage.stage == "released") { // its last word
+            history.set_held(stage.held);
+            history.set_needs_approval(stage.needs_approval);
         }
         *history.add_stages() = to_item(stage);
         return false;

@@ -1,6 +1,8 @@
+#include "commands/timeline_change.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
+#include "server/archive/timeline_plan.hpp"
 
 #include <algorithm>
 #include <map>
@@ -25,6 +27,52 @@ std::optional<double> fired_sclk(const v1::TimepointRow& row) {
     if (row.has_recorded_sclk()) return row.recorded_sclk();
     if (row.has_realtime_sclk()) return row.realtime_sclk();
     return std::nullopt;
+}
+
+/// When entry interface was due, as Earth's clock shows it when what happens there comes home.
+Ert entry_heard_at(const v1::RunState& run) {
+    const auto scet = scet_from_day_of_year(run.clock().scet()).value_or(Scet{});
+    const ClockCorrelation clock{Sclk{run.clock().sclk()}, scet, run.clock().rate(), run.clock().leap_seconds(), run.clock().version()};
+    return {clock.scet_of(Sclk{run.entry_sclk()}).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
+}
+
+bool executed_by(const v1::CommandHistory& command, Ert by) {
+    return std::ranges::any_of(command.stages(), [&](const v1::Item& item) {
+        const auto& stage = item.command_stage();
+        const auto at = ert_from_day_of_year(stage.at());
+        return stage.stage() == "executed" && stage.status() == "ok" && at && *at <= by;
+    });
+}
+
+std::vector<std::uint8_t> octets_of_hex(std::string_view hex) {
+    std::vector<std::uint8_t> octets;
+    const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+        octets.push_back(static_cast<std::uint8_t>(digit(hex[i]) << 4U | digit(hex[i + 1])));
+    return octets;
+}
+
+/// The prediction of entry interface: firings that UHF had told of by then, and changes of offsets that were executed.
+void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline, const v1::CommandList& commands,
+                     const v1::RunState& run, v1::AsFlownReport& report) {
+    std::optional<dictionary::Dictionary> changed;
+    const Ert at_entry = entry_heard_at(run);
+    for (const auto& command : commands.commands()) {
+        const auto* known = dictionary.command(command.name());
+        if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;
+        const auto arguments = commands::decode(*known, octets_of_hex(command.octets()));
+        if (!arguments) continue;
+        if (!changed) changed = dictionary;
+        commands::apply_offsets(*changed, command.name(), *arguments);
+    }
+    std::vector<std::optional<double>> heard_e_s(dictionary.timeline.size());
+    for (std::size_t i = 0; i < heard_e_s.size(); ++i) {
+        const auto& row = timeline.timepoints(static_cast<int>(i));
+        if (row.has_realtime_sclk() && row.realtime_sclk() <= run.entry_sclk()) heard_e_s[i] = row.realtime_sclk() - run.entry_sclk();
+    }
+    const auto predicted = predicted_from_entry_s(changed ? *changed : dictionary, heard_e_s);
+    for (std::size_t i = 0; i < predicted.size(); ++i)
+        if (predicted[i]) report.mutable_timepoints(static_cast<int>(i))->set_predicted_e_s(*predicted[i]);
 }
 
 void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones, double entry_sclk, v1::AsFlownReport& report) {
@@ -59,6 +107,7 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     if (!proven) return proven.error();
     v1::AsFlownReport report;
     add_timepoints(*timeline, *heard, state->entry_sclk(), report);
+    add_predictions(state_->dictionary, *timeline, *sent, *state, report); // timepoints() gave it for this dictionary only
     const auto decoded = std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));
     report.set_tones_erased(static_cast<std::uint64_t>(heard->tones_size() - decoded));
@@ -77,7 +126,7 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
 Result<void> Reader::add_silences(RunId run, v1::AsFlownReport& report) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto times = state_->query("SELECT correlation_scet_us + (entry_sclk - correlation_sclk + light_time_s) * 1e6 FROM runs WHERE run = ?");
+    auto times = state_->query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
     if (!times) return times.error();
     (*times)->bind(1, std::int64_t{run.value});
     auto found = (*times)->step();

@@ -99,6 +99,8 @@ struct StageRecord {
     std::string arguments;
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
+    bool held = false, needs_approval = false; ///< of `released` while pending: what it waits for
+    std::string asked_by;                      ///< of one that needs approval: who may not give it
 };
 
 struct FiringRecord {

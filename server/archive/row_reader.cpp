@@ -94,7 +94,10 @@ StageRecord stage(const sqlite::Statement& row) {
             Ert{row.integer(6)},
             text(row, 7),
             static_cast<std::uint32_t>(row.integer(8)),
-            {}};
+            {},
+            row.integer(9) != 0, // none is 0
+            row.integer(10) != 0,
+            text(row, 11)};
 }
 
 FiringRecord firing(const sqlite::Statement& row) {

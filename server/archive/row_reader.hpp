@@ -28,8 +28,8 @@ inline constexpr char tone_likelihood_rows[] =
     "SELECT tone, likelihood FROM tone_likelihoods WHERE key = ?1 ORDER BY position";
 ToneLikelihood tone_likelihood(const sqlite::Statement& row);
 
-inline constexpr char stage_rows[] = "SELECT key, command, name, stage, status, evidence, at_us, arguments, count"
-                                     " FROM command_stages WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+inline constexpr char stage_rows[] = "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
+                                     " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 StageRecord stage(const sqlite::Statement& row);
 
 inline constexpr char firing_rows[] =

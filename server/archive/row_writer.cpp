@@ -41,6 +41,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::tone_likelihood_, "INSERT INTO tone_likelihoods VALUES (?,?,?,?)"},
         {&RowWriter::command_, "INSERT OR IGNORE INTO commands VALUES (?,?,?,?,?,?)"},
         {&RowWriter::stage_, "INSERT INTO command_stages VALUES (?,?,?,?,?,?,?,?,?)"},
+        {&RowWriter::wait_, "INSERT INTO command_waits VALUES (?,?,?,?)"},
         {&RowWriter::firing_, "INSERT INTO timepoint_firings VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::explanation_, "INSERT INTO explanations VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::condition_, "INSERT INTO explanation_conditions VALUES (?,?,?,?,?,?,?)"},
@@ -204,6 +205,13 @@ Result<void> RowWriter::stage(RunId run, const StageRecord& record) {
         .bind(7, record.at.microseconds)
         .bind(8, std::string_view(record.arguments))
         .bind(9, std::int64_t{record.count});
+    if (record.held || record.needs_approval) {
+        wait_.bind(1, item_key(run, record.seq))
+            .bind(2, std::int64_t{record.held})
+            .bind(3, std::int64_t{record.needs_approval})
+            .bind(4, std::string_view(record.asked_by));
+        if (auto done = wait_.run(); !done) return done;
+    }
     return stage_.run();
 }
 

@@ -274,6 +274,13 @@ CREATE TEMP TABLE alarm_actions (
 CREATE TEMP TABLE notes (key INTEGER PRIMARY KEY, text TEXT, author TEXT, at_us INTEGER, written TEXT, sclk REAL);
 CREATE VIRTUAL TABLE temp.search USING fts5(text, content = '');
 )sql"},
+    {6, R"sql(
+CREATE TABLE run_clocks (
+    run INTEGER PRIMARY KEY, version INTEGER NOT NULL, rate REAL NOT NULL, leap_seconds INTEGER NOT NULL) STRICT;
+CREATE TABLE command_waits (
+    key INTEGER PRIMARY KEY, held INTEGER NOT NULL, needs_approval INTEGER NOT NULL, asked_by TEXT NOT NULL) STRICT;
+)sql",
+     nullptr},
 };
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
@@ -300,6 +307,7 @@ constexpr RunTable tables_of_runs[] = {
     {"tone_likelihoods", by_key, false},
     {"tone_evidence", by_key, false},
     {"tones", by_key, false},
+    {"command_waits", by_key, false},
     {"command_stages", by_key, false},
     {"commands", by_run, false},
     {"link_changes", by_key, false},
@@ -309,6 +317,7 @@ constexpr RunTable tables_of_runs[] = {
     {"notes", by_key, false},
     {"requests", by_run, false},
     {"run_solution", by_run, false},
+    {"run_clocks", by_run, false},
     {"runs", by_run, false},
 };
 

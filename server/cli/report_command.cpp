@@ -18,12 +18,14 @@ std::string from_entry(bool known, double e_s) {
 }
 
 void print_timepoints(const v1::AsFlownReport& report) {
-    fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "by tone", "by UHF", "recorded", "margin", "verdict");
+    fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "predicted", "by tone", "by UHF", "recorded", "margin", "verdict");
     for (const auto& row : report.timepoints())
-        fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(), from_entry(row.has_planned_e_s(), row.planned_e_s()),
+        fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(), from_entry(row.has_planned_e_s(), row.planned_e_s()),
+                   from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
                    from_entry(row.has_tone_e_s(), row.tone_e_s()), from_entry(row.has_realtime_e_s(), row.realtime_e_s()),
                    from_entry(row.has_recorded_e_s(), row.recorded_e_s()),
                    row.has_margin_s() ? fmt::format("{:.1f} s", row.margin_s()) : "-", row.verdict());
+    fmt::print("Predicted: at entry interface, by the timeline's rule over the anchors that ground had then.\n");
     fmt::print("Margin: later than the previous timepoint and the minimum offset from it.\n");
 }
 

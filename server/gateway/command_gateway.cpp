@@ -71,9 +71,11 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
 }
 
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
-                               std::vector<commands::NamedValue> solution, std::vector<std::string> second_person)
+                               std::vector<commands::NamedValue> solution, std::vector<std::string> second_person,
+                               commands::TrackingSchedule stations)
     : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), clcw_(clcw_place(dictionary)),
-      link_(light_time_s), solution_(std::move(solution)), second_person_(std::move(second_person)), heard_(dictionary.channels.size()) {}
+      link_(light_time_s), solution_(std::move(solution)), second_person_(std::move(second_person)),
+      stations_(std::move(stations)), heard_(dictionary.channels.size()) {}
 
 std::optional<CommandGateway::FieldPlace> CommandGateway::clcw_place(const dictionary::Dictionary& dictionary) {
     for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
@@ -124,6 +126,13 @@ void CommandGateway::tell(const Prepared& prepared, Ert now, v1::CommandReply& r
     reply.set_effect_seen(day_of_year_text(Ert{leaves.microseconds + 2 * light_time_us}));
 }
 
+void CommandGateway::tell_station(Ert leaves, v1::CommandReply& reply) const {
+    const auto* pass = stations_.pass_at(leaves);
+    if (pass == nullptr) return;
+    reply.set_station(pass->station);
+    reply.set_station_until(day_of_year_text(pass->end));
+}
+
 v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert now,
                                         std::vector<archive::StageRecord>& stages) {
     if (!request.action().empty()) return act(request, now, stages);
@@ -137,6 +146,11 @@ v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert n
     auto prepared = prepare(request, now);
     if (!prepared) return refuse(prepared.error().message);
     tell(*prepared, now, reply);
+    if (prepared->release_at || !request.hold()) { // else nobody can say yet when it leaves
+        const Ert leaves = prepared->release_at.value_or(now);
+        if (!stations_.sees(leaves)) return refuse(stations_.refusal(leaves));
+        tell_station(leaves, reply);
+    }
     // What waits is looked at when it leaves: a condition that fails now may hold then.
     const bool waits = request.hold() || prepared->release_at;
     const auto authorised = commands::authorise(*prepared->command, {request.armed(), request.confirmation()},
@@ -193,11 +207,18 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
     release_due(now, stages);
 }
 
+const commands::CommandQueue::Entry* CommandGateway::waiting(std::uint64_t number) const {
+    const auto& all = queue_.waiting();
+    const auto entry = std::ranges::find(all, number, &commands::CommandQueue::Entry::number);
+    return entry == all.end() ? nullptr : &*entry;
+}
+
 void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive::StageRecord>& stages) {
-    const auto& waiting = queue_.waiting();
-    const auto entry = std::ranges::find(waiting, underway.number, &commands::CommandQueue::Entry::number);
-    if (entry == waiting.end()) return;
+    const auto* entry = waiting(underway.number);
+    if (entry == nullptr) return;
     std::string when = entry->release_at ? "leaves at " + day_of_year_text(*entry->release_at) : "then leaves at once";
+    const auto* pass = entry->release_at ? stations_.pass_at(*entry->release_at) : nullptr;
+    if (pass != nullptr) when += " by " + pass->station;
     if (entry->priority > 0) when += fmt::format(", priority {}", entry->priority);
     changes_.clear();
     const std::string approval = entry->needs_approval ? "waits for the approval of another controller than " + underway.controller + "; " : "";
@@ -205,13 +226,18 @@ void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive:
     append(underway, changes_, stages);
 }
 
-std::string CommandGateway::perform(const v1::CommandRequest& asked, const Underway* command) {
+std::string CommandGateway::perform(const v1::CommandRequest& asked, const Underway* command, Ert now) {
     const std::string& action = asked.action();
     const auto number = asked.number();
     const auto waits = [&](bool done) {
         return done ? std::string{} : fmt::format("command {} does not wait: it has left, was cancelled, or there is none", number);
     };
     if (action == "hold") return waits(queue_.hold(number));
+    const auto* entry = waiting(number);
+    if (action == "release" && entry != nullptr) {
+        const Ert leaves = std::max(entry->release_at.value_or(now), now);
+        if (!stations_.sees(leaves)) return fmt::format("command {} stays held: {}", number, stations_.refusal(leaves));
+    }
     if (action == "release") return waits(queue_.release(number));
     if (action == "cancel") return waits(queue_.cancel(number));
     if (action != "approve") return fmt::format("unknown action '{}': release, hold, cancel or approve", action);
@@ -230,7 +256,7 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
     reply.set_dry_run(request.dry_run());
     const std::string& action = request.action();
     auto* command = underway(request.number());
-    const std::string refusal = request.dry_run() ? "dry_run: what is done about a waiting command cannot be tried out" : perform(request, command);
+    const std::string refusal = request.dry_run() ? "dry_run: what is done about a waiting command cannot be tried out" : perform(request, command, now);
     const std::string by = request.controller().empty() ? "a controller" : request.controller();
     if (!refusal.empty()) {
         reply.set_reason(refusal);
@@ -238,6 +264,8 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
         AEOLIS_CHECK(command != nullptr); // what waits is under way
         reply.set_accepted(true);
         reply.set_command(command->number);
+        if (const auto* entry = waiting(command->number); entry != nullptr && !entry->held)
+            tell_station(std::max(entry->release_at.value_or(now), now), reply);
         if (action == "cancel") {
             changes_.clear();
             command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by " + by, now,
@@ -259,6 +287,7 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
 void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& stages) {
     using commands::Stage;
     using commands::Status;
+    if (!stations_.sees(now)) return await_pass(now, stages);
     for (const std::uint64_t number : queue_.take_due(now)) {
         auto* command = underway(number);
         if (command == nullptr) continue;
@@ -281,17 +310,33 @@ void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& sta
     radiate(now, stages);
 }
 
+void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stages) {
+    if (const auto* next = stations_.next_after(now)) {
+        for (const std::uint64_t number : queue_.postpone_due(now, next->begin))
+            if (auto* command = underway(number)) tell_wait(*command, now, stages);
+        return;
+    }
+    for (const std::uint64_t number : queue_.take_due(now)) {
+        auto* command = underway(number);
+        if (command == nullptr) continue;
+        changes_.clear();
+        command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, stations_.refusal(now), now, changes_);
+        append(*command, changes_, stages);
+    }
+}
+
 CommandGateway::Underway* CommandGateway::underway(std::optional<std::uint64_t> number) {
     const auto found = std::ranges::find_if(underway_, [&](const Underway& each) { return each.number == number; });
     return found == underway_.end() ? nullptr : &*found;
 }
 
 void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages) {
-    while (auto unit = link_.next(now)) {
+    const auto* pass = stations_.pass_at(now);
+    while (auto unit = stations_.sees(now) ? link_.next(now) : std::nullopt) {
         if (auto* command = underway(unit->tag)) {
             const std::string frame =
-                fmt::format("{} octets left the station, packet {} in frame {}, {}; at the vehicle {:.1f} s later",
-                            unit->cltu.size(), command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
+                fmt::format("{} octets left {}, packet {} in frame {}, {}; at the vehicle {:.1f} s later",
+                            unit->cltu.size(), pass == nullptr ? "the station" : pass->station, command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
             changes_.clear();
             if (unit->transmission == 1)
                 command->lifecycle.ground_stage(commands::Stage::radiated, commands::Status::ok, frame, now, changes_);
@@ -342,7 +387,7 @@ void CommandGateway::pass(Ert now, std::vector<archive::StageRecord>& stages) {
         underway.lifecycle.pass(now, changes_);
         append(underway, changes_, stages);
     }
-    link_.pass(now);
+    if (stations_.sees(now)) link_.pass(now); // else what is not acknowledged is sent again when the next pass begins
     release_due(now, stages);
 }
 
@@ -402,7 +447,8 @@ void CommandGateway::note_report(const dictionary::Packet& packet, std::span<con
 }
 
 void CommandGateway::append(const Underway& underway, const std::vector<commands::StageChange>& changes,
-                            std::vector<archive::StageRecord>& stages) {
+                            std::vector<archive::StageRecord>& stages) const {
+    const auto* waits = waiting(underway.number);
     for (const auto& change : changes) {
         auto& stage = stages.emplace_back();
         stage.command = underway.number;
@@ -415,6 +461,11 @@ void CommandGateway::append(const Underway& underway, const std::vector<commands
         if (change.stage == commands::Stage::queued) {
             stage.arguments = underway.arguments;
             stage.octets = underway.packet;
+        }
+        if (change.stage == commands::Stage::released && change.status == commands::Status::pending && waits != nullptr) {
+            stage.held = waits->held;
+            stage.needs_approval = waits->needs_approval;
+            if (waits->needs_approval) stage.asked_by = underway.controller;
         }
     }
 }

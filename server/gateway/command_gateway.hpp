@@ -6,6 +6,7 @@
 #include "commands/encoder.hpp"
 #include "commands/lifecycle.hpp"
 #include "commands/preconditions.hpp"
+#include "commands/tracking_schedule.hpp"
 #include "common/time.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
@@ -39,8 +40,10 @@ class CommandGateway {
     static constexpr std::size_t commands_max = 4096; ///< ours: a landing needs two
 
     /// `second_person`: names of commands that leave only when another controller than the one who asked has approved them.
+    /// `stations`: nothing leaves while none of them sees the vehicle.
     CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
-                   std::vector<commands::NamedValue> solution, std::vector<std::string> second_person = {});
+                   std::vector<commands::NamedValue> solution, std::vector<std::string> second_person = {},
+                   commands::TrackingSchedule stations = {});
 
     /// Ground has another navigation solution from here on.
     void renew_solution(std::vector<commands::NamedValue> solution) { solution_ = std::move(solution); }
@@ -95,10 +98,15 @@ class CommandGateway {
     /// Hold, release, cancel or approval of one that waits.
     v1::CommandReply act(const v1::CommandRequest& request, Ert now, std::vector<archive::StageRecord>& stages);
     /// Does what is asked; why not, or nothing.
-    std::string perform(const v1::CommandRequest& asked, const Underway* command);
+    std::string perform(const v1::CommandRequest& asked, const Underway* command, Ert now);
+    /// Its line in the queue; null: it does not wait.
+    const commands::CommandQueue::Entry* waiting(std::uint64_t number) const;
+    void tell_station(Ert leaves, v1::CommandReply& reply) const;
     void tell_wait(Underway& underway, Ert now, std::vector<archive::StageRecord>& stages);
     /// Hands those that are due to the uplink: after another look at their preconditions, by what is known now.
     void release_due(Ert now, std::vector<archive::StageRecord>& stages);
+    /// Those that are due while no station sees the vehicle wait for the next pass, or fail where none comes.
+    void await_pass(Ert now, std::vector<archive::StageRecord>& stages);
     static std::optional<FieldPlace> clcw_place(const dictionary::Dictionary& dictionary);
     Underway* underway(std::optional<std::uint64_t> number);
     void radiate(Ert now, std::vector<archive::StageRecord>& stages);
@@ -109,8 +117,8 @@ class CommandGateway {
     void note_answer(Ert ert, std::vector<archive::StageRecord>& stages);
     void note_report(const dictionary::Packet& packet, std::span<const std::uint8_t> octets, Ert ert,
                      std::vector<archive::StageRecord>& stages);
-    static void append(const Underway& underway, const std::vector<commands::StageChange>& changes,
-                       std::vector<archive::StageRecord>& stages);
+    void append(const Underway& underway, const std::vector<commands::StageChange>& changes,
+                std::vector<archive::StageRecord>& stages) const;
 
     const dictionary::Dictionary& dictionary_;
     telemetry::Decommutator decommutator_;
@@ -122,6 +130,7 @@ class CommandGateway {
     std::vector<std::vector<std::uint8_t>> uplinks_;
     std::vector<commands::NamedValue> solution_;
     std::vector<std::string> second_person_;
+    commands::TrackingSchedule stations_;
     std::vector<Heard> heard_; ///< by ChannelId
     std::list<Underway> underway_;
     std::vector<commands::StageChange> changes_;

@@ -1,6 +1,7 @@
 #include "server/gateway/timeline_check.hpp"
 
 #include "commands/encoder.hpp"
+#include "commands/timeline_change.hpp"
 #include "dictionaries/analysis/timeline_analysis.hpp"
 
 #include <algorithm>
@@ -8,30 +9,6 @@
 
 namespace aeolis::server {
 namespace {
-
-// The commands that flight's command dispatcher gives to the timeline.
-constexpr std::string_view timepoint_offset = "EDL_SET_TIMEPOINT_OFFSET";
-constexpr std::string_view anchor_offset = "EDL_SET_ANCHOR_OFFSET";
-
-double value_of(const std::vector<commands::NamedValue>& arguments, std::string_view name) {
-    const auto found = std::ranges::find(arguments, name, &commands::NamedValue::name);
-    return found == arguments.end() ? -1.0 : found->value;
-}
-
-/// Does to the timeline what flight does when the command is executed.
-void apply(dictionary::Dictionary& changed, std::string_view command, const std::vector<commands::NamedValue>& arguments) {
-    if (command == timepoint_offset) {
-        const double row = value_of(arguments, "timepoint");
-        if (row < 0.0 || row >= static_cast<double>(changed.timeline.size())) return;
-        auto& timepoint = changed.timeline[static_cast<std::size_t>(row)];
-        timepoint.desired_offset_s = value_of(arguments, "desired_offset_s");
-        timepoint.minimum_offset_s = value_of(arguments, "minimum_offset_s");
-    } else if (command == anchor_offset) {
-        const double row = value_of(arguments, "anchor");
-        if (row < 0.0 || row >= static_cast<double>(changed.anchors.size())) return;
-        changed.anchors[static_cast<std::size_t>(row)].offset_s = value_of(arguments, "offset_s");
-    }
-}
 
 bool failed(const v1::CommandHistory& command) {
     // That it could not be verified does not undo it.
@@ -71,18 +48,18 @@ Result<std::string> analyse(const dictionary::Dictionary& changed) {
 } // namespace
 
 bool changes_timeline(const v1::CommandRequest& request) {
-    return request.action().empty() && (request.command() == timepoint_offset || request.command() == anchor_offset);
+    return request.action().empty() && commands::changes_offsets(request.command());
 }
 
 Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked) {
     auto changed = dictionary_;
     std::string key;
     for (const auto& command : before.commands()) {
-        if ((command.name() != timepoint_offset && command.name() != anchor_offset) || failed(command)) continue;
+        if (!commands::changes_offsets(command.name()) || failed(command)) continue;
         const auto* const known = dictionary_.command(command.name());
         const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, octets_of(command.octets()));
         if (!arguments) continue; // of another dictionary
-        apply(changed, command.name(), *arguments);
+        commands::apply_offsets(changed, command.name(), *arguments);
         key += command.octets() + ' ';
     }
     for (const auto& request : asked) {
@@ -95,7 +72,7 @@ Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::spa
         if (!packet) continue; // the gateway refuses it, and says why
         const auto arguments = commands::decode(*known, *packet); // with defaults
         if (!arguments) return arguments.error();
-        apply(changed, request.command(), *arguments);
+        commands::apply_offsets(changed, request.command(), *arguments);
         key += request.command() + commands::arguments_text(*arguments) + ' ';
     }
     const std::scoped_lock lock{mutex_};

@@ -78,7 +78,7 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         [self](archive::RunId run, const std::vector<v1::CommandRequest>& requests, const auto& done) {
             if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
             const bool taken = self->queries_->ask([self, run, requests, done](archive::Reader& reader) {
-                const auto before = reader.commands(run);
+                const auto before = run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run); // 0: none yet
                 done(before ? self->timeline_check_.check(*before, requests) : Result<std::string>{before.error()});
             });
             if (!taken) done(Error{"too many questions wait: try again"});
@@ -140,6 +140,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             done(result);
         };
         if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
+        if (const auto right = may_start(who, dictionary_, control.start()); !right) return noted(right);
         const bool starts = control.action_case() == v1::RehearsalControl::kStart;
         const auto now = desk_->control(control, [noted](const Result<v1::RunState>& began) {
             noted(began ? Result<void>{} : Result<void>{began.error()});

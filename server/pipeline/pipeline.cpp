@@ -296,7 +296,7 @@ void Pipeline::State::take(const simulation::ReceivedTone& tone) {
     const double sent_s =
         static_cast<double>(tone.start.microseconds - run->start.correlation.scet.microseconds) * 1e-6 -
         run->start.light_time_s;
-    record.sclk = run->start.correlation.sclk + sent_s;
+    record.sclk = run->start.correlation.sclk + sent_s / run->start.correlation.rate;
     run->pending.tones.push_back(std::move(record));
 }
 

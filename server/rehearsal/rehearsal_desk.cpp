@@ -18,6 +18,24 @@ Result<double> checked_pace(double pace) {
         fmt::format("pace: {} is neither 0 (as fast as it goes) nor within 1 … {}", pace, RehearsalRunner::pace_max)};
 }
 
+/// What of the script changes the timeline, in the order in which it is sent.
+std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& scenario) {
+    auto script = scenario.commands;
+    std::ranges::stable_sort(script, std::ranges::greater{}, &simulation::ScriptedCommand::send_before_entry_s);
+    std::vector<v1::CommandRequest> changes;
+    for (const auto& scripted : script) {
+        v1::CommandRequest request;
+        request.set_command(scripted.command);
+        for (const auto& [name, value] : scripted.arguments) {
+            auto& argument = *request.add_arguments();
+            argument.set_name(name);
+            argument.set_value(value);
+        }
+        if (changes_timeline(request)) changes.push_back(std::move(request));
+    }
+    return changes;
+}
+
 } // namespace
 
 RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
@@ -62,6 +80,21 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
 void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
+    const auto changes = timeline_changes(scenario);
+    if (changes.empty()) return fly(std::move(scenario), seed, pace, std::move(began));
+    check_timeline_(archive::RunId{}, changes, [this, scenario = std::move(scenario), seed, pace, began = std::move(began), changes](Result<std::string> timeline) {
+        post_([this, scenario, seed, pace, began, changes, timeline = std::move(timeline)] {
+            if (timeline) return fly(scenario, seed, pace, began);
+            std::string names;
+            for (const auto& change : changes)
+                names += (names.empty() ? "" : ", ") + change.command();
+            began(Error{fmt::format("commands: its script sends {}: {}", names, timeline.error().message)});
+        });
+    });
+}
+
+void RehearsalDesk::fly(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
+    if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     runner_.reset();
     begun_ = false;
     runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,

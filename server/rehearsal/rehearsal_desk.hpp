@@ -27,6 +27,7 @@ class RehearsalDesk {
     using ReadCutOff = std::function<void(archive::RunId, std::function<void(Result<archive::CutOffRun>)>)>;
     using Began = std::function<void(Result<v1::RunState>)>;
     /// Says, on any thread, what becomes of the timeline when these commands are taken; empty: none changes it. An Error refuses them.
+    /// Run 0: one that has not begun, and these are its script.
     using CheckTimeline = std::function<void(archive::RunId, const std::vector<v1::CommandRequest>&, std::function<void(Result<std::string>)>)>;
     using Replies = RehearsalRunner::Replies;
 
@@ -35,7 +36,7 @@ class RehearsalDesk {
     ~RehearsalDesk();
 
     /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
-    /// archive.
+    /// archive, or when the analysis refuses what its script does to the timeline.
     void start(const v1::StartRehearsal& request, Began began);
     void start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
@@ -49,6 +50,7 @@ class RehearsalDesk {
     bool going_on() const { return runner_ && !runner_->over(); }
 
   private:
+    void fly(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
     void continue_run(archive::CutOffRun cut, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
     Result<void> refusal_while_going_on() const;

@@ -1,5 +1,6 @@
 #include "server/rehearsal/rehearsal_runner.hpp"
 
+#include "server/archive/items.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 
@@ -345,6 +346,7 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     state.set_entry_sclk(start_.entry.seconds);
     state.set_start_sclk(start_.start.seconds);
     state.set_light_time_s(start_.light_time_s);
+    *state.mutable_clock() = archive::to_reply(start_.correlation);
     *state.mutable_clocks() = rehearsal.clocks();
     state.set_relay_progress(rehearsal.recording_progress());
     for (const auto& [name, value] : start_.solution) {

@@ -1,6 +1,7 @@
 #include "server/rehearsal/scripted_landing.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <fmt/format.h>
 #include <utility>
 
@@ -20,12 +21,31 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
     return reports;
 }
 
+/// The clock on board as ground knows it by the dictionary, where that is the scenario's clock; else as the scenario has it.
+ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+    constexpr std::int64_t same_us = 1000; // ours: what a day-of-year text can tell
+    const auto* known = dictionary.clock_at(scenario.entry_sclk);
+    if (known != nullptr && std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us) return *known;
+    ClockCorrelation own;
+    own.sclk = scenario.entry_sclk;
+    own.scet = scenario.entry_scet;
+    return own;
+}
+
+commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
+    const auto ert = [&](double after_entry_s) { return Ert{scenario.entry_scet.microseconds + static_cast<std::int64_t>(after_entry_s * 1.0e6)}; };
+    std::vector<commands::TrackingPass> passes;
+    for (const auto& pass : scenario.radio.tracking_passes)
+        passes.push_back({pass.station, ert(pass.begin_after_entry_s), ert(pass.end_after_entry_s)});
+    return commands::TrackingSchedule{std::move(passes)};
+}
+
 } // namespace
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary)
-    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary)), station_(landing_.light_time_s()),
-      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person),
+    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary), clock_of(scenario, dictionary)), station_(landing_.light_time_s()),
+      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person, stations_of(scenario)),
       script_(scenario.commands), dispersed_(landing_.dispersed()) {}
 
 const simulation::CycleReport& ScriptedLanding::step() {

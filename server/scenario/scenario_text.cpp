@@ -144,6 +144,10 @@ const Bindings<simulation::RelayPass> pass_fields = {
     AEOLIS_BIND(RelayPass, horizon_km),          AEOLIS_BIND(RelayPass, nearest_km),
     AEOLIS_BIND(RelayPass, delivery_after_set_s), AEOLIS_BIND(RelayPass, delivery_rate_bps),
 };
+const Bindings<simulation::TrackingPass> tracking_fields = {
+    AEOLIS_BIND(TrackingPass, begin_after_entry_s),
+    AEOLIS_BIND(TrackingPass, end_after_entry_s),
+};
 const Bindings<simulation::ComputerReset> reset_fields = {
     AEOLIS_BIND(ComputerReset, before_entry_s),
 };
@@ -267,6 +271,11 @@ void read_links(const v1::Radio& message, simulation::Radio& radio) {
         for (const auto& rate : row.rates())
             pass.rates.push_back({rate.after_rise_s(), rate.bps()});
     }
+    for (const auto& row : message.tracking_passes()) {
+        auto& pass = radio.tracking_passes.emplace_back();
+        read(row, tracking_fields, pass);
+        pass.station = row.station();
+    }
     for (const auto& row : message.tone_outages())
         radio.tone_outages.push_back({row.name(), row.event(), row.from_s(), row.to_s()});
     radio.delivery_restarts_after_touchdown_s.assign(message.delivery_restarts_after_touchdown_s().begin(),
@@ -287,6 +296,11 @@ void write_links(const simulation::Radio& radio, v1::Radio& message) {
             step.set_after_rise_s(rate.after_rise_s);
             step.set_bps(rate.bps);
         }
+    }
+    for (const auto& pass : radio.tracking_passes) {
+        auto& row = *message.add_tracking_passes();
+        write(pass, tracking_fields, row);
+        row.set_station(pass.station);
     }
     for (const auto& outage : radio.tone_outages) {
         auto& row = *message.add_tone_outages();

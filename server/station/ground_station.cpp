@@ -12,6 +12,8 @@ const simulation::CycleReport& GroundStation::receive(const simulation::CycleRep
         note(state);
     for (const simulation::ReceivedOctets& piece : landed.octets)
         receive(piece);
+    for (LinkReceiver& link : links_)
+        if (link.waits && static_cast<double>(now.microseconds - link.heard_at.microseconds) * 1e-6 > quiet_s) search_to_the_end(link, now);
     recording_.pass(now, relay_up_);
     return report_;
 }
@@ -24,6 +26,8 @@ GroundStation::LinkReceiver& GroundStation::receiver_of(const simulation::Link& 
 void GroundStation::receive(const simulation::ReceivedOctets& piece) {
     LinkReceiver& from = receiver_of(piece.link);
     from.rate.add(piece.ert, piece.octets.size());
+    from.heard_at = piece.ert;
+    from.waits = true;
     from.pltus.receive(piece.octets);
     receive_frames(from, piece.ert);
 }
@@ -47,8 +51,13 @@ void GroundStation::note(const simulation::LinkState& state) {
     if (state.link == simulation::relay_link) relay_up_ = state.up;
     const auto known = std::ranges::find(links_, state.link, &LinkReceiver::link);
     if (known == links_.end() || state.up) return;
-    known->pltus.end();
-    receive_frames(*known, state.ert);
+    search_to_the_end(*known, state.ert);
+}
+
+void GroundStation::search_to_the_end(LinkReceiver& link, Ert ert) {
+    link.waits = false;
+    link.pltus.end();
+    receive_frames(link, ert);
 }
 
 void GroundStation::take_file(std::span<const std::uint8_t> octets, Ert ert) {

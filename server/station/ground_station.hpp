@@ -15,10 +15,13 @@ namespace aeolis::server {
 ///
 /// In       what reaches Earth in a cycle            Out   the same, with the packets that were found in it; PLTUs for the rover
 /// Memory   some kilobytes a link: a frame that is not whole yet; files of the recording that are not
-/// Faults   what is no good frame is counted, and the next good one is decoded
+/// Faults   what is no good frame is counted, and the next good one is decoded. A damaged length holds the frames behind it back
+///          no longer than quiet_s after the last octet: a frame leaves the vehicle without a pause
 /// A value, as the landing is whose links it hears.
 class GroundStation {
   public:
+    static constexpr double quiet_s = 0.5; ///< ours: at the link's rate an octet comes each cycle
+
     explicit GroundStation(double light_time_s) : recording_(light_time_s) {}
 
     /// Stands until the next call; its spans as long as those of `landed`.
@@ -30,6 +33,8 @@ class GroundStation {
         telemetry::PltuReceiver pltus{};
         telemetry::ProximityPackets packets{};
         telemetry::RateMeter rate{};
+        Ert heard_at{};    ///< its last octet
+        bool waits = false; ///< something came since it was last searched to the end
     };
     /// In the order in which they were first heard.
     const std::vector<LinkReceiver>& links() const { return links_; }
@@ -44,6 +49,7 @@ class GroundStation {
     void receive(const simulation::ReceivedOctets& piece);
     void receive_frames(LinkReceiver& from, Ert ert);
     void note(const simulation::LinkState& state);
+    void search_to_the_end(LinkReceiver& link, Ert ert);
     void take_file(std::span<const std::uint8_t> octets, Ert ert);
 
     std::vector<LinkReceiver> links_;

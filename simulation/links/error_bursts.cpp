@@ -26,13 +26,23 @@ double ErrorBursts::drawn(double mean_octets) {
 void ErrorBursts::spoil(std::span<std::uint8_t> octets) {
     if (good_octets_ <= 0.0) return;
     for (std::uint8_t& octet : octets) {
-        while (left_octets_ < 1.0) {
-            bad_ = !bad_;
-            left_octets_ += drawn(bad_ ? bad_octets_ : good_octets_);
-        }
+        while (left_octets_ < 1.0)
+            turn();
         left_octets_ -= 1.0;
         if (bad_) octet = static_cast<std::uint8_t>(random_.bits());
     }
+}
+
+void ErrorBursts::idle(double octets) {
+    if (good_octets_ <= 0.0 || octets <= 0.0) return;
+    while (left_octets_ < octets)
+        turn();
+    left_octets_ -= octets;
+}
+
+void ErrorBursts::turn() {
+    bad_ = !bad_;
+    left_octets_ += drawn(bad_ ? bad_octets_ : good_octets_);
 }
 
 } // namespace aeolis::simulation

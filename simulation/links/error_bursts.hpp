@@ -18,9 +18,12 @@ class ErrorBursts {
     void set_fraction(double fraction);
 
     void spoil(std::span<std::uint8_t> octets);
+    /// Nothing is sent for as long as so many octets take: a burst goes on, and ends, all the same.
+    void idle(double octets);
 
   private:
     double drawn(double mean_octets);
+    void turn();
     static double good_octets(double fraction, double bad_octets);
 
     double bad_octets_, good_octets_; ///< means; no good_octets_: no bursts at all

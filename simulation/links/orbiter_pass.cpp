@@ -30,7 +30,7 @@ RelayPass OrbiterPass::always() {
 
 OrbiterPass::OrbiterPass(RelayPass row, const Radio& radio, Random random)
     : row_(std::move(row)), loss_(radio.uhf_loss_fraction), loss_range_km_(radio.uhf_loss_range_km),
-      default_rate_bps_(radio.relay_rate_bps),
+      default_rate_bps_(radio.relay_rate_bps), realtime_octets_a_cycle_(radio.uhf_rate_bps / 8.0 * seconds_per_tick),
       errors_{ErrorBursts{loss_, octets_of_burst(radio, Traffic::realtime), random},
               ErrorBursts{loss_, octets_of_burst(radio, Traffic::files), drawn(random)},
               ErrorBursts{loss_, forward_burst_octets, drawn(random)}} {}
@@ -59,6 +59,7 @@ std::span<const std::uint8_t> OrbiterPass::hear(Traffic traffic, std::span<const
     ErrorBursts& errors = errors_[static_cast<std::size_t>(traffic)];
     errors.set_fraction(loss_fraction(e_s));
     errors.spoil(heard_);
+    if (traffic == Traffic::realtime) errors.idle(realtime_octets_a_cycle_ - static_cast<double>(octets.size()));
     if (!row_.stored) return heard_;
     auto& kept = stores_[static_cast<std::size_t>(traffic)].octets;
     kept.insert(kept.end(), heard_.begin(), heard_.end());

@@ -35,6 +35,7 @@ test('the ground says before it is sent what would become of a command, and refu
     assert.equal(told.accepted, true);
     const seconds = (answer) => answer.replace(/^\d+-/, '').split(/[T:]/).reduce((sum, part) => sum * 60 + Number(part), 0);
     assert.ok(Math.abs(seconds(told.arrives) - seconds(/\d{4}-\d{3}T[\d:.]+/.exec(await text('arrives'))[0])) < 10, `${told.arrives}, shown: ${await text('arrives')}`);
+    assert.match(await text('station'), /from DSS-14, whose pass ends 2012-219T04:10:47\.400 ERT/);
     assert.match(await text('effect-seen'), /27 m 36 s after it leaves/); // twice 828 s
     assert.match(await text('send-by'), /leave by 2012-\d{3}T[\d:.]+ ERT to be there before .*to spare/);
     assert.ok((await text('dry-run')).replaceAll(/\s/g, '').includes(told.octets.slice(0, 8)), 'its octets are shown');
@@ -48,6 +49,9 @@ test('the ground says before it is sent what would become of a command, and refu
     await page.keyboard.press('Control+A');
     await page.keyboard.type('2011-001T00:00:00');
     await shows('dry-run', /✖ It would be refused: release_at: 2011-001T00:00:00 is past/);
+    await page.keyboard.press('Control+A');
+    await page.keyboard.type('2012-219T12:00:00');
+    await shows('dry-run', /✖ It would be refused: no station sees the vehicle at 2012-219T12:00:00\.000: the last pass, of DSS-43, ended 2012-219T11:10:47\.400; none comes after it/);
     assert.equal(await count(server), 0);
     await page.keyboard.press('Escape');
     assert.deepEqual(problems, []);

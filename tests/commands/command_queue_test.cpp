@@ -38,3 +38,15 @@ TEST_CASE("a held command waits for its release, and then for its time; a cancel
     CHECK_FALSE(queue.hold(7));
     CHECK(queue.waiting().empty());
 }
+
+TEST_CASE("what is due may be put off; what is held or not due yet keeps its time", "[commands][queue]") {
+    CommandQueue queue;
+    queue.add({.number = 1, .priority = 0, .release_at = {}, .held = false});
+    queue.add({.number = 2, .priority = 0, .release_at = {}, .held = true});
+    queue.add({.number = 3, .priority = 0, .release_at = Ert{900}, .held = false});
+    CHECK(queue.postpone_due(Ert{0}, Ert{500}) == Numbers{1});
+    CHECK(queue.take_due(Ert{499}).empty());
+    CHECK(queue.release(2));
+    CHECK(queue.take_due(Ert{500}) == Numbers{1, 2});
+    CHECK(queue.take_due(Ert{900}) == Numbers{3});
+}

@@ -45,6 +45,22 @@ TEST_CASE("SCET follows SCLK through the correlated instant", "[common]") {
     CHECK(clocks.scet_of(Sclk{101.5}).microseconds == 6'500'000);
 }
 
+TEST_CASE("a clock that drifts is led to SCET by its rate, and back", "[common]") {
+    ClockCorrelation clocks{Sclk{100.0}, Scet{5'000'000}};
+    clocks.rate = 1.0 + 1.0e-5;
+    CHECK(clocks.scet_of(Sclk{100'100.0}).microseconds == 5'000'000 + 100'000'000'000 + 1'000'000);
+    CHECK(clocks.sclk_of(clocks.scet_of(Sclk{100'100.0})).seconds == Approx(100'100.0).margin(2e-6));
+    CHECK(clocks.sclk_of(Scet{5'000'000}) == Sclk{100.0});
+}
+
+TEST_CASE("a clock without drift keeps SCET to the microsecond as by the instant alone", "[common][invariant1]") {
+    const ClockCorrelation clocks{Sclk{397501715.0}, Scet{397'501'847'400'000}};
+    for (std::int64_t tick = -1000; tick < 1000; ++tick) {
+        const Sclk t = clocks.sclk + static_cast<double>(tick) * seconds_per_tick;
+        CHECK(clocks.scet_of(t).microseconds == clocks.scet.microseconds + static_cast<std::int64_t>((t - clocks.sclk) * 1.0e6));
+    }
+}
+
 TEST_CASE("a time in day-of-year form is read back to the microsecond, and nothing else is taken for one", "[common]") {
     for (const std::int64_t microseconds : {std::int64_t{0}, std::int64_t{397'501'847'400'000}, std::int64_t{-1'000'000'000'000}})
         CHECK(ert_from_day_of_year(day_of_year_text(Ert{microseconds})) == Ert{microseconds});

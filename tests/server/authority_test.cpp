@@ -181,6 +181,39 @@ TEST_CASE("a hazardous command by HTTP needs a director, and an account's own li
                       R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})").status == 422);
 }
 
+TEST_CASE("the script of an inline scenario is bound by the account's list, by each way to start it", "[access][http][stream]") {
+    Guarded guarded;
+    REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users",
+                        R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})").status == 201);
+    guarded.take_over("nina", "given by another");
+    const std::string start =
+        R"({"inline_scenario":{"name":"x","entry_scet":"2012-08-06T05:10:47.4","commands":[{"send_before_entry_s":900,"command":"NO_OP"},)"
+        R"({"send_before_entry_s":800,"command":"EDL_DO_EDL"}]}})";
+    const auto says = Catch::Contains("inline_scenario.commands[1]: nina may not send EDL_DO_EDL: it is not among the commands of this account");
+    const auto refused = guarded.ask("nina", "POST", "/api/v1/rehearsals", start);
+    CHECK(refused.status == 403);
+    CHECK_THAT(refused.body, says);
+    CHECK(guarded.ask("nina", "POST", "/api/v1/rehearsals/current", R"({"start":)" + start + "}").status == 403);
+    StreamClient stream{guarded.server.port(), "aeolis.v1.json", guarded.as.at("nina")};
+    REQUIRE(stream.open());
+    stream.send(R"({"control":{"start":)" + start + "}}", false);
+    const auto reply = stream.receive();
+    REQUIRE(reply);
+    CHECK_THAT(*reply, says);
+    CHECK(guarded.ask("nina", "GET", "/api/v1/rehearsals/current").status == 404); // none was begun
+}
+
+TEST_CASE("a script that breaks the timeline's constraints is refused at the start, by the command's name", "[access][http][R19]") {
+    Guarded guarded;
+    const std::string start =
+        R"({"inline_scenario":{"name":"x","entry_scet":"2012-08-06T05:10:47.4","commands":[{"send_before_entry_s":900,"command":"EDL_SET_TIMEPOINT_OFFSET",)"
+        R"("arguments":[{"name":"timepoint","value":9},{"name":"desired_offset_s","value":-5},{"name":"minimum_offset_s","value":0}]}]}})";
+    const auto refused = guarded.ask("director", "POST", "/api/v1/rehearsals", start);
+    CHECK(refused.status == 422);
+    CHECK_THAT(refused.body, Catch::Contains("its script sends EDL_SET_TIMEPOINT_OFFSET: the changed timeline"));
+    CHECK(guarded.ask("director", "GET", "/api/v1/rehearsals/current").status == 404);
+}
+
 TEST_CASE("who has not logged in sends no long body, and fills no audit", "[access][audit][http]") {
     Guarded guarded;
     const std::string long_body(5'000, ' ');

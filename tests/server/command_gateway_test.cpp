@@ -30,7 +30,8 @@ v1::CommandRequest request(const std::string& command) {
 
 struct Station {
     std::vector<std::string> second_person{};
-    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution()), second_person};
+    commands::TrackingSchedule passes{};
+    CommandGateway gateway{tests::shipped_dictionary(), 0.0, solution_arguments(solution()), second_person, passes};
     std::vector<archive::StageRecord> stages{};
 
     v1::CommandReply send(const v1::CommandRequest& asked) { return gateway.submit(asked, now, stages); }
@@ -327,4 +328,122 @@ TEST_CASE("a command with a time leaves then, a held one when it is released, a 
     CHECK_THAT(station.send(timed).reason(), Catch::Contains("is past"));
     timed.set_release_at("tomorrow");
     CHECK_THAT(station.send(timed).reason(), Catch::Contains("'tomorrow' is no time as"));
+}
+
+namespace {
+
+constexpr Ert in_s(double seconds) {
+    return Ert{now.microseconds + static_cast<std::int64_t>(seconds * 1.0e6)};
+}
+
+/// DSS-43 for a minute from now, and DSS-34 for another after a gap of a minute.
+commands::TrackingSchedule with_a_gap() {
+    return commands::TrackingSchedule{{{"DSS-43", now, in_s(60.0)}, {"DSS-34", in_s(120.0), in_s(180.0)}}};
+}
+
+} // namespace
+
+TEST_CASE("an uplink says by which station it goes, and one for a time at which none sees the vehicle is refused", "[gateway][tracking][R44]") {
+    Station station{.passes = with_a_gap()};
+    auto asked = request("NO_OP");
+    asked.set_dry_run(true);
+    CHECK(station.send(asked).station() == "DSS-43");
+    CHECK(station.send(asked).station_until() == day_of_year_text(in_s(60.0)));
+    asked.set_release_at(day_of_year_text(in_s(130.0)));
+    CHECK(station.send(asked).station() == "DSS-34");
+    asked.set_release_at(day_of_year_text(in_s(90.0)));
+    const auto refused = [](const std::string& reason) {
+        CHECK_THAT(reason, Catch::Contains("no station sees the vehicle at " + day_of_year_text(in_s(90.0))) && Catch::Contains("DSS-43, ended") &&
+                               Catch::Contains("the next, of DSS-34, is " + day_of_year_text(in_s(120.0))));
+    };
+    refused(station.send(asked).reason());
+    asked.set_dry_run(false);
+    refused(station.refusal(asked));
+    asked.set_hold(true); // held, yet with that time
+    refused(station.refusal(asked));
+
+    REQUIRE(station.send(request("NO_OP")).station() == "DSS-43");
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("left DSS-43"));
+    const auto late = station.gateway.submit(request("NO_OP"), in_s(60.0), station.stages);
+    CHECK_FALSE(late.accepted());
+    CHECK_THAT(late.reason(), Catch::Contains("no station sees the vehicle"));
+}
+
+TEST_CASE("what waits past a pass is held until the next one begins, or told that none comes", "[gateway][tracking][R44]") {
+    Station station{.second_person = {"NO_OP"}, .passes = with_a_gap()};
+    auto asked = request("NO_OP");
+    asked.set_controller("Ann");
+    REQUIRE(station.send(asked).command() == 1);
+    REQUIRE(station.send(asked).command() == 2);
+    const auto approve = [&](std::uint64_t number, Ert at) {
+        v1::CommandRequest wanted;
+        wanted.set_action("approve");
+        wanted.set_number(number);
+        wanted.set_controller("Ben");
+        return station.gateway.submit(wanted, at, station.stages);
+    };
+    CHECK(approve(1, in_s(90.0)).accepted());
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
+    station.gateway.pass(in_s(119.0), station.stages);
+    CHECK(station.gateway.take_uplinks().empty());
+    station.gateway.pass(in_s(120.0), station.stages);
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("left DSS-34"));
+
+    CHECK(approve(2, in_s(200.0)).accepted());
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK(station.latest("released")->status == "failed");
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("DSS-34, ended") && Catch::Contains("none comes after it"));
+}
+
+TEST_CASE("a held command is not released while no station sees the vehicle, and stays held", "[gateway][tracking][R44]") {
+    Station station{.passes = with_a_gap()};
+    auto held = request("NO_OP");
+    held.set_hold(true);
+    REQUIRE(station.send(held).accepted());
+    v1::CommandRequest release;
+    release.set_action("release");
+    release.set_number(1);
+    const auto refused = station.gateway.submit(release, in_s(90.0), station.stages);
+    CHECK_FALSE(refused.accepted());
+    CHECK_THAT(refused.reason(), Catch::Contains("command 1 stays held: no station sees the vehicle"));
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK(station.gateway.submit(release, in_s(130.0), station.stages).accepted());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+}
+
+TEST_CASE("a frame that is not acknowledged is not sent again before a station sees the vehicle", "[gateway][tracking][R44]") {
+    Station station{.passes = with_a_gap()};
+    auto asked = request("NO_OP");
+    asked.set_service("AD");
+    REQUIRE(station.send(asked).accepted());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    station.gateway.pass(in_s(100.0), station.stages); // long after CommandLink::report_s
+    CHECK(station.gateway.take_uplinks().empty());
+    station.gateway.pass(in_s(120.0), station.stages);
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::StartsWith("transmission 2"));
+}
+
+TEST_CASE("of a command that waits it is said in fields what for, not in words alone", "[gateway][R44]") {
+    Station station{.second_person = {"NO_OP"}};
+    auto asked = request("NO_OP");
+    asked.set_controller("Ann");
+    asked.set_hold(true);
+    REQUIRE(station.send(asked).accepted());
+    CHECK(station.latest("released")->held);
+    CHECK(station.latest("released")->needs_approval);
+    CHECK(station.latest("released")->asked_by == "Ann");
+    v1::CommandRequest action;
+    action.set_number(1);
+    action.set_controller("Ben");
+    action.set_action("approve");
+    REQUIRE(station.send(action).accepted());
+    CHECK(station.latest("released")->held);
+    CHECK_FALSE(station.latest("released")->needs_approval);
+    action.set_action("release");
+    REQUIRE(station.send(action).accepted());
+    CHECK(station.latest("released")->status == "ok");
+    CHECK_FALSE(station.latest("released")->held);
 }

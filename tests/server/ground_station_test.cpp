@@ -105,3 +105,28 @@ TEST_CASE("a damaged length holds the next frame back no longer than the link is
     down.links.push_back({simulation::uhf_live_link, Ert{2}, false, "plasma blackout"});
     CHECK(station.receive(down, Ert{2}).packets.size() == 1);
 }
+
+TEST_CASE("a damaged length holds the next frame back half a second on a link that has fallen quiet, and not while octets come", "[station]") {
+    GroundStation station{0.0};
+    const auto at_ms = [](std::int64_t ms) { return Ert{ms * 1000}; };
+    const auto bring = [&](std::int64_t ms, const std::vector<std::uint8_t>& octets) {
+        simulation::CycleReport landed;
+        if (!octets.empty()) landed.octets.push_back({simulation::uhf_live_link, at_ms(ms), octets});
+        return station.receive(landed, at_ms(ms)).packets.size();
+    };
+    auto damaged = pltu_of(0, packet_of(0));
+    damaged[5] |= 0x07; // the frame seems to go on for 2 kB
+    const auto next = pltu_of(1, packet_of(1));
+    damaged.insert(damaged.end(), next.begin(), next.end());
+    CHECK(bring(0, damaged) == 0);
+    CHECK(bring(400, {}) == 0);
+    CHECK(bring(516, {}) == 1);
+    CHECK(bring(2000, {}) == 0);
+    CHECK(station.links().at(0).pltus.counters().frames == 1);
+
+    const auto whole = pltu_of(2, packet_of(2));
+    const std::vector<std::uint8_t> first(whole.begin(), whole.begin() + 40), rest(whole.begin() + 40, whole.end());
+    CHECK(bring(3000, first) == 0);
+    CHECK(bring(3400, {}) == 0);
+    CHECK(bring(3450, rest) == 1); // no pause as long as that cuts a frame
+}

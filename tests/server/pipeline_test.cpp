@@ -96,6 +96,60 @@ TEST_CASE("nothing is published before it is committed", "[pipeline]") {
     CHECK(ground.pipeline.pending_items() == 0);
 }
 
+TEST_CASE("a run keeps its clock, and its drift counts where ground dates what it received", "[pipeline][time]") {
+    Ground ground;
+    REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
+    archive::RunStart start;
+    start.scenario = "drifting";
+    start.entry = Sclk{1000.0};
+    start.correlation = {Sclk{100.0}, Scet{0}};
+    start.correlation.rate = 1.25; // no clock's: to be seen
+    start.correlation.version = 7;
+    start.correlation.leap_seconds = 35;
+    REQUIRE(ground.pipeline.begin(start).ok());
+    simulation::ReceivedTone tone;
+    tone.start = Ert{20'000'000};
+    tone.end = Ert{30'000'000};
+    REQUIRE(ground.pipeline.accept(tone).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+    CHECK(ground.items().back().tone().sclk() == Approx(116.0)); // 20 s of UTC are 16 of this clock
+    const auto state = ground.reader().run(ground.run());
+    REQUIRE(state.ok());
+    CHECK(state->clock().version() == 7);
+    CHECK(state->clock().rate() == 1.25);
+    CHECK(state->clock().leap_seconds() == 35);
+    CHECK(state->clock().sclk() == 100.0);
+    CHECK(state->clock().scet() == "2000-001T12:00:00.000");
+}
+
+TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left", "[pipeline][gateway]") {
+    Ground ground;
+    const auto say = [&](const char* stage, const char* status, bool held, bool needs_approval) {
+        archive::StageRecord record;
+        record.command = 1;
+        record.name = "NO_OP";
+        record.stage = stage;
+        record.status = status;
+        record.held = held;
+        record.needs_approval = needs_approval;
+        if (needs_approval) record.asked_by = "Ann";
+        REQUIRE(ground.pipeline.accept(record).ok());
+        REQUIRE(ground.pipeline.commit().ok());
+        auto reader = ground.reader();
+        const auto list = reader.commands(ground.run());
+        REQUIRE(list.ok());
+        return list->commands(0);
+    };
+    CHECK_FALSE(say("queued", "ok", false, false).held());
+    const auto waits = say("released", "pending", true, true);
+    CHECK(waits.held());
+    CHECK(waits.needs_approval());
+    CHECK(waits.stages(1).command_stage().asked_by() == "Ann");
+    CHECK(waits.stages(1).command_stage().held());
+    CHECK_FALSE(say("released", "pending", true, false).needs_approval());
+    CHECK_FALSE(say("released", "ok", false, false).held());
+}
+
 TEST_CASE("items are numbered from 1 without a gap, and read back as they were published", "[pipeline][R42][R43]") {
     Ground ground;
     ground.feed();

@@ -199,3 +199,18 @@ TEST_CASE("a device fault without device, unit or kind, or one that the device c
                                 "kind: DEVICE_FAULT_KIND_DROPOUT duration_s: 1 }"),
                Catch::StartsWith("s.textproto: device_faults[0].kind: "));
 }
+
+TEST_CASE("tracking passes are read, written and read again, and a pass that ends before it begins is refused", "[scenario][tracking]") {
+    const auto text = least + "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: -7200 end_after_entry_s: 3600 } }";
+    const auto scenario = scenario_from_text(text, "s.textproto");
+    REQUIRE(scenario);
+    const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
+    REQUIRE(again);
+    REQUIRE(again->radio.tracking_passes.size() == 1);
+    CHECK(again->radio.tracking_passes[0].station == "DSS-43");
+    CHECK(again->radio.tracking_passes[0].begin_after_entry_s == -7200.0);
+    CHECK(again->radio.tracking_passes[0].end_after_entry_s == 3600.0);
+    CHECK_THAT(error_of(least + "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: 1 end_after_entry_s: 0 } }"),
+               Catch::Contains("radio.tracking_passes[0]: begin_after_entry_s 1 to end_after_entry_s 0 is no stretch of time"));
+    CHECK_THAT(error_of(least + "radio { tracking_passes { end_after_entry_s: 10 } }"), Catch::Contains("radio.tracking_passes[0].station"));
+}

@@ -8,6 +8,8 @@
 #include "tests/support/telecommands.hpp"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 #include <set>
 
 using namespace aeolis;
@@ -138,4 +140,26 @@ TEST_CASE("a landing that nobody commands ends as not commanded and brings no re
     CHECK(landing.outcome() == Outcome::not_commanded);
     CHECK(flown.relayed_octets == 0);
     CHECK_FALSE(landing.relaying());
+}
+
+TEST_CASE("when the computers go off Earth hears that their links are down, and why, a light time later", "[simulation][links]") {
+    auto scenario = tests::gale_scenario(60.0);
+    scenario.timeout_after_entry_s = 60.0; // nobody commands it
+    scenario.radio.light_time_s = 5.0;
+    Landing landing{scenario, 1};
+    std::map<std::string, LinkState> last;
+    std::optional<Ert> off;
+    while (!landing.finished()) {
+        for (const LinkState& link : landing.step().links)
+            last[link.link.name] = link;
+        if (landing.flown() && !off) off = landing.ert_now();
+    }
+    REQUIRE(off);
+    for (const char* name : {"uhf_live", "x_band"}) {
+        INFO(name);
+        REQUIRE(last.contains(name));
+        CHECK_FALSE(last.at(name).up);
+        if (last.at(name).reason == "computer off") CHECK(last.at(name).ert.microseconds - off->microseconds == Approx(5.0e6).margin(2.0e5));
+    }
+    CHECK(last.at("x_band").reason == "computer off");
 }

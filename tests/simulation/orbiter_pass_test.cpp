@@ -57,6 +57,31 @@ TEST_CASE("octets are lost the more the farther the orbiter is, by the square of
     CHECK(spoilt(0.0) > 5.0 * spoilt(300.0));
 }
 
+TEST_CASE("a burst of errors ends by the clock, also while the vehicle has little to send", "[simulation][relay]") {
+    Radio radio;
+    radio.uhf_loss_fraction = 0.1;
+    radio.uhf_loss_range_km = 2000.0; // 0.1 at the horizon
+    radio.uhf_burst_s = 0.2;
+    OrbiterPass pass{ten_minutes(false), radio, Random{1, 0, Stream::uhf}};
+    const std::vector<std::uint8_t> packet(124, 0);
+    constexpr int packets = 20'000; // one each two seconds, ten bursts' length apart
+    int spoilt = 0, in_a_row = 0;
+    bool before = false;
+    for (int i = 0; i < packets; ++i) {
+        const auto got = pass.hear(Traffic::realtime, packet, 0.0);
+        const bool now = std::ranges::count(got, 0) < 120;
+        spoilt += now ? 1 : 0;
+        in_a_row += now && before ? 1 : 0;
+        before = now;
+        for (int cycle = 1; cycle < 128; ++cycle)
+            pass.hear(Traffic::realtime, {}, 0.0);
+    }
+    const double part = static_cast<double>(spoilt) / packets;
+    CHECK(part > 0.1);
+    CHECK(part < 0.2);
+    CHECK(static_cast<double>(in_a_row) / spoilt == Approx(part).margin(0.03)); // the next one is no worse off
+}
+
 TEST_CASE("a bent pipe gives at once what it hears; an orbiter that records gives it after its pass, at its rate",
           "[simulation][relay]") {
     OrbiterPass live{ten_minutes(false), Radio{}, Random{1, 0, Stream::uhf}};

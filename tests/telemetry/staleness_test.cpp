@@ -118,3 +118,33 @@ TEST_CASE("a mission without a plan is expected at the rates of its dictionary",
     monitor.pass(at_s(6.5), changes);
     CHECK(changes.size() == 1);
 }
+
+TEST_CASE("a link that loses much explains a longer silence, and one that lost nothing does not", "[alarms][staleness]") {
+    Ground lossy;
+    Ground sound;
+    // Every 2 s; of the lossy one each fourth is lost, as near the horizon: 25 %, so that 8.3 in a row are one in 1e5.
+    for (int i = 0; i < 60; ++i) {
+        if (i % 4 != 3) lossy.hear(2.0 * i);
+        sound.hear(2.0 * i);
+    }
+    REQUIRE(lossy.changes.empty());
+    CHECK(lossy.after(116.0 + 16.0) == 0);
+    CHECK(lossy.after(116.0 + 17.5) == 1);
+    CHECK(sound.after(118.0 + 8.0) == 0);
+    CHECK(sound.after(118.0 + 8.5) == 1);
+}
+
+TEST_CASE("a packet that was stale tells nothing of the link's losses, and old losses are forgotten", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    REQUIRE(ground.after(40.0) == 1);
+    ground.hear(41.0); // twenty are missing, because it was not sent
+    REQUIRE(ground.changes.size() == 2);
+    CHECK(ground.after(49.5) == 3); // as soon as ever
+    ground.hear(50.0);
+    ground.hear(57.0); // 3.5 due, one came
+    for (double s = 59.0; s < 600.0; s += 2.0)
+        ground.hear(s);
+    const auto before = ground.changes.size();
+    CHECK(ground.after(599.0 + 8.5) == before + 1);
+}

@@ -44,13 +44,8 @@ export const LAYOUT = {
       plain: 'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
     },
   ],
-  /** The mission whose landing the predicted corridor and times are of. */
+  /** The mission whose landing the predicted corridor and phases are of. */
   predictedFor: 'MSL',
-  /** Anchors in their order, and when each is predicted, in seconds from entry [od137]; what is told of one moves those after it. */
-  predictedAnchors: [
-    ['entry', 0], ['guidance_start', 43], ['sufr_start', 239], ['parachute', 255.9], ['heatshield', 277.35], ['priming', 359],
-    ['backshell', 374.97], ['powered_approach', 378.2], ['sky_crane', 407.3], ['rover_separation', 409.86], ['touchdown', 431.47],
-  ],
   /** Commands that move timepoints, by their arguments: what they would do is drawn before they are sent. */
   moves: [
     { command: 'EDL_SET_TIMEPOINT_OFFSET', timepoint: 'timepoint', desired: 'desired_offset_s', minimum: 'minimum_offset_s' },

@@ -253,8 +253,7 @@ export function waitingCommands(store: RunStore): { row: CommandRow; evidence: s
   return [...store.commands.values()].flatMap((row) => {
     const released = row.stages.get('released')?.at(-1);
     if (released?.status !== 'pending') return [];
-    const asker = /approval of another controller than ([^;]*);/.exec(released.evidence)?.[1];
-    return [{ row, evidence: released.evidence, held: /(^|; )held/.test(released.evidence), asker }];
+    return [{ row, evidence: released.evidence, held: released.held, asker: released.needsApproval ? released.askedBy : undefined }];
   }).sort((a, b) => a.row.command - b.row.command);
 }
 

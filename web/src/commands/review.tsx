@@ -82,7 +82,7 @@ function Told({ reply }: { reply: CommandReply }) {
       )}
       {arrival && (
         <dl class="told">
-          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{arrival.leaves_ert}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}</dd>
+          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{arrival.leaves_ert}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}{reply.station && <>, <span data-testid="station">from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT</span></>}</dd>
           <dt>at Mars</dt><dd data-testid="arrives"><output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>{uplink.value.hold && ' or later'}</dd>
           <dt>effect seen</dt><dd data-testid="effect-seen">from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it leaves</dd>
           <dt>at the latest</dt>

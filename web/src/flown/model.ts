@@ -5,6 +5,7 @@ import { fromEntry } from '../run/time';
 export interface FlownRow {
   name: string;
   planned: string;
+  predicted: string;
   tone: string;
   uhf: string;
   recorded: string;
@@ -16,7 +17,7 @@ const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_
 
 export function flownRow(row: AsFlownTimepoint): FlownRow {
   return {
-    name: row.name, planned: time(row.plannedES), tone: time(row.toneES), uhf: time(row.realtimeES), recorded: time(row.recordedES),
+    name: row.name, planned: time(row.plannedES), predicted: time(row.predictedES), tone: time(row.toneES), uhf: time(row.realtimeES), recorded: time(row.recordedES),
     margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`,
     verdict: row.verdict,
   };

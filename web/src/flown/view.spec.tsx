@@ -7,6 +7,7 @@ const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_de
 
 describe('a timepoint as it was flown', () => {
   it('has the times that are known, from entry, and nothing where nobody told', () => {
+    expect(flownRow(row({ predictedES: 255.9 }))).toMatchObject({ planned: '', predicted: 'E+04:15.9', recorded: '' });
     expect(flownRow(row({ realtimeES: 254.05, recordedES: 254.05 }))).toMatchObject({ planned: '', tone: '', uhf: 'E+04:14.1', recorded: 'E+04:14.1' });
   });
   it('tells what it had to spare, which is nothing where it only follows the one before', () => {

@@ -1,4 +1,4 @@
-// A run as it was flown: when each timepoint came by plan, tone, UHF and recording, and what was silent meanwhile.
+// A run as it was flown: when each timepoint came by plan, prediction, tone, UHF and recording, and what was silent meanwhile.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
@@ -44,16 +44,17 @@ export function Flown() {
       <div class="table-tools">
         <span data-testid="flown-summary">{of ? summaryOf(of) : problem.value ? `✖ ${problem.value}` : 'asking the archive…'}</span>
         <a href={`api/v1/runs/${run.id}/report`} download={`as-flown-${run.id}.json`}>take the report as JSON</a>
+        <a href={`api/v1/runs/${run.id}/report?format=csv`} download={`as-flown-${run.id}.csv`}>its timepoints as CSV</a>
       </div>
       <div class="table-scroll" tabIndex={0} role="region" aria-label="timepoints as flown">
         {of && (
           <table data-testid="flown-table">
-            <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
+            <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number" title="at entry interface, by the timeline’s rule over the anchors that ground had then">predicted</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
               <th class="number" title="later than the previous timepoint and the minimum offset from it">margin</th><th>verdict</th></tr></thead>
             <tbody>
               {of.timepoints.map(flownRow).map((row) => (
                 <tr key={row.name} data-flown={row.name}>
-                  <td>{row.name}</td><td class="number">{row.planned}</td><td class="number">{row.tone}</td><td class="number">{row.uhf}</td><td class="number">{row.recorded}</td>
+                  <td>{row.name}</td><td class="number">{row.planned}</td><td class="number">{row.predicted}</td><td class="number">{row.tone}</td><td class="number">{row.uhf}</td><td class="number">{row.recorded}</td>
                   <td class="number">{row.margin}</td><td>{row.verdict}</td>
                 </tr>
               ))}

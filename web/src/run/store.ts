@@ -97,14 +97,14 @@ export class RunStore {
   get seenE(): number {
     return this.seenSclk - this.entrySclk;
   }
-  /** SCLK of what was received at `ert`. The two run side by side, a light time apart. */
+  /** SCLK of what was received at `ert`. The two run side by side, a light time apart, but for the drift of the clock on board. */
   sclkSeenAt(ert: string): number {
     const { sclk, ert: at } = this.instant;
-    return sclk + secondsOfDayOfYear(ert) - secondsOfDayOfYear(at);
+    return sclk + (secondsOfDayOfYear(ert) - secondsOfDayOfYear(at)) / (this.run.clock?.rate || 1);
   }
   /** When, on Earth, what left the vehicle at `sclk` could be received; in seconds since 1970, NaN while nothing tells. */
   ertOf(sclk: number): number {
-    return secondsOfDayOfYear(this.instant.ert) + sclk - this.instant.sclk;
+    return secondsOfDayOfYear(this.instant.ert) + (sclk - this.instant.sclk) * (this.run.clock?.rate || 1);
   }
   /**
    * One instant on both clocks. A run of the day before has no clocks any more; then a tone tells it, whose SCLK is that of

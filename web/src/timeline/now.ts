@@ -1,12 +1,11 @@
 // The prediction of the run that is shown, and how the command in the form would move it.
 import { computed } from '@preact/signals';
 import { fields, chosen } from '../commands/line';
-import { LAYOUT } from '../layout';
 import { cutoff, dictionary, store, tick, timepoints } from '../run/session';
 import { changeOf, changesMade, movedBy, predictions } from './predict';
 import type { Moved, Prediction } from './predict';
 
-const anchors = computed(() => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? LAYOUT.predictedAnchors : []));
+const anchors = computed(() => (dictionary.value?.reply.predictedAnchors ?? []).map((each) => [each.anchor, each.afterEntryS] as const));
 
 export const predicted = computed<Prediction[]>(() => {
   void tick.value;

@@ -1,0 +1,31 @@
+#include "commands/timeline_change.hpp"
+
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+using namespace aeolis;
+
+TEST_CASE("a command that changes an offset changes that row of the timeline alone", "[commands][R19]") {
+    auto changed = tests::shipped_dictionary();
+    const std::vector<commands::NamedValue> timepoint{{"timepoint", 3.0}, {"desired_offset_s", -820.0}, {"minimum_offset_s", 1.0}};
+    CHECK(commands::changes_offsets("EDL_SET_TIMEPOINT_OFFSET"));
+    commands::apply_offsets(changed, "EDL_SET_TIMEPOINT_OFFSET", timepoint);
+    CHECK(changed.timeline[3].desired_offset_s == -820.0);
+    CHECK(changed.timeline[3].minimum_offset_s == 1.0);
+    CHECK(changed.timeline[4].desired_offset_s == tests::shipped_dictionary().timeline[4].desired_offset_s);
+
+    const std::vector<commands::NamedValue> anchor{{"anchor", 2.0}, {"offset_s", -7200.0}};
+    commands::apply_offsets(changed, "EDL_SET_ANCHOR_OFFSET", anchor);
+    CHECK(changed.anchors[2].offset_s == -7200.0);
+}
+
+TEST_CASE("a row that is not there, and any other command, change nothing", "[commands][R19]") {
+    auto changed = tests::shipped_dictionary();
+    const auto before = changed.timeline[0].desired_offset_s;
+    const std::vector<commands::NamedValue> beyond{{"timepoint", 1.0e6}, {"anchor", 1.0e6}, {"desired_offset_s", 5.0}};
+    for (const char* command : {"EDL_SET_TIMEPOINT_OFFSET", "EDL_SET_ANCHOR_OFFSET", "NO_OP"})
+        commands::apply_offsets(changed, command, beyond);
+    commands::apply_offsets(changed, "NO_OP", std::vector<commands::NamedValue>{{"timepoint", 0.0}, {"desired_offset_s", 5.0}});
+    CHECK(changed.timeline[0].desired_offset_s == before);
+    CHECK_FALSE(commands::changes_offsets("EDL_SET_PARAMETERS"));
+}
