@@ -169,6 +169,11 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/rehearsals/current", Right::watch, &Api::current_rehearsal, ""},
         {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, "rehearsal"},
         {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, "rehearsal"},
+        {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns, ""},
+        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, "campaign"},
+        {"GET", "/api/v1/campaigns/{campaign}", Right::watch, &Api::campaign_report, ""},
+        {"GET", "/api/v1/campaigns/{campaign}/touchdowns", Right::watch, &Api::campaign_touchdowns, ""},
+        {"POST", "/api/v1/campaigns/{campaign}/cancel", Right::rehearse, &Api::cancel_campaign, "campaign"},
         {"GET", "/api/v1/stream", Right::watch, &Api::stream, ""},
         {"GET", "/healthz", Right::open, &Api::health, ""},
         {"GET", "/metrics", Right::watch, &Api::metrics, ""},
@@ -201,7 +206,8 @@ void Api::handle(HttpRequest request, const Respond& respond) {
 void Api::answer(const Route& route, Asked asked) {
     const bool changes = route.method != "GET";
     auto refused = refusal_of(asked.who, route.right);
-    const bool has_parameters = route.answer == &Api::run_question || route.answer == &Api::audit;
+    const bool has_parameters = route.answer == &Api::run_question || route.answer == &Api::audit ||
+                                route.answer == &Api::campaign_touchdowns;
     if (refused.status == 200 && !changes && !has_parameters && route.path.starts_with(api_prefix))
         if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error().message);
     const bool of_run = route.path.starts_with("/api/v1/runs/{run}");
