@@ -30,6 +30,7 @@ function Order() {
   const names = scenarios.value.length > 0 ? scenarios.value.map((each) => each.name) : ['campaign'];
   const known = campaigns.value.find((each) => each.campaign === `${scenario.value}-${seed.value}`);
   const goesOn = known !== undefined && known.kept > 0;
+  const hint = !allowed ? `○ ${whyNot()}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
   return (
     <form class="table-tools campaign-form" onSubmit={(event) => {
       event.preventDefault();
@@ -42,7 +43,7 @@ function Order() {
       <label>seed <input class="count" value={seed.value} inputMode="numeric" aria-invalid={problem !== undefined && !problem.startsWith('cases')} data-testid="campaign-seed" onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
       <button type="submit" disabled={problem !== undefined || flying !== undefined || !allowed || busy.value} data-testid="campaign-start">{goesOn ? 'go on' : 'start'}</button>
       {flying && <button type="button" disabled={!allowed || busy.value} data-testid="campaign-cancel" onClick={() => void cancel(flying.campaign)}>cancel {flying.campaign}</button>}
-      <span class="campaign-hint">{!allowed ? `○ ${whyNot()}` : problem ? `✖ ${problem}` : flying ? 'one at a time flies' : goesOn ? `${known.kept} cases of it are kept` : ''}</span>
+      {hint !== '' && <span class="campaign-hint">{hint}</span>}
     </form>
   );
 }
@@ -96,7 +97,7 @@ function Numbers({ of }: { of: CampaignReport }) {
         </tbody>
       </table>
       {least && <p data-testid="campaign-margin">Least timeline margin {least.margin_s.toFixed(3)} s, of {least.timepoint} in case {least.case}: so much later than its minimum offset it was triggered; 0 is one that the timeline held up.</p>}
-      {of.recontacts > 0 && <p class="status-alarm">✖ in {of.recontacts} cases the vehicle was struck by what it had let go</p>}
+      {of.recontacts > 0 && <p class="status-alarm">✖ cases in which the vehicle was struck by what it had let go: {of.recontacts}</p>}
       {of.failures.length > 0 && (
         <table data-testid="campaign-failures">
           <thead><tr><th class="number">case</th><th>outcome</th><th>reason</th></tr></thead>
