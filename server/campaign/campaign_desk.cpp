@@ -6,22 +6,13 @@
 #include <algorithm>
 #include <atomic>
 #include <fmt/format.h>
-#include <sched.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 #include <thread>
-#include <unistd.h>
 
 namespace aeolis::server::campaign {
 namespace {
 
 constexpr std::string_view file_prefix = "campaign-", file_extension = ".db";
-
-/// The calling thread, and those that it will start, run only where nobody else wants the processor.
-void give_way() {
-    const sched_param none{};
-    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
-}
 
 std::string name_of_file(const std::filesystem::path& file) {
     const auto name = file.filename().string();
@@ -37,6 +28,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
         if (!name_of_file(entry.path()).empty() && entry.is_regular_file(error)) found.emplace_back(entry.last_write_time(error), entry.path());
     std::ranges::sort(found, std::greater{});
     std::vector<std::filesystem::path> files;
+    files.reserve(found.size());
     for (auto& [written, file] : found)
         files.push_back(std::move(file));
     return files;
@@ -118,7 +110,6 @@ struct CampaignDesk::Flight {
     }
 
     void fly(const dictionary::Dictionary& dictionary) {
-        give_way();
         Result<Progress> flown = Error{""};
         try {
             flown = campaign::fly(*store, order, dictionary, stop, [this](const Progress& progress) {
@@ -165,7 +156,7 @@ Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
     if (request.jobs() > jobs_max()) return Error{fmt::format("jobs: {} is more than the processors here ({})", request.jobs(), jobs_max())};
     if (request.seed() > static_cast<std::uint64_t>(INT64_MAX)) return Error{fmt::format("seed: {} is more than {}", request.seed(), INT64_MAX)};
     const unsigned jobs = request.jobs() != 0 ? request.jobs() : std::max(1U, jobs_max() - 1);
-    return Order{std::move(*scenario), request.seed(), request.cases(), jobs, results_file(folder_, request.scenario(), request.seed())};
+    return Order{std::move(*scenario), request.seed(), request.cases(), jobs, results_file(folder_, request.scenario(), request.seed()), true};
 }
 
 Result<v1::CampaignState> CampaignDesk::start(Order order) {

@@ -16,8 +16,8 @@ namespace aeolis::server::campaign {
 
 /// The campaigns of one folder, campaign-NAME.db each, those of `aeolis campaign` too: one at a time flies, all can be looked at.
 ///
-/// Thread   any but the network's: each call reads files. What flies has threads of its own, of the least priority there is:
-///          they run only where nobody else wants the processor
+/// Thread   any but the network's: each call reads files. What flies has threads of its own that run only where nobody else
+///          wants the processor, and one beside them keeps
 /// Memory   a landing a thread; a look at a campaign keeps its touchdowns that were asked for, no more
 /// Faults   a disk that does not take the results ends the campaign, with that as its fault; what is kept stays
 class CampaignDesk {

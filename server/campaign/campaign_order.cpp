@@ -5,8 +5,21 @@
 #include "server/scenario/scenario_text.hpp"
 
 #include <fmt/format.h>
+#include <future>
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 namespace aeolis::server::campaign {
+namespace {
+
+/// The calling thread, from now on.
+void give_way() {
+    const sched_param none{};
+    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
+}
+
+} // namespace
 
 std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario, std::uint64_t seed) {
     return folder / fmt::format("campaign-{}-{}.db", scenario, seed);
@@ -29,8 +42,16 @@ Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionar
 
 Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary::Dictionary& dictionary,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
-    const CaseFlights flights{order.scenario, order.seed, dictionary, stop};
-    return run_campaign(store, order.cases, order.jobs, [&](std::uint64_t number) { return flights.fly(number); }, stop, tell);
+    // Not on this thread, which keeps: it shares locks of SQLite with whoever stores a landing, and must never hold one while it waits.
+    const auto flights = std::async(std::launch::async, [&] {
+                             if (order.gives_way) give_way();
+                             return std::make_unique<const CaseFlights>(order.scenario, order.seed, dictionary, stop);
+                         }).get();
+    const auto fly_case = [&](std::uint64_t number) {
+        if (order.gives_way) give_way();
+        return flights->fly(number);
+    };
+    return run_campaign(store, order.cases, order.jobs, fly_case, stop, tell);
 }
 
 } // namespace aeolis::server::campaign

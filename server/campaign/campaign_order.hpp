@@ -15,6 +15,7 @@ struct Order {
     std::uint64_t cases = 1;
     unsigned jobs = 1; ///< cases at a time
     std::filesystem::path file;
+    bool gives_way = false; ///< what flies runs only where nobody else wants the processor; the thread that keeps does not give way
 };
 
 /// Where the results of this scenario and seed lie in a folder.

@@ -71,7 +71,7 @@ int run_campaign(const CampaignOptions& options) {
     if (const auto many = campaign::check(scenario); !many) return failed(options.scenario + ": " + many.error().message);
 
     const campaign::Order order{scenario, options.seed, options.cases, jobs_of(options),
-                                options.results.value_or(campaign::results_file("run-data", scenario.name, options.seed))};
+                                options.results.value_or(campaign::results_file("run-data", scenario.name, options.seed)), false};
     const auto& file = order.file;
     const auto call = flown(options, order, dictionary);
     if (!call) return failed(call.error().message);

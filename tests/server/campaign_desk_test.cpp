@@ -31,10 +31,10 @@ v1::CampaignReport report(std::uint16_t port, const std::string& campaign) {
     return message_of<v1::CampaignReport>(web_request(port, "GET", "/api/v1/campaigns/" + campaign));
 }
 
-/// Waits until it is so, at most a minute.
+/// Waits until it is so, at most five minutes: what flies has what others leave of the processors.
 template <typename So>
 bool comes(So so) {
-    for (int i = 0; i < 1'200; ++i) {
+    for (int i = 0; i < 6'000; ++i) {
         if (so()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds{50});
     }
@@ -60,17 +60,17 @@ int idle_threads() {
 TEST_CASE("a campaign flies in the server, each case told once in the order in which it came, and comes to what the program prints", "[campaign][http]") {
     RunningServer server;
     const auto port = server.port();
-    const auto started = web_request(port, "POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":3,"seed":"7"})");
+    const auto started = web_request(port, "POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":2,"seed":"7"})");
     CHECK(started.status == 202);
     const auto begun = message_of<v1::CampaignState>(started);
     CHECK(begun.campaign() == "campaign-7");
-    CHECK(begun.cases() == 3);
+    CHECK(begun.cases() == 2);
 
     std::vector<v1::CampaignTouchdown> told;
     std::uint32_t after = 0;
     REQUIRE(comes([&] {
         const bool ended = over(report(port, "campaign-7").state());
-        const auto target = fmt::format("/api/v1/campaigns/campaign-7/touchdowns?after={}&limit=2", after);
+        const auto target = fmt::format("/api/v1/campaigns/campaign-7/touchdowns?after={}&limit=1", after);
         const auto page = message_of<v1::CampaignTouchdowns>(web_request(port, "GET", target));
         told.insert(told.end(), page.touchdowns().begin(), page.touchdowns().end());
         after = page.next_after();
@@ -83,17 +83,17 @@ TEST_CASE("a campaign flies in the server, each case told once in the order in w
         CHECK(std::abs(touchdown.east_m()) < 30'000.0);
         cases.insert(touchdown.case_());
     }
-    CHECK(told.size() == 3);
-    CHECK(cases == std::set<std::uint32_t>{1, 2, 3});
+    CHECK(told.size() == 2);
+    CHECK(cases == std::set<std::uint32_t>{1, 2});
 
     const auto found = report(port, "campaign-7");
     CHECK(found.state().state() == "complete");
-    CHECK(found.state().kept() == 3);
+    CHECK(found.state().kept() == 2);
     CHECK(found.state().fault().empty());
     CHECK(found.state().seed() == 7);
     REQUIRE(found.outcomes_size() == 1);
-    CHECK(found.outcomes(0).count() == 3);
-    auto results = campaign::CampaignResults::open(server.archive().parent_path() / "campaign-campaign-7.db", 3);
+    CHECK(found.outcomes(0).count() == 2);
+    auto results = campaign::CampaignResults::open(server.archive().parent_path() / "campaign-campaign-7.db", 2);
     REQUIRE(results);
     const auto summary = results->summary();
     REQUIRE(summary);
@@ -114,7 +114,7 @@ TEST_CASE("a cancelled campaign keeps its cases and goes on when it is started a
     const auto idle_before = idle_threads();
     REQUIRE(start(R"({"scenario":"gnc_alone","cases":10000,"jobs":1})").status == 202);
     REQUIRE(comes([&] { return report(port, "gnc_alone-0").state().kept() >= 2; }));
-    CHECK(idle_threads() == idle_before + 2); // the one that keeps, and the one that flies
+    CHECK(idle_threads() == idle_before + 1); // the one that flies; the one that keeps waits for nobody
     const auto flying = report(port, "gnc_alone-0").state();
     CHECK(flying.state() == "flying");
     CHECK(flying.rate_per_s() > 0.0);
