@@ -38,7 +38,7 @@ int main() {
     std::uint64_t landed = 0;
     for (std::uint64_t number = 1; number <= cases; ++number) {
         const double began_s = now_s();
-        landed += flights.fly(number).outcome == "touchdown" ? 1 : 0;
+        landed += flights.fly(number)->outcome == "touchdown" ? 1 : 0;
         const double flown_s = now_s();
         tests::TruthPilot pilot{trunk};
         (void)pilot.world.disperse(1, number);

@@ -4,6 +4,7 @@
 #include "server/access/access.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/api/static_files.hpp"
+#include "server/campaign/campaign_desk.hpp"
 #include "server/net/http_message.hpp"
 #include "server/net/stream_hub.hpp"
 #include "server/rehearsal/pipeline_thread.hpp"
@@ -40,6 +41,7 @@ class Api {
         const ScenarioLibrary& scenarios;
         QueryThreads& queries;
         RehearsalDesk& desk;
+        campaign::CampaignDesk& campaigns;
         StreamHub& hub;
         PipelineThread& pipeline;
         const StaticFiles& console;
@@ -82,6 +84,12 @@ class Api {
     void post_sequence(const Asked& asked);
     void post_alarm(const Asked& asked);
     void post_note(const Asked& asked);
+    // campaign_routes.cpp
+    void list_campaigns(const Asked& asked);
+    void start_campaign(const Asked& asked);
+    void campaign_report(const Asked& asked);
+    void campaign_touchdowns(const Asked& asked);
+    void cancel_campaign(const Asked& asked);
     // access_routes.cpp
     void session(const Asked& asked);
     void log_in(const Asked& asked);

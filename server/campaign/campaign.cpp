@@ -17,7 +17,9 @@ constexpr auto keep_at_most = std::chrono::milliseconds{500}; // not yet durable
 constexpr auto tell_every = std::chrono::milliseconds{100};
 constexpr std::size_t waiting_per_job = 2; // so that no thread waits for the one that writes
 
-CaseResult flown(const std::function<CaseResult(std::uint64_t)>& fly, std::uint64_t number) {
+using Fly = std::function<std::optional<CaseResult>(std::uint64_t)>;
+
+std::optional<CaseResult> flown(const Fly& fly, std::uint64_t number) {
     CaseResult lost;
     lost.number = number;
     lost.outcome = simulation::name_of(simulation::Outcome::lost);
@@ -34,12 +36,15 @@ CaseResult flown(const std::function<CaseResult(std::uint64_t)>& fly, std::uint6
 /// Threads that fly the numbers they are given. Whoever owns it closes `wanted` and takes what is `done` to its end.
 class Pilots {
   public:
-    Pilots(unsigned jobs, const std::function<CaseResult(std::uint64_t)>& fly, const std::atomic<bool>& stop)
+    Pilots(unsigned jobs, const Fly& fly, const std::atomic<bool>& stop)
         : wanted(jobs * waiting_per_job), done(jobs * waiting_per_job), flying_(jobs) {
         for (unsigned i = 0; i < jobs; ++i)
             threads_.emplace_back([this, &fly, &stop] {
-                while (const auto number = wanted.pop())
-                    if (stop || !done.push(flown(fly, *number))) break;
+                while (const auto number = wanted.pop()) {
+                    if (stop) break;
+                    auto result = flown(fly, *number);
+                    if (!result || !done.push(std::move(*result))) break;
+                }
                 if (--flying_ == 0) done.close();
             });
     }
@@ -63,7 +68,7 @@ class Pilots {
 } // namespace
 
 Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigned jobs,
-                              const std::function<CaseResult(std::uint64_t)>& fly, const std::atomic<bool>& stop,
+                              const Fly& fly, const std::atomic<bool>& stop,
                               const std::function<void(const Progress&)>& tell) {
     const auto began = Clock::now();
     Progress progress;

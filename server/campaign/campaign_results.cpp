@@ -1,5 +1,7 @@
 #include "server/campaign/campaign_results.hpp"
 
+#include "server/campaign/campaign_store.hpp"
+
 #include <fmt/format.h>
 
 namespace aeolis::server::campaign {
@@ -24,6 +26,26 @@ Result<void> each_row(Statement& statement, const std::function<void(const State
 }
 
 } // namespace
+
+Result<Heading> heading_of(const std::filesystem::path& file) {
+    auto database = Database::open(file.string(), Mode::read_only);
+    if (!database) return database.error();
+    const auto id = database->integer_of("PRAGMA application_id");
+    if (!id) return id.error();
+    if (*id != campaign_application_id) return Error{file.string() + ": holds something else than a campaign's results"};
+    const auto version = database->integer_of("SELECT schema_version FROM campaign");
+    if (!version) return version.error();
+    if (*version != campaign_schema_version)
+        return Error{fmt::format("{}: schema_version: {} there, {} here", file.string(), *version, campaign_schema_version)};
+    auto select = database->prepare("SELECT scenario, seed, cases, (SELECT count(*) FROM cases WHERE number <= campaign.cases)"
+                                    " FROM campaign");
+    if (!select) return select.error();
+    const auto row = select->step();
+    if (!row) return row.error();
+    if (!*row) return Error{file.string() + ": says of no campaign that it is its own"};
+    return Heading{std::string{select->text(0)}, static_cast<std::uint64_t>(select->integer(1)),
+                   static_cast<std::uint64_t>(select->integer(2)), static_cast<std::uint64_t>(select->integer(3))};
+}
 
 double Summary::touchdown_fraction() const {
     return kept == 0 ? 0.0 : static_cast<double>(kept - failed) / static_cast<double>(kept);
@@ -76,6 +98,15 @@ Result<Spread> CampaignResults::spread(const char* column, const char* source, c
 }
 
 Result<Summary> CampaignResults::summary() {
+    return read(true);
+}
+Result<Summary> CampaignResults::brief() {
+    return read(false);
+}
+
+Result<Summary> CampaignResults::read(bool with_events) {
+    const auto instant = archive::sqlite::Transaction::begin_read(database_); // one, however many cases come meanwhile
+    if (!instant) return instant.error();
     Summary summary;
     summary.cases = cases_;
     auto campaign = database_.prepare("SELECT scenario, seed FROM campaign");
@@ -86,7 +117,8 @@ Result<Summary> CampaignResults::summary() {
     campaign->reset();
 
     if (const auto read = read_outcomes(summary); !read) return read.error();
-    if (const auto read = read_events(summary); !read) return read.error();
+    if (with_events)
+        if (const auto read = read_events(summary); !read) return read.error();
     if (const auto read = read_spreads(summary); !read) return read.error();
     if (const auto read = read_margins(summary); !read) return read.error();
     if (const auto read = read_recontacts(summary); !read) return read.error();
@@ -182,6 +214,21 @@ Result<void> CampaignResults::read_recontacts(Summary& into) {
     if (!struck) return struck.error();
     return each_row(*struck,
                     [&](const Statement& row) { into.recontacts = static_cast<std::uint64_t>(row.integer(0)); });
+}
+
+Result<std::vector<Touchdown>> CampaignResults::arrivals(std::uint64_t place, std::uint64_t limit) {
+    auto select = database_.prepare("SELECT place, number, outcome, east_m, north_m FROM arrivals"
+                                    " JOIN flown ON number = case_number WHERE place > ? ORDER BY place LIMIT ?");
+    if (!select) return select.error();
+    select->bind(1, static_cast<std::int64_t>(place)).bind(2, static_cast<std::int64_t>(limit));
+    std::vector<Touchdown> touchdowns;
+    const auto read = each_row(*select, [&](const Statement& row) {
+        const auto metres = [&](int column) { return row.is_null(column) ? std::nullopt : std::optional{row.real(column)}; };
+        touchdowns.push_back({static_cast<std::uint64_t>(row.integer(0)), static_cast<std::uint64_t>(row.integer(1)),
+                              std::string{row.text(2)}, metres(3), metres(4)});
+    });
+    if (!read) return read.error();
+    return touchdowns;
 }
 
 Result<void> CampaignResults::each(const char* sql, const std::function<void(Point)>& take) {

@@ -67,6 +67,24 @@ struct Summary {
     double touchdown_fraction() const;
 };
 
+/// What a file of results says of itself, now.
+struct Heading {
+    std::string scenario;
+    std::uint64_t seed = 0;
+    std::uint64_t cases = 0; ///< that the last call asked for
+    std::uint64_t kept = 0;  ///< that the file holds of them
+};
+/// An Error names the file, and what it is when it is no campaign's of this version.
+Result<Heading> heading_of(const std::filesystem::path& file);
+
+/// Where a case came to the ground.
+struct Touchdown {
+    std::uint64_t place = 0; ///< in the order in which the cases came
+    std::uint64_t number = 0;
+    std::string outcome;
+    std::optional<double> east_m, north_m; ///< of the target; none: it never touched down
+};
+
 /// The results of a campaign, read from its file: rows pass one after another and are not kept.
 class CampaignResults {
   public:
@@ -74,6 +92,10 @@ class CampaignResults {
     static Result<CampaignResults> open(const std::filesystem::path& file, std::uint64_t cases);
 
     Result<Summary> summary();
+    /// Without events, whose spreads take most of the time.
+    Result<Summary> brief();
+    /// Those that came after `place`, in that order, `limit` at most.
+    Result<std::vector<Touchdown>> arrivals(std::uint64_t place, std::uint64_t limit);
 
     struct Point {
         double x = 0.0, y = 0.0;
@@ -88,6 +110,7 @@ class CampaignResults {
     /// Of a column of `source`; `name` is bound when it has a parameter.
     Result<Spread> spread(const char* column, const char* source, const std::string& name = {});
     Result<void> each(const char* sql, const std::function<void(Point)>& take);
+    Result<Summary> read(bool with_events);
     Result<void> read_outcomes(Summary& into);
     Result<void> read_events(Summary& into);
     Result<void> read_spreads(Summary& into);

@@ -10,20 +10,18 @@ using archive::sqlite::Database;
 using archive::sqlite::Mode;
 using archive::sqlite::Transaction;
 
-constexpr std::int64_t schema_version = 3;
-constexpr std::int64_t application_id = 0x4165436d; // "AeCm"
-
 const char* const pragmas = "PRAGMA journal_mode = WAL;"
                             "PRAGMA synchronous = FULL;";
 
 const char* const schema =
     "CREATE TABLE campaign (schema_version INTEGER NOT NULL, scenario TEXT NOT NULL, scenario_text TEXT NOT NULL,"
-    " seed INTEGER NOT NULL, dictionary TEXT NOT NULL, program TEXT NOT NULL) STRICT;"
+    " seed INTEGER NOT NULL, dictionary TEXT NOT NULL, program TEXT NOT NULL, cases INTEGER NOT NULL) STRICT;"
     "CREATE TABLE cases (number INTEGER PRIMARY KEY, outcome TEXT NOT NULL, reason TEXT NOT NULL,"
     " end_cycle INTEGER NOT NULL, vertical_mps REAL, horizontal_mps REAL, miss_m REAL, latitude_deg REAL,"
     " longitude_deg REAL, east_m REAL, north_m REAL, peak_deceleration_mps2 REAL, parachute_mach REAL,"
     " parachute_pressure_Pa REAL, propellant_kg REAL,"
     " heatshield_least_m REAL, backshell_least_m REAL, struck_by TEXT) STRICT;"
+    "CREATE TABLE arrivals (place INTEGER PRIMARY KEY, case_number INTEGER NOT NULL REFERENCES cases(number)) STRICT;"
     "CREATE TABLE events (case_number INTEGER NOT NULL REFERENCES cases(number), place INTEGER NOT NULL,"
     " name TEXT NOT NULL, e_s REAL, altitude_m REAL, speed_mps REAL,"
     " PRIMARY KEY (case_number, place)) STRICT, WITHOUT ROWID;"
@@ -61,7 +59,7 @@ Result<CampaignStore> CampaignStore::open(const std::filesystem::path& file, con
     if (!id) return id.error();
     const auto tables = store.database_.integer_of("SELECT count(*) FROM sqlite_schema");
     if (!tables) return tables.error();
-    if (*tables != 0 && *id != application_id)
+    if (*tables != 0 && *id != campaign_application_id)
         return Error{file.string() + ": campaign: the file holds something else than a campaign's results"};
     if (const auto set = store.database_.execute(pragmas); !set) return set.error();
     if (const auto known = *tables == 0 ? store.make(identity) : store.check(identity); !known) return known.error();
@@ -73,11 +71,11 @@ Result<void> CampaignStore::make(const Identity& identity) {
     auto transaction = Transaction::begin_write(database_);
     if (!transaction) return transaction.error();
     if (const auto made = database_.execute(schema); !made) return made.error();
-    const auto mark = fmt::format("PRAGMA application_id = {}", application_id);
+    const auto mark = fmt::format("PRAGMA application_id = {}", campaign_application_id);
     if (const auto marked = database_.execute(mark.c_str()); !marked) return marked.error();
-    auto insert = database_.prepare("INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?)");
+    auto insert = database_.prepare("INSERT INTO campaign VALUES (?, ?, ?, ?, ?, ?, 0)");
     if (!insert) return insert.error();
-    insert->bind(1, schema_version)
+    insert->bind(1, campaign_schema_version)
         .bind(2, std::string_view{identity.scenario})
         .bind(3, std::string_view{identity.scenario_text})
         .bind(4, static_cast<std::int64_t>(identity.seed))
@@ -93,8 +91,8 @@ Result<void> CampaignStore::check(const Identity& identity) {
     };
     const auto version = database_.integer_of("SELECT schema_version FROM campaign");
     if (!version) return version.error();
-    if (*version != schema_version)
-        return refused("schema_version", fmt::format("{} there, {} here", *version, schema_version));
+    if (*version != campaign_schema_version)
+        return refused("schema_version", fmt::format("{} there, {} here", *version, campaign_schema_version));
     auto select = database_.prepare("SELECT scenario, scenario_text, seed, dictionary, program FROM campaign");
     if (!select) return select.error();
     const auto row = select->step();
@@ -118,15 +116,24 @@ Result<void> CampaignStore::prepare() {
     if (!has) return has.error();
     auto add_case = database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (!add_case) return add_case.error();
+    auto add_arrival = database_.prepare("INSERT INTO arrivals (case_number) VALUES (?)");
+    if (!add_arrival) return add_arrival.error();
     auto add_event = database_.prepare("INSERT INTO events VALUES (?, ?, ?, ?, ?, ?)");
     if (!add_event) return add_event.error();
     auto add_margin = database_.prepare("INSERT INTO margins VALUES (?, ?, ?, ?)");
     if (!add_margin) return add_margin.error();
     has_ = std::move(*has);
     add_case_ = std::move(*add_case);
+    add_arrival_ = std::move(*add_arrival);
     add_event_ = std::move(*add_event);
     add_margin_ = std::move(*add_margin);
     return {};
+}
+
+Result<void> CampaignStore::want(std::uint64_t cases) {
+    auto update = database_.prepare("UPDATE campaign SET cases = ?");
+    if (!update) return update.error();
+    return update->bind(1, static_cast<std::int64_t>(cases)).run();
 }
 
 Result<bool> CampaignStore::has(std::uint64_t case_number) {
@@ -163,6 +170,7 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
         if (backshell_least_m) add_case_.bind(17, *backshell_least_m);
         if (struck != nullptr) add_case_.bind(18, std::string_view{struck});
         if (const auto added = add_case_.run(); !added) return added.error();
+        if (const auto added = add_arrival_.bind(1, number).run(); !added) return added.error();
         std::int64_t place = 0;
         for (const CaseEvent& event : result.events) {
             add_event_.bind(1, number)

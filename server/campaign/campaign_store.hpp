@@ -12,6 +12,9 @@
 
 namespace aeolis::server::campaign {
 
+inline constexpr std::int64_t campaign_schema_version = 4;
+inline constexpr std::int64_t campaign_application_id = 0x4165436d; ///< "AeCm", in the file's header
+
 /// What the cases of one file have in common. Cases of two identities never share a file.
 struct Identity {
     std::string scenario;      ///< its name
@@ -24,8 +27,9 @@ struct Identity {
 /// The results of a campaign in a SQLite file: one row a case, one a case's event. Rows are only ever added, and a case
 /// once.
 ///
-///   campaign   one row: schema version, scenario, seed, dictionary, program
+///   campaign   one row: schema version, scenario, seed, dictionary, program, cases asked for by the last call
 ///   cases      number, outcome, reason, end_cycle, touchdown, parachute, …; NULL where there was none
+///   arrivals   place (from 1, in the order in which the cases came), case_number
 ///   events     case_number, place (in the order of time), name, e_s, altitude_m, speed_mps
 ///
 /// One thread owns it, and one process at a time writes.
@@ -34,6 +38,8 @@ class CampaignStore {
     /// Makes the file when there is none. An Error names the field in which the file belongs to another campaign.
     static Result<CampaignStore> open(const std::filesystem::path& file, const Identity& identity);
 
+    /// From now on the file says that this many are wanted.
+    Result<void> want(std::uint64_t cases);
     Result<bool> has(std::uint64_t case_number);
     /// All of `results` or none; durable when it returns.
     Result<void> add(std::span<const CaseResult> results);
@@ -47,7 +53,7 @@ class CampaignStore {
 
     archive::WriterLock lock_; // released last
     archive::sqlite::Database database_;
-    archive::sqlite::Statement has_, add_case_, add_event_, add_margin_;
+    archive::sqlite::Statement has_, add_case_, add_arrival_, add_event_, add_margin_;
 };
 
 } // namespace aeolis::server::campaign

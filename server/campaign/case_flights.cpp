@@ -10,6 +10,8 @@
 namespace aeolis::server::campaign {
 namespace {
 
+const std::atomic<bool> never{false};
+
 constexpr double degree_rad = std::numbers::pi / 180.0;
 
 /// Whether the sequence passes from one anchor to another at this row.
@@ -30,12 +32,16 @@ double dispersion_sclk(const simulation::Scenario& scenario) {
 
 CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed,
                          const dictionary::Dictionary& dictionary)
-    : scenario_(scenario), seed_(seed), dictionary_(dictionary) {
+    : CaseFlights(scenario, seed, dictionary, never) {}
+
+CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed,
+                         const dictionary::Dictionary& dictionary, const std::atomic<bool>& abandon)
+    : scenario_(scenario), seed_(seed), dictionary_(dictionary), abandon_(abandon) {
     if (!simulation::disperses_later(scenario)) return;
     auto common = std::make_unique<Flight>(
         Flight{ScriptedLanding{scenario, seed, 0, dictionary}, RecordedFirings{dictionary}, {}, 0});
     const auto& landing = common->landing.landing();
-    while (landing.outcome() == simulation::Outcome::running && landing.sclk().seconds < dispersion_sclk(scenario))
+    while (landing.outcome() == simulation::Outcome::running && landing.sclk().seconds < dispersion_sclk(scenario) && !abandon_)
         common->step();
     common_ = std::move(common);
 }
@@ -61,7 +67,8 @@ std::unique_ptr<CaseFlights::Flight> CaseFlights::begun(std::uint64_t case_numbe
     return flight;
 }
 
-CaseResult CaseFlights::fly(std::uint64_t case_number) const {
+std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
+    if (abandon_) return std::nullopt; // the common flight may not have come to its end
     CaseResult result;
     result.number = case_number;
     std::unique_ptr<Flight> flight;
@@ -72,8 +79,10 @@ CaseResult CaseFlights::fly(std::uint64_t case_number) const {
     };
     try {
         flight = begun(case_number);
-        while (flight->landing.landing().outcome() == simulation::Outcome::running)
+        while (flight->landing.landing().outcome() == simulation::Outcome::running) {
+            if (abandon_) return std::nullopt;
             flight->step();
+        }
         summarise(*flight, result);
     } catch (const CheckFailed& bug) {
         lost(text_of_bug(bug));

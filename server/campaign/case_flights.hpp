@@ -6,14 +6,16 @@
 #include "server/rehearsal/scripted_landing.hpp"
 #include "simulation/scenario.hpp"
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace aeolis::server::campaign {
 
 /// The landings of a campaign: what all cases have in common is flown once, and each case is a copy of it.
 ///
-/// In       the number of a case                        Out   what is kept of it
+/// In       the number of a case                        Out   what is kept of it; none when it was abandoned
 /// Rate     as fast as it is called; from several threads at once
 /// Memory   a landing with its recording a thread, some ten megabytes; nothing stays of a case
 /// Faults   a bug found in the simulation, or what else it throws, ends that case as lost
@@ -24,8 +26,11 @@ class CaseFlights {
     /// Flies up to the moment of dispersion; nothing when the scenario has none of its own. The dictionary must outlive
     /// this.
     CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed, const dictionary::Dictionary& dictionary);
+    /// Once `abandon` is set, whatever flies ends with its next cycle. It must outlive this, too.
+    CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed, const dictionary::Dictionary& dictionary,
+                const std::atomic<bool>& abandon);
 
-    CaseResult fly(std::uint64_t case_number) const;
+    std::optional<CaseResult> fly(std::uint64_t case_number) const;
 
   private:
     /// A landing on its way, and what it has told so far.
@@ -43,6 +48,7 @@ class CaseFlights {
     simulation::Scenario scenario_;
     std::uint64_t seed_;
     const dictionary::Dictionary& dictionary_;
+    const std::atomic<bool>& abandon_;
     std::unique_ptr<const Flight> common_; ///< none: each case is flown from the start
 };
 

@@ -1,12 +1,8 @@
-#include "generated/dictionary_flight.hpp"
-#include "server/campaign/campaign.hpp"
+#include "server/campaign/campaign_order.hpp"
 #include "server/campaign/campaign_plots.hpp"
 #include "server/campaign/campaign_report.hpp"
-#include "server/campaign/case_flights.hpp"
-#include "server/campaign/program_digest.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
-#include "server/scenario/scenario_text.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -24,7 +20,7 @@ std::atomic<bool>& stop_asked() {
 }
 static_assert(std::atomic<bool>::is_always_lock_free); // a signal sets it
 
-/// Ctrl-C ends the campaign after the cases that are flying; the second time it ends the program.
+/// Ctrl-C ends the campaign, without the cases that are flying; the second time it ends the program.
 void stop_at_interrupt() {
     std::signal(SIGINT, [](int) {
         stop_asked() = true;
@@ -54,21 +50,16 @@ unsigned jobs_of(const CampaignOptions& options) {
     return options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
 }
 
-Result<campaign::Call> flown(const CampaignOptions& options, const simulation::Scenario& scenario,
-                             const dictionary::Dictionary& dictionary, const std::filesystem::path& file) {
-    auto program = campaign::program_digest();
-    if (!program) return program.error();
-    auto store = campaign::CampaignStore::open(file, {scenario.name, scenario_to_text(scenario), options.seed,
-                                                      fmt::format("{}", flight::dictionary_id), std::move(*program)});
+Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Order& order,
+                             const dictionary::Dictionary& dictionary) {
+    auto store = campaign::open_store(order, dictionary);
     if (!store) return store.error();
-    const campaign::CaseFlights flights{scenario, options.seed, dictionary};
     stop_at_interrupt();
     ProgressBar bar;
-    const auto progress = campaign::run_campaign(
-        *store, options.cases, jobs_of(options), [&](std::uint64_t number) { return flights.fly(number); },
-        stop_asked(), [&](const campaign::Progress& so_far) { bar.draw(so_far); });
+    const auto progress = campaign::fly(*store, order, dictionary, stop_asked(),
+                                        [&](const campaign::Progress& so_far) { bar.draw(so_far); });
     if (!progress) return progress.error();
-    return campaign::Call{*progress, jobs_of(options), options.scenario, file.string()};
+    return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
 }
 
 } // namespace
@@ -77,12 +68,12 @@ int run_campaign(const CampaignOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
-    if (scenario.test_venue == simulation::TestVenue::performance)
-        return failed(options.scenario + ": test_venue: performance times one landing; a campaign flies many at once");
+    if (const auto many = campaign::check(scenario); !many) return failed(options.scenario + ": " + many.error().message);
 
-    const std::filesystem::path file =
-        options.results.value_or(fmt::format("run-data/campaign-{}-{}.db", scenario.name, options.seed));
-    const auto call = flown(options, scenario, dictionary, file);
+    const campaign::Order order{scenario, options.seed, options.cases, jobs_of(options),
+                                options.results.value_or(campaign::results_file("run-data", scenario.name, options.seed)), false};
+    const auto& file = order.file;
+    const auto call = flown(options, order, dictionary);
     if (!call) return failed(call.error().message);
 
     auto results = campaign::CampaignResults::open(file, options.cases);

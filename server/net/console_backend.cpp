@@ -85,8 +85,9 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         },
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
+    backend->campaigns_ = std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
     backend->api_ = std::make_unique<Api>(
-        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->hub_,
+        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_, *backend->hub_,
                    *backend->pipeline_, backend->console_, *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
     return backend;
@@ -154,6 +155,7 @@ ConsoleBackend::~ConsoleBackend() {
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
     queries_.reset(); // what still waits may add a note, through api and pipeline
     api_.reset();
+    campaigns_.reset(); // what flies is abandoned
     downlink_.reset();
     desk_.reset();
     pipeline_.reset();
@@ -201,6 +203,7 @@ void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, do
 Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     AEOLIS_CHECK(settings_.other != nullptr);
     desk_->close("this server follows the downlink of another mission: rehearsals need one of their own");
+    campaigns_->close("this server follows the downlink of another mission: campaigns need one of their own");
     auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
         server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
     });

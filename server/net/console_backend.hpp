@@ -15,7 +15,7 @@ namespace aeolis::server {
 
 /// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
 ///
-/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, two queries, one a rehearsal
+/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, two queries, one a rehearsal; a campaign's own
 class ConsoleBackend {
   public:
     struct Settings {
@@ -58,6 +58,7 @@ class ConsoleBackend {
     std::unique_ptr<QueryThreads> queries_;
     std::unique_ptr<PipelineThread> pipeline_;
     std::unique_ptr<RehearsalDesk> desk_;
+    std::unique_ptr<campaign::CampaignDesk> campaigns_;
     std::unique_ptr<DownlinkFollower> downlink_;
     std::unique_ptr<Api> api_;
 };

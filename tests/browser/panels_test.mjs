@@ -5,10 +5,11 @@ import { readFile, readdir } from 'node:fs/promises';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
+import { madeUpCampaign } from './made_up_campaign.mjs';
 import { comparePicture } from './picture.mjs';
 import { findings, focused, root, waitFor, workplace } from './support.mjs';
 
-const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'alarms', 'notes', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal', 'users'];
+const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'alarms', 'notes', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal', 'campaigns', 'users'];
 const SCRIPT_KB = 150;
 
 const { open, serve } = workplace();
@@ -23,6 +24,7 @@ after(() => server?.stop());
 test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 400_000 }, async () => {
     const found = [];
     const { page, problems, shows } = await open(server.address);
+    await madeUpCampaign(page);
     for (const name of ['dark', 'light']) {
         await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), name);
         for (const panel of [...PANELS, undefined]) {
@@ -30,6 +32,7 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
             await shows('badge', /ENDED RUN/);
             if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
             if (panel === 'flown') await shows('flown-summary', /timepoints fired/);
+            if (panel === 'campaigns') await shows('campaign-ellipse', /azimuth/);
             if (panel !== 'phases') assert.match((await page.getByTestId('mode-mark').allInnerTexts()).join(), /ended, rehearsal/, `${panel} does not say its mode`);
             found.push(...(await findings(page, name)).map((line) => `${panel ?? 'console'}, ${name}: ${line}`));
         }
@@ -67,9 +70,10 @@ test('axe finds nothing on any panel in both themes, and each panel says its mod
 
 test('each panel looks as its stored picture does, within a tolerance', { timeout: 120_000 }, async () => {
     const { page, problems, shows } = await open(server.address, { width: 1000, height: 640 });
+    await madeUpCampaign(page);
     const different = [];
     const compare = async (name, what) => different.push(...await comparePicture(page, name, await what.screenshot({ animations: 'disabled' })));
-    for (const [theme, panels] of [['dark', PANELS.filter((panel) => panel !== 'phases')], ['light', ['timeline', 'plots', 'commands']]]) {
+    for (const [theme, panels] of [['dark', PANELS.filter((panel) => panel !== 'phases')], ['light', ['timeline', 'plots', 'commands', 'campaigns']]]) {
         await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
         for (const panel of panels) {
             await page.goto(`${server.address}/?panel=${panel}`);
@@ -77,6 +81,7 @@ test('each panel looks as its stored picture does, within a tolerance', { timeou
             await shows('stream-state', /connected/);
             if (panel === 'verdicts') await shows('verdict-sentence', /bit for bit/);
             if (panel === 'flown') await shows('flown-summary', /timepoints fired/);
+            if (panel === 'campaigns') await shows('campaign-ellipse', /azimuth/);
             if (panel === 'channels') await waitFor(() => page.getByTestId('channel-altitude_m').innerText(), /\d/);
             await page.waitForTimeout(700); // history, and a draw after it
             await compare(`${panel}_${theme}`, page.locator('main'));

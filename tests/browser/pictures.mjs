@@ -65,6 +65,11 @@ try {
     await page.getByTestId('packet-fields').focus();
     for (let field = 0; field < 9; ++field) await page.keyboard.press('ArrowDown');
     await take('tour_packet.png');
+    await page.goto(`${server.address}/?panel=campaigns`);
+    await page.getByTestId('campaign-cases').fill('100');
+    await page.getByTestId('campaign-cases').press('Enter');
+    await waitFor(async () => Number(/(\d+) of 100/.exec(await text('campaign-state'))?.[1]), (kept) => kept >= 60, 400_000);
+    await take('tour_campaign.png', page.locator('main'));
     console.log(`renewed in ${path.relative(root, pictures)}: look at them before you commit them`);
 } finally {
     await server.stop();

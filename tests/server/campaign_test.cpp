@@ -167,7 +167,9 @@ TEST_CASE("case K of a campaign is the landing that rehearse --case K flies, bit
     const auto& dictionary = tests::shipped_dictionary();
     const CaseFlights flights{scenario, 3, dictionary};
     (void)flights.fly(6); // no case leaves anything to the next
-    const auto flown = flights.fly(7);
+    const auto result = flights.fly(7);
+    REQUIRE(result);
+    const CaseResult& flown = *result;
 
     Rehearsal rehearsal{scenario, 3, 7, dictionary};
     while (rehearsal.landing().outcome() == simulation::Outcome::running)
@@ -289,7 +291,9 @@ TEST_CASE("a landing that diverges ends as lost with reason and cycle, or as wha
     auto scenario = test::shipped_scenario("gnc_alone");
     scenario.start_before_entry_s = 60.0; // still spinning behind the cruise stage: it cannot land
     const CaseFlights flights{scenario, 1, tests::shipped_dictionary()};
-    const auto flown = flights.fly(1);
+    const auto result = flights.fly(1);
+    REQUIRE(result);
+    const CaseResult& flown = *result;
     INFO(flown.outcome << ": " << flown.reason);
     CHECK(flown.outcome != "touchdown");
     CHECK(flown.outcome != "running");

@@ -2,6 +2,7 @@
 import { access } from './access/model';
 import { ExpiredBar, LogIn } from './access/view';
 import { Alarms } from './alarms/view';
+import { Campaigns } from './campaigns/view';
 import { Channels } from './channels/view';
 import { Header } from './clocks/view';
 import { step } from './commands/line';
@@ -30,7 +31,7 @@ import { Users } from './users/view';
 import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
-const DATA = { channels: Channels, alarms: Alarms, notes: Notes, users: Users, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal };
+const DATA = { channels: Channels, alarms: Alarms, notes: Notes, users: Users, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal, campaigns: Campaigns };
 
 function Data() {
   const Shown = DATA[tab.value];

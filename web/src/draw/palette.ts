@@ -2,7 +2,7 @@
 
 const TOKENS = {
   text: 'text', dim: 'dim', edge: 'edge', line: 'line', panel: 'panel', raised: 'raised', page: 'page', ghost: 'ghost', chosen: 'chosen',
-  accent: 'accent', good: 'good', caution: 'caution', alarm: 'alarm', uhf: 'by-uhf', tone: 'by-tone', recording: 'by-recording',
+  accent: 'accent', good: 'good', caution: 'caution', alarm: 'alarm', uhf: 'by-uhf', tone: 'by-tone', recording: 'by-recording', rehearsal: 'mode-rehearsal',
 } as const;
 export type Palette = Record<keyof typeof TOKENS, string> & { name: string; sans: string; mono: string };
 

@@ -1,6 +1,8 @@
+// @vitest-environment happy-dom
 import { create } from '@bufbuild/protobuf';
-import { describe, expect, it } from 'vitest';
+import { afterEach, describe, expect, it, vi } from 'vitest';
 import { ChannelSeriesSchema } from '../gen/aeolis/v1/run_pb';
+import { download, sizeWords } from './download';
 import { rangeProblem, rangeRow, seriesPath } from './model';
 
 describe('a recorded range', () => {
@@ -16,5 +18,39 @@ describe('a recorded range', () => {
   });
   it('asks the route as it is documented', () => {
     expect(seriesPath(3, ['a', 'b'], 1.5, 2, 100, true)).toBe('/runs/3/channels?names=a%2Cb&from=1.5&to=2&points=100&format=csv');
+  });
+});
+
+describe('an export', () => {
+  afterEach(() => void vi.unstubAllGlobals());
+  /** Answers in pieces until it is aborted. */
+  const serves = (pieces: number, headers: Record<string, string> = {}) =>
+    vi.stubGlobal('fetch', async (_: string, { signal }: RequestInit) => new Response(new ReadableStream({
+      pull(controller) {
+        if (signal?.aborted) controller.error(signal.reason);
+        else if (pieces-- > 0) controller.enqueue(new Uint8Array(1000));
+        else controller.close();
+      },
+    }), { headers }));
+  it('tells how much has come, of how much where that is said, and comes whole', async () => {
+    const told: [number, number | undefined][] = [];
+    serves(3);
+    expect((await download('x', new AbortController().signal, (octets, of) => told.push([octets, of]))).size).toBe(3000);
+    expect(told).toEqual([[1000, undefined], [2000, undefined], [3000, undefined]]);
+    serves(1, { 'content-length': '1000' });
+    await download('x', new AbortController().signal, (octets, of) => told.push([octets, of]));
+    expect(told.at(-1)).toEqual([1000, 1000]);
+    expect([sizeWords(420_000, undefined), sizeWords(12_400_000, 71_000_000)]).toEqual(['0.42 MB', '12.4 of 71.0 MB']);
+  });
+  it('that is cancelled ends, and makes no file', async () => {
+    serves(1e9);
+    const stop = new AbortController();
+    await expect(download('x', stop.signal, (octets) => {
+      if (octets >= 5000) stop.abort();
+    })).rejects.toThrow();
+  });
+  it('that is refused says why', async () => {
+    vi.stubGlobal('fetch', async () => new Response('{"error":"too many questions wait"}', { status: 503 }));
+    await expect(download('x', new AbortController().signal, () => undefined)).rejects.toThrow('too many questions wait');
   });
 });

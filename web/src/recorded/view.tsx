@@ -5,6 +5,8 @@ import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
 import { ask, dictionary, pastRange, replay, runNow, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
+import { wordsFor } from '../run/api';
+import { download, save, sizeWords } from './download';
 import { rangeProblem, rangeRow, seriesPath } from './model';
 import type { RangeRow } from './model';
 import { splitBySource } from '../stream/columns';
@@ -19,6 +21,24 @@ const summary = signal<RecordingSummary | undefined>(undefined);
 const message = signal<{ good: boolean; text: string } | undefined>(undefined);
 const csvPath = signal<string | undefined>(undefined);
 const underWay = signal(false);
+/** The file that is being taken. */
+const taking = signal<{ stop: AbortController; octets: number; of: number | undefined } | undefined>(undefined);
+
+async function take(path: string): Promise<void> {
+  if (taking.value) return;
+  const stop = new AbortController();
+  taking.value = { stop, octets: 0, of: undefined };
+  message.value = undefined;
+  try {
+    const file = await download(path, stop.signal, (octets, of) => (taking.value = { stop, octets, of }));
+    save(file, 'aeolis.csv');
+    message.value = { good: true, text: `aeolis.csv: ${sizeWords(file.size, undefined)}` };
+  } catch (error) {
+    message.value = { good: false, text: stop.signal.aborted ? 'cancelled: no file was made' : `no file was made: ${wordsFor(error)}` };
+  } finally {
+    taking.value = undefined;
+  }
+}
 
 function defaultChannels(): string {
   return LAYOUT.plots.map((plot) => dictionary.value?.pick(plot.channel)?.name).filter((name) => name !== undefined).join(' ');
@@ -107,7 +127,16 @@ export function Recorded() {
             not in the recording {String(summary.value.realtimeNotRecorded)}, differing from it {String(summary.value.realtimeDiffers)}.
           </p>
         )}
-        {csvPath.value && rows.value.length > 0 && <p><a href={csvPath.value} download="aeolis.csv">take these samples as CSV</a></p>}
+        {csvPath.value && rows.value.length > 0 && (
+          <p data-testid="range-export">
+            {taking.value ? (
+              <>
+                <progress max={taking.value.of ?? 1} value={taking.value.of === undefined ? undefined : taking.value.octets} aria-label="of the file" />{' '}
+                {sizeWords(taking.value.octets, taking.value.of)} have come <button type="button" onClick={() => taking.value?.stop.abort()}>cancel</button>
+              </>
+            ) : <button type="button" onClick={() => csvPath.value && void take(csvPath.value)}>take these samples as CSV</button>}
+          </p>
+        )}
       </div>
     </div>
   );

@@ -28,7 +28,7 @@ export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path:
   throw new Refused(response.status, wordsOf(text) || `${response.status} ${response.statusText}`);
 }
 
-function wordsOf(text: string): string {
+export function wordsOf(text: string): string {
   try {
     return (JSON.parse(text) as { error?: string }).error ?? text.slice(0, 300);
   } catch {

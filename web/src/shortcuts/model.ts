@@ -9,7 +9,7 @@ import { closeTimepoint, stepTimepoint } from '../timeline/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
-export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'flown' | 'recorded' | 'rehearsal' | 'alarms' | 'notes' | 'users';
+export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'flown' | 'recorded' | 'rehearsal' | 'campaigns' | 'alarms' | 'notes' | 'users';
 export const tab = signal<Tab>('channels');
 export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
@@ -21,6 +21,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint by plan, tone, UHF and recording' },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
+  { id: 'campaigns', title: 'Campaigns', key: 'd', words: 'campaigns of dispersed landings: start, watch the ellipse fill' },
   { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
 ];
 

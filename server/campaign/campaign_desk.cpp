@@ -1,0 +1,271 @@
+#include "server/campaign/campaign_desk.hpp"
+
+#include "server/campaign/campaign_results.hpp"
+#include "server/scenario/script_check.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <thread>
+
+namespace aeolis::server::campaign {
+namespace {
+
+constexpr std::string_view file_prefix = "campaign-", file_extension = ".db";
+
+std::string name_of_file(const std::filesystem::path& file) {
+    const auto name = file.filename().string();
+    if (!name.starts_with(file_prefix) || !name.ends_with(file_extension)) return {};
+    return name.substr(file_prefix.size(), name.size() - file_prefix.size() - file_extension.size());
+}
+
+/// By name; the newest first.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
+    std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> found;
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator{folder, error})
+        if (!name_of_file(entry.path()).empty() && entry.is_regular_file(error)) found.emplace_back(entry.last_write_time(error), entry.path());
+    std::ranges::sort(found, std::greater{});
+    std::vector<std::filesystem::path> files;
+    files.reserve(found.size());
+    for (auto& [written, file] : found)
+        files.push_back(std::move(file));
+    return files;
+}
+
+v1::Spread message_of(const Spread& spread) {
+    v1::Spread message;
+    message.set_count(static_cast<std::uint32_t>(spread.count));
+    message.set_min(spread.least);
+    message.set_p1(spread.p1);
+    message.set_p50(spread.p50);
+    message.set_p99(spread.p99);
+    message.set_max(spread.most);
+    message.set_mean(spread.mean);
+    message.set_sigma(spread.sigma);
+    return message;
+}
+
+void add(const Summary& summary, v1::CampaignReport& report) {
+    for (const auto& [outcome, count] : summary.outcomes) {
+        auto& row = *report.add_outcomes();
+        row.set_outcome(outcome);
+        row.set_count(static_cast<std::uint32_t>(count));
+    }
+    *report.mutable_miss_m() = message_of(summary.miss_m);
+    *report.mutable_vertical_mps() = message_of(summary.vertical_mps);
+    *report.mutable_horizontal_mps() = message_of(summary.horizontal_mps);
+    *report.mutable_propellant_kg() = message_of(summary.propellant_kg);
+    *report.mutable_parachute_mach() = message_of(summary.parachute_mach);
+    *report.mutable_parachute_pressure_pa() = message_of(summary.parachute_pressure_Pa);
+    *report.mutable_peak_deceleration_mps2() = message_of(summary.peak_deceleration_mps2);
+    if (summary.miss_m.count >= 2) {
+        auto& ellipse = *report.mutable_ellipse();
+        ellipse.set_east_m(summary.ellipse.east_m);
+        ellipse.set_north_m(summary.ellipse.north_m);
+        ellipse.set_major_m(summary.ellipse.major_m);
+        ellipse.set_minor_m(summary.ellipse.minor_m);
+        ellipse.set_azimuth_deg(summary.ellipse.azimuth_deg);
+    }
+    for (const auto& margin : summary.margins) {
+        auto& row = *report.add_margins();
+        row.set_timepoint(margin.timepoint);
+        *row.mutable_margin_s() = message_of(margin.margin_s);
+    }
+    if (const auto& least = summary.least_margin) {
+        auto& row = *report.mutable_least_margin();
+        row.set_margin_s(least->margin_s);
+        row.set_timepoint(least->timepoint);
+        row.set_case_(static_cast<std::uint32_t>(least->number));
+    }
+    report.set_recontacts(static_cast<std::uint32_t>(summary.recontacts));
+    report.set_failed(static_cast<std::uint32_t>(summary.failed));
+    for (const auto& failure : summary.failures) {
+        auto& row = *report.add_failures();
+        row.set_case_(static_cast<std::uint32_t>(failure.number));
+        row.set_outcome(failure.outcome);
+        row.set_reason(failure.reason);
+    }
+}
+
+} // namespace
+
+/// What flies, and after that how it ended. Its thread writes, others read.
+struct CampaignDesk::Flight {
+    std::string name;
+    Order order;
+    std::optional<CampaignStore> store; ///< none once it is over: the file is free for others
+    std::atomic<bool> stop{false}, begun{false}, over{false};
+    std::atomic<double> rate_per_s{0.0};
+    std::string fault{}; ///< once it is over
+    std::thread thread{};
+
+    Flight(std::string of, Order asked, CampaignStore into) : name(std::move(of)), order(std::move(asked)), store(std::move(into)) {}
+    Flight(const Flight&) = delete;
+    Flight& operator=(const Flight&) = delete;
+    ~Flight() {
+        stop = true;
+        if (thread.joinable()) thread.join();
+    }
+
+    void fly(const dictionary::Dictionary& dictionary) {
+        Result<Progress> flown = Error{""};
+        try {
+            flown = campaign::fly(*store, order, dictionary, stop, [this](const Progress& progress) {
+                begun = true;
+                rate_per_s = progress.rate_per_s();
+            });
+        } catch (const std::exception& bug) {
+            flown = Error{fmt::format("this is a fault of the server: {}", bug.what())};
+        }
+        if (!flown) fault = flown.error().message;
+        if (flown)
+            spdlog::info("campaign {}: {} of {} cases are kept", name, flown->done, flown->of);
+        else
+            spdlog::error("campaign {}: {}", name, fault);
+        store.reset();
+        over = true;
+    }
+};
+
+CampaignDesk::CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary)
+    : folder_(folder.empty() ? "." : std::move(folder)), scenarios_(scenarios), dictionary_(dictionary) {}
+
+CampaignDesk::~CampaignDesk() = default;
+
+unsigned CampaignDesk::jobs_max() {
+    return std::max(1U, std::thread::hardware_concurrency());
+}
+
+void CampaignDesk::close(std::string reason) {
+    const std::scoped_lock lock{mutex_};
+    closed_ = std::move(reason);
+}
+
+bool CampaignDesk::flying() const {
+    return flight_ && !flight_->over;
+}
+
+Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
+    auto scenario = scenarios_.scenario(request.scenario());
+    if (!scenario) return scenario.error();
+    if (const auto flyable = check(*scenario); !flyable) return Error{request.scenario() + ": " + flyable.error().message};
+    if (const auto script = check_script(*scenario, dictionary_); !script) return Error{request.scenario() + ": " + script.error().message};
+    if (request.cases() < 1 || request.cases() > cases_max) return Error{fmt::format("cases: {} is not within 1 … {}", request.cases(), cases_max)};
+    if (request.jobs() > jobs_max()) return Error{fmt::format("jobs: {} is more than the processors here ({})", request.jobs(), jobs_max())};
+    if (request.seed() > static_cast<std::uint64_t>(INT64_MAX)) return Error{fmt::format("seed: {} is more than {}", request.seed(), INT64_MAX)};
+    const unsigned jobs = request.jobs() != 0 ? request.jobs() : std::max(1U, jobs_max() - 1);
+    return Order{std::move(*scenario), request.seed(), request.cases(), jobs, results_file(folder_, request.scenario(), request.seed()), true};
+}
+
+Result<v1::CampaignState> CampaignDesk::start(Order order) {
+    const std::scoped_lock lock{mutex_};
+    if (!closed_.empty()) return Error{closed_};
+    if (flying()) return Error{fmt::format("the campaign {} flies: cancel it first, or wait for its end", flight_->name)};
+    flight_.reset();
+    auto store = open_store(order, dictionary_);
+    if (!store) return Error{store.error().message + "; another seed makes another campaign"};
+    const auto name = name_of_file(order.file);
+    const auto file = order.file;
+    flight_ = std::make_unique<Flight>(name, std::move(order), std::move(*store));
+    flight_->thread = std::thread{[flight = flight_.get(), this] { flight->fly(dictionary_); }};
+    return state_of(name, file);
+}
+
+Result<v1::CampaignState> CampaignDesk::cancel(const std::string& campaign) {
+    const std::scoped_lock lock{mutex_};
+    if (!flying() || flight_->name != campaign) return Error{fmt::format("the campaign {} does not fly", campaign)};
+    flight_->stop = true;
+    flight_->thread.join(); // within a cycle of each case, and one commit
+    return state_of(campaign, flight_->order.file);
+}
+
+v1::CampaignState CampaignDesk::state_of(const std::string& campaign, const std::filesystem::path& file) {
+    v1::CampaignState state;
+    state.set_campaign(campaign);
+    const auto heading = heading_of(file);
+    if (!heading) {
+        state.set_state("unreadable");
+        state.set_fault(heading.error().message);
+        return state;
+    }
+    state.set_scenario(heading->scenario);
+    state.set_seed(heading->seed);
+    state.set_cases(static_cast<std::uint32_t>(heading->cases));
+    state.set_kept(static_cast<std::uint32_t>(heading->kept));
+    state.set_state(heading->kept >= heading->cases ? "complete" : "incomplete");
+    if (!flight_ || flight_->name != campaign) return state;
+    if (flight_->over) {
+        state.set_fault(flight_->fault);
+        return state;
+    }
+    state.set_state(flight_->begun ? "flying" : "preparing");
+    state.set_jobs(flight_->order.jobs);
+    const double rate_per_s = flight_->rate_per_s;
+    state.set_rate_per_s(rate_per_s);
+    if (rate_per_s > 0.0) state.set_remaining_s(static_cast<double>(heading->cases - heading->kept) / rate_per_s);
+    return state;
+}
+
+v1::CampaignList CampaignDesk::list() {
+    v1::CampaignList list;
+    list.set_cases_max(cases_max);
+    list.set_jobs_max(jobs_max());
+    const std::scoped_lock lock{mutex_};
+    for (const auto& file : files_in(folder_))
+        *list.add_campaigns() = state_of(name_of_file(file), file);
+    return list;
+}
+
+std::filesystem::path CampaignDesk::file_of(const std::string& campaign) const {
+    // The name is looked for among the files and never made a path: it comes from a client.
+    for (auto& file : files_in(folder_))
+        if (name_of_file(file) == campaign) return file;
+    return {};
+}
+
+bool CampaignDesk::has(const std::string& campaign) const {
+    return !file_of(campaign).empty();
+}
+
+Result<v1::CampaignReport> CampaignDesk::report(const std::string& campaign) {
+    const auto file = file_of(campaign);
+    v1::CampaignReport report;
+    {
+        const std::scoped_lock lock{mutex_};
+        *report.mutable_state() = state_of(campaign, file);
+    }
+    if (report.state().state() == "unreadable") return Error{report.state().fault()};
+    auto results = CampaignResults::open(file, report.state().cases());
+    if (!results) return results.error();
+    const auto summary = results->brief();
+    if (!summary) return summary.error();
+    report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept)); // one instant in one answer
+    add(*summary, report);
+    return report;
+}
+
+Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::string& campaign, std::uint64_t place, std::uint64_t limit) {
+    const auto file = file_of(campaign);
+    const auto heading = heading_of(file);
+    if (!heading) return heading.error();
+    auto results = CampaignResults::open(file, heading->cases);
+    if (!results) return results.error();
+    const auto found = results->arrivals(place, limit);
+    if (!found) return found.error();
+    v1::CampaignTouchdowns page;
+    page.set_next_after(static_cast<std::uint32_t>(place));
+    for (const auto& touchdown : *found) {
+        auto& row = *page.add_touchdowns();
+        row.set_place(static_cast<std::uint32_t>(touchdown.place));
+        row.set_case_(static_cast<std::uint32_t>(touchdown.number));
+        row.set_outcome(touchdown.outcome);
+        if (touchdown.east_m) row.set_east_m(*touchdown.east_m);
+        if (touchdown.north_m) row.set_north_m(*touchdown.north_m);
+        page.set_next_after(row.place());
+    }
+    return page;
+}
+
+} // namespace aeolis::server::campaign

@@ -1,0 +1,57 @@
+#include "server/campaign/campaign_order.hpp"
+
+#include "server/campaign/case_flights.hpp"
+#include "server/campaign/program_digest.hpp"
+#include "server/scenario/scenario_text.hpp"
+
+#include <fmt/format.h>
+#include <future>
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace aeolis::server::campaign {
+namespace {
+
+/// The calling thread, from now on.
+void give_way() {
+    const sched_param none{};
+    if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
+}
+
+} // namespace
+
+std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario, std::uint64_t seed) {
+    return folder / fmt::format("campaign-{}-{}.db", scenario, seed);
+}
+
+Result<void> check(const simulation::Scenario& scenario) {
+    if (scenario.test_venue != simulation::TestVenue::performance) return {};
+    return Error{"test_venue: performance times one landing; a campaign flies many at once"};
+}
+
+Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionary& dictionary) {
+    auto program = program_digest();
+    if (!program) return program.error();
+    auto store = CampaignStore::open(order.file, {order.scenario.name, scenario_to_text(order.scenario), order.seed,
+                                                  fmt::format("{}", dictionary.id), std::move(*program)});
+    if (!store) return store;
+    if (const auto wanted = store->want(order.cases); !wanted) return wanted.error();
+    return store;
+}
+
+Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary::Dictionary& dictionary,
+                     const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
+    // Not on this thread, which keeps: it shares locks of SQLite with whoever stores a landing, and must never hold one while it waits.
+    const auto flights = std::async(std::launch::async, [&] {
+                             if (order.gives_way) give_way();
+                             return std::make_unique<const CaseFlights>(order.scenario, order.seed, dictionary, stop);
+                         }).get();
+    const auto fly_case = [&](std::uint64_t number) {
+        if (order.gives_way) give_way();
+        return flights->fly(number);
+    };
+    return run_campaign(store, order.cases, order.jobs, fly_case, stop, tell);
+}
+
+} // namespace aeolis::server::campaign

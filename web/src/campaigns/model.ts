@@ -1,0 +1,230 @@
+// Campaigns: dispersed landings that the server flies beside everything else, and what their cases come to. Statistics of rehearsals;
+// nothing here is of the vehicle.
+import { signal } from '@preact/signals';
+import { access } from '../access/model';
+import type { Access } from '../access/model';
+import { call, wordsFor } from '../run/api';
+
+export interface CampaignState {
+  campaign: string;
+  scenario: string;
+  seed: string;
+  cases: number;
+  kept: number;
+  state: 'preparing' | 'flying' | 'complete' | 'incomplete' | 'unreadable';
+  jobs: number;
+  rate_per_s: number;
+  remaining_s?: number;
+  fault: string;
+}
+export interface Spread {
+  count: number;
+  min: number;
+  p1: number;
+  p50: number;
+  p99: number;
+  max: number;
+  mean: number;
+  sigma: number;
+}
+export interface Ellipse {
+  east_m: number;
+  north_m: number;
+  major_m: number; // full axes
+  minor_m: number;
+  azimuth_deg: number; // of the major axis, from north to east
+}
+export interface CampaignReport {
+  state: CampaignState;
+  outcomes: { outcome: string; count: number }[];
+  miss_m?: Spread;
+  vertical_mps?: Spread;
+  horizontal_mps?: Spread;
+  propellant_kg?: Spread;
+  ellipse?: Ellipse;
+  parachute_mach?: Spread;
+  parachute_pressure_Pa?: Spread;
+  peak_deceleration_mps2?: Spread;
+  least_margin?: { margin_s: number; timepoint: string; case: number };
+  recontacts: number;
+  failed: number;
+  failures: { case: number; outcome: string; reason: string }[];
+}
+export interface Touchdown {
+  place: number; // in the order in which the cases came
+  case: number;
+  outcome: string;
+  east_m?: number; // of the target; none: it never touched down
+  north_m?: number;
+}
+
+export const campaigns = signal<CampaignState[]>([]);
+export const limits = signal({ cases_max: 10_000, jobs_max: 1 });
+/** The one that is looked at. */
+export const chosen = signal<string | undefined>(undefined);
+export const report = signal<CampaignReport | undefined>(undefined);
+/** Of the one that is looked at, as they came. */
+export const touchdowns = signal<readonly Touchdown[]>([]);
+export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
+export const busy = signal(false);
+
+export const flies = (state: CampaignState | undefined): boolean => state?.state === 'preparing' || state?.state === 'flying';
+export const flyingNow = (): CampaignState | undefined => campaigns.value.find(flies);
+const at = (campaign: string) => `/campaigns/${encodeURIComponent(campaign)}`;
+
+export function choose(campaign: string | undefined): void {
+  if (chosen.value === campaign) return;
+  chosen.value = campaign;
+  report.value = undefined;
+  touchdowns.value = [];
+}
+
+let under: Promise<void> | undefined;
+
+/** Asks for the list, and for what is new of the one that is looked at; one look at a time. */
+export function look(): Promise<void> {
+  under ??= lookNow().finally(() => (under = undefined));
+  return under;
+}
+
+async function lookNow(): Promise<void> {
+  try {
+    const list = await call<{ campaigns?: CampaignState[]; cases_max: number; jobs_max: number }>('GET', '/campaigns');
+    campaigns.value = list.campaigns ?? [];
+    limits.value = { cases_max: list.cases_max, jobs_max: list.jobs_max };
+    if (!campaigns.value.some((each) => each.campaign === chosen.value)) choose(undefined);
+    choose(chosen.value ?? (flyingNow() ?? campaigns.value.find((each) => each.state !== 'unreadable'))?.campaign);
+    await lookAtChosen();
+    if (message.value?.text.startsWith(NO_LOOK)) message.value = undefined;
+  } catch (error) {
+    message.value = { good: false, text: `${NO_LOOK}${wordsFor(error)}` };
+  }
+}
+const NO_LOOK = 'campaigns cannot be read now: ';
+
+async function lookAtChosen(): Promise<void> {
+  const campaign = chosen.value;
+  const state = campaigns.value.find((each) => each.campaign === campaign);
+  if (campaign === undefined || !state || state.state === 'unreadable') return;
+  const shown = report.value?.state;
+  const news = !shown || shown.kept !== state.kept || shown.cases !== state.cases || shown.state !== state.state;
+  if (!news && !flies(state)) return;
+  const found = await call<CampaignReport>('GET', at(campaign));
+  // Fewer than were shown: another file has taken its name, or fewer cases are asked for.
+  const before = touchdowns.value.length > found.state.kept ? [] : touchdowns.value;
+  const page = await call<{ touchdowns?: Touchdown[] }>('GET', `${at(campaign)}/touchdowns?after=${before.at(-1)?.place ?? 0}`);
+  if (chosen.value !== campaign) return;
+  report.value = found;
+  if (before !== touchdowns.value || (page.touchdowns ?? []).length > 0) touchdowns.value = [...before, ...(page.touchdowns ?? [])];
+}
+
+async function act(what: () => Promise<string>): Promise<void> {
+  if (busy.value) return;
+  busy.value = true;
+  message.value = undefined;
+  try {
+    message.value = { good: true, text: await what() };
+    await under;
+    await look();
+  } catch (error) {
+    message.value = { good: false, text: wordsFor(error) };
+  } finally {
+    busy.value = false;
+  }
+}
+
+export const start = (scenario: string, cases: number, seed: string): Promise<void> => act(async () => {
+  const state = await call<CampaignState>('POST', '/campaigns', { scenario, cases, seed });
+  choose(state.campaign);
+  return state.kept > 0 ? `${state.campaign} goes on; ${state.kept} cases had been kept` : `${state.campaign} has begun`;
+});
+export const cancel = (campaign: string): Promise<void> => act(async () => {
+  const state = await call<CampaignState>('POST', `${at(campaign)}/cancel`);
+  return `cancelled: ${state.kept} cases of ${campaign} are kept; starting it again goes on with them`;
+});
+
+/** Whose session lacks the right is told so; the server decides. */
+export const mayRehearse = (now: Access = access.value): boolean => now.state !== 'in' || now.rights.includes('rehearse');
+
+/** What is wrong with what was typed; undefined: nothing. */
+export function orderProblem(cases: string, seed: string, cases_max: number): string | undefined {
+  if (!/^\d{1,9}$/.test(cases) || Number(cases) < 1 || Number(cases) > cases_max) return `cases: a whole number from 1 to ${cases_max}`;
+  if (!/^\d{1,18}$/.test(seed)) return 'a seed is a whole number';
+  return undefined;
+}
+
+/** "1 h 4 min", "3 min 20 s", "8 s". */
+export function lengthWords(seconds: number): string {
+  const whole = Math.round(seconds);
+  const [hours, minutes] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60];
+  if (hours > 0) return `${hours} h ${minutes} min`;
+  return minutes > 0 ? `${minutes} min ${whole % 60} s` : `${whole} s`;
+}
+
+export function stateWords(state: CampaignState): string {
+  const kept = `${state.kept} of ${state.cases} cases`;
+  if (state.fault !== '') return `✖ ${state.state === 'unreadable' ? '' : `${kept}; it ended: `}${state.fault}`;
+  switch (state.state) {
+    case 'preparing':
+      return `… ${kept}; what all cases have in common is flown, up to where the errors are drawn`;
+    case 'flying': {
+      const rate = state.rate_per_s > 0 ? `, ${state.rate_per_s.toFixed(2)} a second` : '';
+      const remains = state.remaining_s === undefined ? '' : `, ${lengthWords(state.remaining_s)} remain`;
+      return `▶ ${kept}${rate}${remains}`;
+    }
+    case 'complete':
+      return `✓ all ${state.cases} cases are kept`;
+    default:
+      return `▲ ${kept}: not complete; starting it again goes on`;
+  }
+}
+
+const STANDARD_GRAVITY_MPS2 = 9.80665;
+const SPREADS = [
+  ['miss distance', 'km', 'miss_m', 1e-3, 2],
+  ['touchdown, vertical', 'm/s', 'vertical_mps', 1, 3],
+  ['touchdown, horizontal', 'm/s', 'horizontal_mps', 1, 3],
+  ['parachute', 'Mach', 'parachute_mach', 1, 3],
+  ['parachute, dynamic pressure', 'Pa', 'parachute_pressure_Pa', 1, 0],
+  ['peak deceleration', 'g', 'peak_deceleration_mps2', 1 / STANDARD_GRAVITY_MPS2, 2],
+  ['propellant left', 'kg', 'propellant_kg', 1, 1],
+] as const;
+
+export interface SpreadRow {
+  name: string;
+  unit: string;
+  numbers: string[]; // least, 1 %, 50 %, 99 %, largest, mean, sigma
+  count: number;
+}
+
+export function spreadRows(of: CampaignReport): SpreadRow[] {
+  return SPREADS.flatMap(([name, unit, field, factor, digits]) => {
+    const spread = of[field];
+    if (!spread || spread.count === 0) return [];
+    const numbers = [spread.min, spread.p1, spread.p50, spread.p99, spread.max, spread.mean, spread.sigma].map((value) => (value * factor).toFixed(digits));
+    return [{ name, unit, numbers, count: spread.count }];
+  });
+}
+
+export function ellipseWords({ major_m, minor_m, azimuth_deg, east_m, north_m }: Ellipse): string {
+  const km = (metres: number) => (Math.abs(metres) / 1000).toFixed(2);
+  return `${km(major_m)} × ${km(minor_m)} km, major axis at azimuth ${azimuth_deg.toFixed(0)}°, its centre ${km(east_m)} km ${east_m < 0 ? 'west' : 'east'} and ${km(north_m)} km ${north_m < 0 ? 'south' : 'north'} of the target`;
+}
+
+/** How far from the target the picture reaches, km east and north: everything fits, and it grows in steps. */
+export function reach_km(points: readonly Touchdown[], ellipse: Ellipse | undefined): { east: number; north: number } {
+  let [east, north] = [0, 0];
+  for (const { east_m, north_m } of points) {
+    if (east_m === undefined || north_m === undefined) continue;
+    east = Math.max(east, Math.abs(east_m));
+    north = Math.max(north, Math.abs(north_m));
+  }
+  if (ellipse) {
+    const azimuth = (ellipse.azimuth_deg * Math.PI) / 180;
+    const half = (along: number, across: number) => Math.hypot((ellipse.major_m / 2) * along, (ellipse.minor_m / 2) * across);
+    east = Math.max(east, Math.abs(ellipse.east_m) + half(Math.sin(azimuth), Math.cos(azimuth)));
+    north = Math.max(north, Math.abs(ellipse.north_m) + half(Math.cos(azimuth), Math.sin(azimuth)));
+  }
+  const step = (metres: number) => Math.max(2, Math.ceil((metres * 1.08) / 2000) * 2);
+  return { east: step(east), north: step(north) };
+}

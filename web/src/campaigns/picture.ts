@@ -1,0 +1,120 @@
+// Where the cases came down about the target, and the ellipse that holds 99 % of them; one scale for east and north.
+import { ticks, valueStep } from '../draw/axis';
+import type { Surface } from '../draw/canvas';
+import { reach_km, report, touchdowns } from './model';
+
+const LEFT = 44;
+const BOTTOM = 34;
+const EDGE = 10;
+const LOW_PX = 170; // lower than this the axes go without words
+
+export function drawTouchdowns({ context: c, width, height, colours }: Surface): void {
+  const points = touchdowns.value;
+  const ellipse = report.value?.ellipse;
+  const reach = reach_km(points, ellipse);
+  const low = height < LOW_PX;
+  const [wide, high] = [width - LEFT - EDGE, height - (low ? 18 : BOTTOM) - EDGE];
+  if (wide < 40 || high < 40) return;
+  const km_px = Math.min(wide / (2 * reach.east), high / (2 * reach.north));
+  const [x0, y0] = [LEFT + wide / 2, EDGE + high / 2];
+  const x = (east_km: number) => x0 + east_km * km_px;
+  const y = (north_km: number) => y0 - north_km * km_px;
+  const [bottom, right] = [EDGE + high, LEFT + wide];
+
+  // The grid: the same step both ways, so that its squares are squares.
+  const [half_east, half_north] = [wide / 2 / km_px, high / 2 / km_px];
+  const step = valueStep((low ? 28 : 55) / km_px, 1);
+  c.strokeStyle = colours.line;
+  c.fillStyle = colours.dim;
+  c.lineWidth = 1;
+  c.textBaseline = 'top';
+  c.textAlign = 'center';
+  const words = (value: number) => String(Math.round(value * 10) / 10).replace('-', '−');
+  for (const east of ticks(-half_east, half_east, step)) {
+    line(c, x(east), EDGE, x(east), bottom);
+    c.fillText(words(east), x(east), bottom + 4);
+  }
+  c.textAlign = 'right';
+  c.textBaseline = 'middle';
+  for (const north of ticks(-half_north, half_north, step)) {
+    line(c, LEFT, y(north), right, y(north));
+    c.fillText(words(north), LEFT - 5, y(north));
+  }
+  c.textAlign = 'center';
+  if (!low) {
+    c.textBaseline = 'bottom';
+    c.fillText('km east of the target', x0, height - 2);
+    c.save();
+    c.translate(11, y0);
+    c.rotate(-Math.PI / 2);
+    c.textBaseline = 'middle';
+    c.fillText('km north of it', 0, 0);
+    c.restore();
+  }
+
+  // Cases: a dot each; what was no landing is a cross of another colour.
+  c.fillStyle = colours.rehearsal;
+  c.globalAlpha = points.length > 2000 ? 0.45 : 0.75;
+  const radius = points.length > 2000 ? 1.5 : 2.5;
+  for (const point of points) {
+    if (point.outcome !== 'touchdown' || point.east_m === undefined || point.north_m === undefined) continue;
+    c.beginPath();
+    c.arc(x(point.east_m / 1000), y(point.north_m / 1000), radius, 0, 7);
+    c.fill();
+  }
+  c.globalAlpha = 1;
+  c.strokeStyle = colours.alarm;
+  c.lineWidth = 2;
+  for (const point of points) {
+    if (point.outcome === 'touchdown' || point.east_m === undefined || point.north_m === undefined) continue;
+    const [px, py] = [x(point.east_m / 1000), y(point.north_m / 1000)];
+    line(c, px - 5, py - 5, px + 5, py + 5);
+    line(c, px - 5, py + 5, px + 5, py - 5);
+  }
+
+  if (ellipse) {
+    c.strokeStyle = colours.text;
+    c.lineWidth = 1.5;
+    c.beginPath();
+    c.ellipse(x(ellipse.east_m / 1000), y(ellipse.north_m / 1000), (ellipse.major_m / 2000) * km_px, (ellipse.minor_m / 2000) * km_px,
+      ((ellipse.azimuth_deg - 90) * Math.PI) / 180, 0, 7);
+    c.stroke();
+  }
+
+  c.strokeStyle = colours.accent;
+  c.fillStyle = colours.accent;
+  c.lineWidth = 2;
+  line(c, x0 - 9, y0, x0 + 9, y0);
+  line(c, x0, y0 - 9, x0, y0 + 9);
+  c.textAlign = 'left';
+  c.textBaseline = 'bottom';
+  label(c, 'target', x0 + 8, y0 - 4, colours.panel);
+
+  // A bar of a round length, for those who do not count squares.
+  const bar_km = valueStep((wide / km_px) * 0.25, 1.01);
+  const [bx, by] = [LEFT + 12, bottom - 12];
+  c.strokeStyle = colours.text;
+  c.fillStyle = colours.text;
+  line(c, bx, by, bx + bar_km * km_px, by);
+  line(c, bx, by - 4, bx, by + 4);
+  line(c, bx + bar_km * km_px, by - 4, bx + bar_km * km_px, by + 4);
+  label(c, `${words(bar_km)} km`, bx, by - 5, colours.panel);
+}
+
+/** Words that dots do not run through. */
+function label(c: CanvasRenderingContext2D, words: string, px: number, py: number, back: string): void {
+  c.save();
+  c.strokeStyle = back;
+  c.lineWidth = 4;
+  c.lineJoin = 'round';
+  c.strokeText(words, px, py);
+  c.restore();
+  c.fillText(words, px, py);
+}
+
+function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y2: number): void {
+  c.beginPath();
+  c.moveTo(x1, y1);
+  c.lineTo(x2, y2);
+  c.stroke();
+}
