@@ -1,6 +1,6 @@
 // The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
 import { computed, effect, signal } from '@preact/signals';
-import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
 import { modeOf, resumedWords } from '../mode/model';
@@ -10,6 +10,8 @@ import { refreshAlarms } from '../alarms/model';
 import { Refused, turnedAway } from './api';
 import { Dictionary } from './dictionary';
 import { firstLook } from './first_look';
+import type { FirstLook } from './first_look';
+import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
 
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
@@ -223,16 +225,13 @@ async function refreshTimepoints(): Promise<void> {
   }
 }
 
-const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
-
 async function refreshRuns(): Promise<void> {
   try {
-    const list = await ask<RunList>('runs', '/runs');
-    runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
-    const mine = list.runs.find((run) => Number(run.run) === store.value?.id);
+    runs.value = await askRuns();
+    const mine = runs.value.find((run) => Number(run.run) === store.value?.id);
     if (mine && store.value && !store.value.going) store.value.update(mine);
     // A run that began while the one we follow was already over, or lost with its server: go there.
-    const going = list.runs.find(isGoing);
+    const going = runs.value.find(isGoing);
     if (watched.value === 0 && going && store.value && !store.value.going && Number(going.run) !== store.value.id) watch(0);
   } catch {
     // Not connected; the header says so.
@@ -261,22 +260,25 @@ export function plottedChannels(): string[] {
 export async function begin(): Promise<void> {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
-  const first = firstLook(Number(new URL(location.href).searchParams.get('run') ?? 0), namedChannels());
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
 
+  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
+  let first: Promise<FirstLook | undefined> | undefined;
+  const startFrom = () => Promise.all([askDictionary(), askRuns().then((all) => {
+    first = firstLook(all, wanted, namedChannels());
+    return all;
+  })]);
   for (let attempt = 0; ; ++attempt) {
     try {
       const knowing = learnAccess();
       knowing.catch(() => undefined); // looked at below
-      const [reply, list] = await Promise.all([
-        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'), knowing,
-      ]).catch(async (error: unknown) => {
+      const [reply, all] = await Promise.all([startFrom(), knowing]).then(([start]) => start, async (error: unknown) => {
         if (!(error instanceof Refused) || error.status !== 401) throw error;
         await admitted();
-        return Promise.all([ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs')]);
+        return startFrom();
       });
       dictionary.value = new Dictionary(reply);
-      runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
+      runs.value = all;
       break;
     } catch (error) {
       stream.value = { ...stream.value, state: 'lost', attempt: attempt + 1 };
@@ -284,7 +286,6 @@ export async function begin(): Promise<void> {
       await new Promise((resolve) => setTimeout(resolve, Math.min(5000, 250 * 2 ** attempt)));
     }
   }
-  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
@@ -295,7 +296,7 @@ export async function begin(): Promise<void> {
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
-  void first.then((look) => {
+  void first?.then((look) => {
     if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
   });
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
