@@ -7,7 +7,7 @@ import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { access, admitted, learnAccess, mayAct } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
-import { Refused, turnedAway } from './api';
+import { Refused, turnedAway, wordsFor } from './api';
 import { Dictionary } from './dictionary';
 import { firstLook } from './first_look';
 import type { FirstLook } from './first_look';
@@ -76,18 +76,21 @@ export function backToLive(): void {
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
 const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
+const FIRST_LOOK_MS = 500; // ours: what follows does not wait longer for it
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
 
 const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
 let worker: Worker | undefined;
+const forWorker: ToWorker[] = []; // until there is one
 let lastAsk = 0;
 let lastRequest = 0;
 const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
 const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
 
 function post(message: ToWorker): void {
-  worker?.postMessage(message);
+  if (worker) worker.postMessage(message);
+  else forWorker.push(message);
 }
 
 /** Asks an HTTP route; rejects with the server's own words. */
@@ -256,24 +259,30 @@ export function plottedChannels(): string[] {
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }
 
-/** Starts the worker, learns the dictionary, chooses the run that is going on or the last one, and connects. */
-export async function begin(): Promise<void> {
+/** Its schema takes as long to load as a picture to draw: it starts once the first look is on its way to the screen. */
+function startWorker(): void {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
+  forWorker.splice(0).forEach(post);
+}
 
+/** Learns the dictionary, chooses the run that is going on or the last one, takes a first look at it, and connects. */
+export async function begin(): Promise<void> {
   const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
   let first: Promise<FirstLook | undefined> | undefined;
   const startFrom = () => Promise.all([askDictionary(), askRuns().then((all) => {
     first = firstLook(all, wanted, namedChannels());
     return all;
   })]);
+  let knowing: Promise<void>;
   for (let attempt = 0; ; ++attempt) {
     try {
-      const knowing = learnAccess();
+      knowing = learnAccess();
       knowing.catch(() => undefined); // looked at below
-      const [reply, all] = await Promise.all([startFrom(), knowing]).then(([start]) => start, async (error: unknown) => {
+      const [reply, all] = await startFrom().catch(async (error: unknown) => {
         if (!(error instanceof Refused) || error.status !== 401) throw error;
+        await knowing.then(learnAccess); // what turned us away may not be all that it says
         await admitted();
         return startFrom();
       });
@@ -291,14 +300,17 @@ export async function begin(): Promise<void> {
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
   if (wanted > 0 && chosen !== wanted) notify(`Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`);
   watched.value = chosen;
+  knowing.catch((error: unknown) => notify(`the server does not say who you are: ${wordsFor(error)}`));
   const words = dictionary.value as Dictionary;
   const plotted = plottedChannels();
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
-  void first?.then((look) => {
+  const looked = first?.then((look) => {
     if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
   });
+  await Promise.race([looked, new Promise((resolve) => setTimeout(resolve, FIRST_LOOK_MS))]);
+  startWorker();
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);
