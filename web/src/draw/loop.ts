@@ -23,27 +23,31 @@ export function onDraw(draw: () => void): () => void {
 
 function frame(now: number): void {
   requestAnimationFrame(frame);
-  // What has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often.
-  const changed = (store.peek()?.version ?? 0) !== drawnVersion;
-  if (now - (changed ? lastDraw : lastLook) < DRAW_EVERY_MS - 4) return;
-  drawnVersion = store.peek()?.version ?? 0;
-  if (changed) lastDraw = now;
-  lastLook = now;
   if (now - lastStep >= NUMBERS_EVERY_MS - 4) {
     const since_s = Math.min(1, (now - lastStep) / 1000);
     lastStep = now;
     step(since_s);
   }
-  if (now - lastNumbers >= NUMBERS_EVERY_MS - 4) {
-    const version = store.value?.version ?? 0;
-    if (version !== shownVersion || store.value !== shownStore) {
-      shownVersion = version;
-      shownStore = store.value;
-      lastNumbers = now;
-      tick.value += 1;
-    }
+  // What has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often.
+  const changed = (store.peek()?.version ?? 0) !== drawnVersion;
+  if (now - (changed ? lastDraw : lastLook) >= DRAW_EVERY_MS - 4) {
+    drawnVersion = store.peek()?.version ?? 0;
+    if (changed) lastDraw = now;
+    lastLook = now;
+    for (const draw of drawings) draw();
+    // Numbers take as long as drawings: they have a frame of their own, unless there is none.
+    if (now - lastNumbers < NUMBERS_EVERY_MS + DRAW_EVERY_MS) return;
   }
-  for (const draw of drawings) draw();
+  if (now - lastNumbers >= NUMBERS_EVERY_MS - 4) showNumbers(now);
+}
+
+function showNumbers(now: number): void {
+  const version = store.value?.version ?? 0;
+  if (version === shownVersion && store.value === shownStore) return;
+  shownVersion = version;
+  shownStore = store.value;
+  lastNumbers = now;
+  tick.value += 1;
 }
 
 export function startLoop(): void {
