@@ -1,5 +1,5 @@
 // Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
-// batches at most every 25 ms. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
+// batches every 25 ms at most, on the average. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
 //
 // A run is taken up in two steps. First everything that is not a sample, from the beginning; the answer is small.
 // Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
@@ -11,6 +11,7 @@ import {
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
+import { Pace } from '../run/pace';
 import { ColumnCollector } from './columns';
 import type { Column, ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
 import { SequenceCheck, backoffSeconds } from './sequence';
@@ -39,7 +40,7 @@ let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
 let posting = false;
-let lastPost = -Infinity;
+const posts = new Pace(POST_EVERY_MS, 5);
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
@@ -175,13 +176,13 @@ function receiveBatch(batch: Batch): void {
   }
   if (!posting) {
     posting = true;
-    setTimeout(flush, Math.max(0, lastPost + POST_EVERY_MS - performance.now())); // at once after a pause
+    setTimeout(flush, posts.wait(performance.now())); // at once after a pause
   }
 }
 
 function flush(): void {
   posting = false;
-  lastPost = performance.now();
+  posts.took(performance.now());
   if (collector.empty) return;
   const batch = collector.take();
   post({ type: 'batch', batch }, batch.columns);
