@@ -1,6 +1,6 @@
 // The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
 import { computed, effect, signal } from '@preact/signals';
-import type { CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { AnchorRow, CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
 import { modeOf, resumedWords } from '../mode/model';
@@ -20,6 +20,7 @@ export const stream = signal<{ state: StreamState; attempt: number; gaps: number
 export const store = signal<RunStore | undefined>(undefined);
 export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
+export const anchors = signal<AnchorRow[]>([]);
 export const runs = signal<RunState[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
 /** The run asked for: 0 is "the one that is going on". */
@@ -128,6 +129,7 @@ export function watch(run: number): void {
   history.replaceState(null, '', url);
   store.value = undefined;
   timepoints.value = [];
+  anchors.value = [];
   post({ type: 'watch', run });
 }
 
@@ -220,7 +222,7 @@ async function refreshTimepoints(): Promise<void> {
   timepointsUnderWay = true;
   try {
     const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints`);
-    if (store.value === of) timepoints.value = list.timepoints;
+    if (store.value === of) [timepoints.value, anchors.value] = [list.timepoints, list.anchors];
   } catch {
     // The timeline says that it has no plan; the next round asks again.
   } finally {

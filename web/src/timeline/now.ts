@@ -2,16 +2,16 @@
 import { computed } from '@preact/signals';
 import { fields, chosen } from '../commands/line';
 import { LAYOUT } from '../layout';
-import { cutoff, dictionary, store, tick, timepoints } from '../run/session';
+import { anchors, cutoff, dictionary, store, tick, timepoints } from '../run/session';
 import { changeOf, changesMade, movedBy, predictions } from './predict';
 import type { Moved, Prediction } from './predict';
 
-const anchors = computed(() => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? LAYOUT.predictedAnchors : []));
+const predictedAnchors = computed(() => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? LAYOUT.predictedAnchors : []));
 
 export const predicted = computed<Prediction[]>(() => {
   void tick.value;
   const run = store.value;
-  return run ? predictions(run, timepoints.value, anchors.value, cutoff.value, changesMade(run, cutoff.value)) : [];
+  return run ? predictions(run, timepoints.value, predictedAnchors.value, cutoff.value, changesMade(run, anchors.value, cutoff.value)) : [];
 });
 
 /** Before it is sent: what it would move. Undefined where the chosen command moves nothing by its kind. */
@@ -19,6 +19,6 @@ export const moved = computed<Moved[] | undefined>(() => {
   const [run, command] = [store.value, chosen.value];
   if (!run || !command) return undefined;
   const values = new Map(fields.value.flatMap((field) => (field.value === undefined || field.problem !== undefined ? [] : [[field.argument.name, field.value] as const])));
-  const change = changeOf(command.name, values, run);
-  return change && movedBy(predicted.value, predictions(run, timepoints.value, anchors.value, cutoff.value, [...changesMade(run, cutoff.value), change]));
+  const change = changeOf(command.name, values, run, anchors.value);
+  return change && movedBy(predicted.value, predictions(run, timepoints.value, predictedAnchors.value, cutoff.value, [...changesMade(run, anchors.value, cutoff.value), change]));
 });
