@@ -85,10 +85,12 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
     if (*points) series.points = static_cast<std::size_t>(**points);
     const auto format = query.text("format").value_or("json");
+    if (format != "json" && format != "csv" && format != "protobuf")
+        return error_response(400, fmt::format("format: '{}' is none of json, csv, protobuf", format));
     const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
     if (format == "json" || !result) return answer(result);
-    if (format != "csv") return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
-    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
+    if (format == "csv") return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
+    return {200, "application/x-protobuf", "no-store", result->SerializeAsString()};
 }
 
 HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::RunId run,

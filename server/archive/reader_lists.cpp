@@ -292,6 +292,13 @@ Result<v1::TimepointList> Reader::timepoints(RunId run) {
         if (planned[i]) written.set_planned_e_s(*planned[i]);
         written.set_verdict("pending");
     }
+    for (const auto& anchor : dictionary.anchors) {
+        auto& written = *list.add_anchors();
+        written.set_id(anchor.id.value);
+        written.set_name(anchor.name);
+        if (anchor.parent) written.set_parent(dictionary.anchors[anchor.parent->value].name);
+        if (anchor.offset_s) written.set_offset_s(*anchor.offset_s);
+    }
     const auto done = scan(*state_, row::firing_rows, run, 0, [&](const auto& row) -> Result<bool> {
         const auto firing = row::firing(row);
         if (firing.timepoint.value >= dictionary.timeline.size()) return false;

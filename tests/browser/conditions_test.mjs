@@ -67,7 +67,7 @@ test('a dictionary of 20 000 channels with hostile names is searched at once, an
     const words = await server.get('/dictionary');
     const hostile = '<img src=x onerror="window.hit=1">';
     const channels = [...words.channels];
-    for (let id = 50_000; channels.length < 20_000; ++id) channels.push({ id, name: id % 1000 === 0 ? `${hostile}${id}` : `made_${id}`, unit: '<b>m</b>', text: hostile, packet: `P${id >> 5}`, expected_rate_hz: 1 });
+    for (let id = 50_000; channels.length < 20_000; ++id) channels.push({ id, name: id % 1000 === 0 ? `${hostile}${id}` : `made_${id}`, alias: '', unit: '<b>m</b>', text: hostile, labels: [], limits: [], packet: `P${id >> 5}`, expected_rate_hz: 1 });
     const commands = words.commands.map((each, i) => (i === 0 ? { ...each, text: hostile } : each));
     const way = await standIn(server.address, { 'GET /dictionary': () => [200, { ...words, channels, commands }] });
     t.after(() => way.close());

@@ -92,6 +92,7 @@ test('each panel looks as its stored picture does, within a tolerance', { timeou
         await page.evaluate((wanted) => localStorage.setItem('aeolis-theme', wanted), theme);
         await page.goto(server.address);
         await shows('waiting', /Landed/);
+        await shows('stream-state', /connected/);
         await page.waitForTimeout(1500);
         await compare(`console_${theme}`, page);
     }

@@ -70,6 +70,35 @@ try {
     await page.getByTestId('campaign-cases').press('Enter');
     await waitFor(async () => Number(/(\d+) of 100/.exec(await text('campaign-state'))?.[1]), (kept) => kept >= 60, 400_000);
     await take('tour_campaign.png', page.locator('main'));
+    await page.close();
+
+    const others = await serve({ archive: path.join(folder, 'users.db'), more: ['--scenario', 'nominal', '--accounts', path.join(folder, 'accounts.json')] });
+    try {
+        const { page: admin } = await open(chrome, others.address, { width: 1600, height: 900 });
+        await waitFor(async () => others.said(), /administrator with \S+/);
+        const given = /administrator with (\S+)/.exec(others.said())[1];
+        await admin.getByTestId('log-in-user').fill('administrator');
+        await admin.getByTestId('log-in-password').fill(given);
+        await admin.keyboard.press('Enter');
+        for (const [field, value] of [['given', given], ['chosen', 'an own long password'], ['again', 'an own long password']]) await admin.getByTestId(`password-${field}`).fill(value);
+        await admin.keyboard.press('Enter');
+        await admin.getByTestId('who').waitFor();
+        await admin.goto(`${others.address}/?panel=users`);
+        for (const [user, role] of [['ada', 'director'], ['carl', 'controller'], ['eve', 'observer']]) {
+            await admin.getByLabel('name of the new user').fill(user);
+            await admin.getByLabel('password of the new user').fill('given by another');
+            await admin.getByLabel('role of the new user').selectOption(role);
+            await admin.keyboard.press('Enter');
+            await admin.locator(`[data-user="${user}"]`).waitFor();
+        }
+        await admin.setViewportSize({ width: 1600, height: 720 });
+        await admin.reload();
+        await waitFor(() => admin.getByTestId('audit').innerText(), /eve/);
+        await waitFor(() => admin.getByTestId('stream-state').innerText(), /connected/);
+        await admin.screenshot({ path: path.join(pictures, 'users.png'), animations: 'disabled' });
+    } finally {
+        await others.stop();
+    }
     console.log(`renewed in ${path.relative(root, pictures)}: look at them before you commit them`);
 } finally {
     await server.stop();

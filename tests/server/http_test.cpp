@@ -1,3 +1,5 @@
+#include "aeolis/v1/run.pb.h"
+#include "server/api/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
@@ -7,6 +9,7 @@
 
 using namespace aeolis;
 using namespace aeolis::test;
+using server::from_json;
 
 namespace {
 
@@ -45,6 +48,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/samples?from=2&to=1", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/samples?limit=1", "", 400, "limit"},
         {"GET", "/api/v1/runs/9/samples", "", 404, "9"},
+        {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=protobuf", "", 200, "altitude_m"},
         {"GET", "/api/v1/runs/1/packets?apid=0x20&limit=5", "", 200, "\"packets\":["},
         {"GET", "/api/v1/runs/1/tones", "", 200, "\"tones\":["},
         {"GET", "/api/v1/runs/1/events?level=FATAL&text=x", "", 200, "\"events\":["},
@@ -89,6 +93,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&from=5&to=3", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&from=five", "", 400, "five"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&points=0", "", 400, "points"},
+        {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=xml", "", 400, "xml"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&colour=red", "", 400, "colour"},
         {"GET", "/api/v1/runs/1/events?level=PANIC", "", 400, "PANIC"},
         {"GET", "/api/v1/runs/1/events?limit=1000000", "", 400, "limit"},
@@ -118,6 +123,30 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         if (reply.status >= 400) // a command that was refused is answered by its own message
             CHECK_THAT(reply.body, Catch::StartsWith(is_command ? "{\"request\":" : "{\"error\":"));
     }
+}
+
+TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in a third of the octets", "[http][R43]") {
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    const auto ask = [&](const std::string& more) {
+        return web_request(server.port(), "GET", "/api/v1/runs/1/channels?names=altitude_m,speed_mps" + more);
+    };
+    WebReply json, octets;
+    for (int i = 0; i < 500 && json.body.size() < 20'000; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        json = ask("");
+    }
+    CHECK(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"pause":true})").status == 202);
+    v1::ChannelSeriesList list;
+    for (int i = 0; i < 50; ++i) { // until what was on its way has come
+        octets = ask("&format=protobuf");
+        json = ask("");
+        if (ask("&format=protobuf").body == octets.body) break;
+    }
+    CHECK(octets.content_type == "application/x-protobuf");
+    REQUIRE(from_json(json.body, list).ok());
+    CHECK(list.channels(0).sclk_size() > 100);
+    CHECK(list.SerializeAsString() == octets.body);
+    CHECK(3 * octets.body.size() < json.body.size());
 }
 
 TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the next one begins", "[http][R45]") {

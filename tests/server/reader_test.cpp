@@ -265,6 +265,10 @@ TEST_CASE("the timeline tells plan, real time and recording of each timepoint", 
     CHECK(list->timepoints(1).recorded_sclk() == 1002.0);
     CHECK(list->timepoints(1).verdict() == "completed");
     CHECK_FALSE(list->timepoints(2).has_planned_e_s());
+    REQUIRE(list->anchors_size() == 2); // by the number that commands give them
+    CHECK(list->anchors(0).parent().empty());
+    CHECK((list->anchors(1).id() == 1 && list->anchors(1).name() == "entry" && list->anchors(1).parent() == "root"));
+    CHECK_FALSE(list->anchors(1).has_offset_s());
 }
 
 TEST_CASE("a run of another dictionary shows its packets, and says why it shows no series", "[reader]") {

@@ -50,6 +50,7 @@ export const LAYOUT = {
   moves: [
     { command: 'EDL_SET_TIMEPOINT_OFFSET', timepoint: 'timepoint', desired: 'desired_offset_s', minimum: 'minimum_offset_s' },
     { command: 'EDL_SET_PARAMETERS', anchor: 'entry', sclk: 'entry_sclk' },
+    { command: 'EDL_SET_ANCHOR_OFFSET', anchorNumber: 'anchor', offset: 'offset_s' },
   ],
 
   /** Shown first in the table of channels. */

@@ -1,15 +1,17 @@
 // The one animation loop of the page: at most 20 draws a second, numbers at 5 a second, and nothing at all while
 // nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
 import { step } from '../replay/model';
+import { Pace } from '../run/pace';
 import { store, tick } from '../run/session';
 
 const DRAW_EVERY_MS = 50;
+const FRAME_EARLY_MS = 4; // frames do not come to the millisecond
 const NUMBERS_EVERY_MS = 200;
 
 const drawings = new Set<() => void>();
-let lastDraw = 0;
+const draws = new Pace(DRAW_EVERY_MS, 30);
 let lastLook = 0;
-let drawnVersion = -1;
+let drawnSamples = -1;
 let lastNumbers = 0;
 let lastStep = 0;
 let shownVersion = -1;
@@ -23,27 +25,32 @@ export function onDraw(draw: () => void): () => void {
 
 function frame(now: number): void {
   requestAnimationFrame(frame);
-  // What has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often.
-  const changed = (store.peek()?.version ?? 0) !== drawnVersion;
-  if (now - (changed ? lastDraw : lastLook) < DRAW_EVERY_MS - 4) return;
-  drawnVersion = store.peek()?.version ?? 0;
-  if (changed) lastDraw = now;
-  lastLook = now;
-  if (now - lastStep >= NUMBERS_EVERY_MS - 4) {
+  if (now - lastStep >= NUMBERS_EVERY_MS - FRAME_EARLY_MS) {
     const since_s = Math.min(1, (now - lastStep) / 1000);
     lastStep = now;
     step(since_s);
   }
-  if (now - lastNumbers >= NUMBERS_EVERY_MS - 4) {
-    const version = store.value?.version ?? 0;
-    if (version !== shownVersion || store.value !== shownStore) {
-      shownVersion = version;
-      shownStore = store.value;
-      lastNumbers = now;
-      tick.value += 1;
-    }
+  // A sample that has just come is drawn at the next frame, unless one was drawn a moment ago; whatever else may have changed is looked at as often.
+  const samples = store.peek()?.samplesDrawn ?? 0;
+  const fresh = samples !== drawnSamples;
+  if (fresh ? draws.wait(now + FRAME_EARLY_MS) === 0 : now - lastLook >= DRAW_EVERY_MS - FRAME_EARLY_MS) {
+    drawnSamples = samples;
+    lastLook = now;
+    if (fresh) draws.took(now);
+    for (const draw of drawings) draw();
+    // Numbers take as long as drawings: they have a frame of their own, unless there is none.
+    if (now - lastNumbers < NUMBERS_EVERY_MS + DRAW_EVERY_MS) return;
   }
-  for (const draw of drawings) draw();
+  if (now - lastNumbers >= NUMBERS_EVERY_MS - FRAME_EARLY_MS) showNumbers(now);
+}
+
+function showNumbers(now: number): void {
+  const version = store.value?.version ?? 0;
+  if (version === shownVersion && store.value === shownStore) return;
+  shownVersion = version;
+  shownStore = store.value;
+  lastNumbers = now;
+  tick.value += 1;
 }
 
 export function startLoop(): void {

@@ -1,6 +1,5 @@
 // A fixed range of a run, asked of the archive: what it holds, and which of it came how.
-import type { ChannelSeries } from '../gen/aeolis/v1/run_pb';
-import { SOURCE_RECORDED } from '../stream/columns';
+import type { SeriesAnswer } from '../stream/series_answer';
 
 export interface RangeRow {
   name: string;
@@ -16,19 +15,21 @@ export interface RangeRow {
   last_sclk: number;
 }
 
-export function rangeRow(series: ChannelSeries): RangeRow {
+export function rangeRow({ name, unit, samples, thinned, columns }: SeriesAnswer): RangeRow {
   let least = Infinity;
   let largest = -Infinity;
-  let recorded = 0;
-  series.value.forEach((value, i) => {
-    least = value < least ? value : least;
-    largest = value > largest ? value : largest;
-    if (series.source[i] === SOURCE_RECORDED) ++recorded;
-  });
+  for (const { value } of columns) {
+    for (const each of value) {
+      least = each < least ? each : least;
+      largest = each > largest ? each : largest;
+    }
+  }
+  const count = (recorded: boolean) => columns.find((column) => column.recorded === recorded)?.sclk.length ?? 0;
+  const [live, recorded] = [count(false), count(true)];
   return {
-    name: series.name, unit: series.unit, samples: Number(series.samples), given: series.sclk.length,
-    thinned: series.thinned, recorded, live: series.sclk.length - recorded, least, largest,
-    first_sclk: series.sclk[0] ?? NaN, last_sclk: series.sclk[series.sclk.length - 1] ?? NaN,
+    name, unit, samples, thinned, least, largest, live, recorded, given: live + recorded,
+    first_sclk: columns.length > 0 ? Math.min(...columns.map((column) => column.sclk[0] ?? NaN)) : NaN,
+    last_sclk: columns.length > 0 ? Math.max(...columns.map((column) => column.sclk.at(-1) ?? NaN)) : NaN,
   };
 }
 
@@ -40,12 +41,14 @@ export function rangeProblem(from: number | undefined, to: number | undefined): 
   return undefined;
 }
 
-export function seriesPath(
-  run: number, names: readonly string[], from_sclk: number, to_sclk: number, size: number, csv: boolean,
-): string {
-  const query = new URLSearchParams({
-    names: names.join(','), from: String(from_sclk), to: String(to_sclk), points: String(size),
-  });
-  if (csv) query.set('format', 'csv');
-  return `/runs/${run}/channels?${query.toString()}`;
+const rangeQuery = (names: readonly string[], from_sclk: number, to_sclk: number) => ({ names: names.join(','), from: String(from_sclk), to: String(to_sclk) });
+
+/** At most `size` points a channel. */
+export function seriesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number, size: number): string {
+  return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf' }).toString()}`;
+}
+
+/** Every sample of them, a line each. */
+export function samplesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number): string {
+  return `/runs/${run}/samples?${new URLSearchParams(rangeQuery(names, from_sclk, to_sclk)).toString()}`;
 }

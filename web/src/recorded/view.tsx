@@ -1,15 +1,16 @@
 // A recorded range: asked of the archive, shown as numbers here and as the past in every panel.
 import { signal } from '@preact/signals';
-import type { ChannelSeriesList, RecordingSummary } from '../gen/aeolis/v1/run_pb';
+import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
 import { ask, dictionary, pastRange, replay, runNow, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { wordsFor } from '../run/api';
 import { download, save, sizeWords } from './download';
-import { rangeProblem, rangeRow, seriesPath } from './model';
+import { rangeProblem, rangeRow, samplesPath, seriesPath } from './model';
 import type { RangeRow } from './model';
-import { splitBySource } from '../stream/columns';
+import { columnsOf } from '../stream/series_answer';
+import type { SeriesAnswer } from '../stream/series_answer';
 import './style.css';
 
 const from = signal('E+3:50');
@@ -64,12 +65,12 @@ async function query(): Promise<void> {
   message.value = undefined;
   rows.value = [];
   try {
-    const path = seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points, false);
-    const list = await ask<ChannelSeriesList>('series', path);
+    const path = seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points);
+    const list = await ask<SeriesAnswer[]>('series', path);
     if (store.value !== run) return;
-    rows.value = list.channels.map(rangeRow);
-    run.addRange(list.channels.flatMap(splitBySource), run.entrySclk + start, run.entrySclk + end);
-    csvPath.value = `api/v1${seriesPath(run.id, names, run.entrySclk + start, run.entrySclk + end, points, true)}`;
+    rows.value = list.map(rangeRow);
+    run.addRange(columnsOf(list), run.entrySclk + start, run.entrySclk + end);
+    csvPath.value = `api/v1${samplesPath(run.id, names, run.entrySclk + start, run.entrySclk + end)}`;
     replay.value = undefined;
     pastRange.value = { from: start, to: end };
     const samples = rows.value.reduce((sum, row) => sum + row.samples, 0);

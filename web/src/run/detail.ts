@@ -1,9 +1,9 @@
 // What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
 // again, as fine as it can be drawn: what is wanted last, and one question at a time.
 import { effect } from '@preact/signals';
-import type { ChannelSeriesList } from '../gen/aeolis/v1/run_pb';
 import { seriesPath } from '../recorded/model';
-import { splitBySource } from '../stream/columns';
+import { columnsOf } from '../stream/series_answer';
+import type { SeriesAnswer } from '../stream/series_answer';
 import { ask, pastRange, plottedChannels, replay, store } from './session';
 import { choice, spanNow } from './window';
 
@@ -30,11 +30,11 @@ async function refine(): Promise<void> {
     const questions = Array.from({ length: Math.ceil(names.length / CHANNELS_A_QUESTION) }, (_, i) => names.slice(i * CHANNELS_A_QUESTION, (i + 1) * CHANNELS_A_QUESTION));
     try {
       await Promise.all(questions.map(async (some) => {
-        const list = await ask<ChannelSeriesList>('series', seriesPath(run.id, some, from, to, POINTS, false));
+        const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS));
         if (store.peek() !== run) return;
         performance.mark('aeolis-detail');
         // Live samples that came while the answer was on its way are newer than it, and stay.
-        for (const column of list.channels.flatMap(splitBySource)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
+        for (const column of columnsOf(list)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
       }));
     } catch {
       // What is held stays; the header says when there is no connection.

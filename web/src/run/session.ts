@@ -1,15 +1,17 @@
 // The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
 import { computed, effect, signal } from '@preact/signals';
-import type { CommandReply, DictionaryReply, RunList, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { AnchorRow, CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
 import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { access, admitted, learnAccess, mayAct } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
-import { Refused, turnedAway } from './api';
+import { Refused, turnedAway, wordsFor } from './api';
 import { Dictionary } from './dictionary';
 import { firstLook } from './first_look';
+import type { FirstLook } from './first_look';
+import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
 
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
@@ -18,6 +20,7 @@ export const stream = signal<{ state: StreamState; attempt: number; gaps: number
 export const store = signal<RunStore | undefined>(undefined);
 export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
+export const anchors = signal<AnchorRow[]>([]);
 export const runs = signal<RunState[]>([]);
 export const scenarios = signal<{ name: string; title: string }[]>([]);
 /** The run asked for: 0 is "the one that is going on". */
@@ -74,18 +77,21 @@ export function backToLive(): void {
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
 const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
+const FIRST_LOOK_MS = 500; // ours: what follows does not wait longer for it
 const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
 
 const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
 let worker: Worker | undefined;
+const forWorker: ToWorker[] = []; // until there is one
 let lastAsk = 0;
 let lastRequest = 0;
 const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
 const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
 
 function post(message: ToWorker): void {
-  worker?.postMessage(message);
+  if (worker) worker.postMessage(message);
+  else forWorker.push(message);
 }
 
 /** Asks an HTTP route; rejects with the server's own words. */
@@ -123,6 +129,7 @@ export function watch(run: number): void {
   history.replaceState(null, '', url);
   store.value = undefined;
   timepoints.value = [];
+  anchors.value = [];
   post({ type: 'watch', run });
 }
 
@@ -215,7 +222,7 @@ async function refreshTimepoints(): Promise<void> {
   timepointsUnderWay = true;
   try {
     const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints`);
-    if (store.value === of) timepoints.value = list.timepoints;
+    if (store.value === of) [timepoints.value, anchors.value] = [list.timepoints, list.anchors];
   } catch {
     // The timeline says that it has no plan; the next round asks again.
   } finally {
@@ -223,16 +230,13 @@ async function refreshTimepoints(): Promise<void> {
   }
 }
 
-const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
-
 async function refreshRuns(): Promise<void> {
   try {
-    const list = await ask<RunList>('runs', '/runs');
-    runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
-    const mine = list.runs.find((run) => Number(run.run) === store.value?.id);
+    runs.value = await askRuns();
+    const mine = runs.value.find((run) => Number(run.run) === store.value?.id);
     if (mine && store.value && !store.value.going) store.value.update(mine);
     // A run that began while the one we follow was already over, or lost with its server: go there.
-    const going = list.runs.find(isGoing);
+    const going = runs.value.find(isGoing);
     if (watched.value === 0 && going && store.value && !store.value.going && Number(going.run) !== store.value.id) watch(0);
   } catch {
     // Not connected; the header says so.
@@ -257,26 +261,35 @@ export function plottedChannels(): string[] {
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }
 
-/** Starts the worker, learns the dictionary, chooses the run that is going on or the last one, and connects. */
-export async function begin(): Promise<void> {
+/** Its schema takes as long to load as a picture to draw: it starts once the first look is on its way to the screen. */
+function startWorker(): void {
   worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
-  const first = firstLook(Number(new URL(location.href).searchParams.get('run') ?? 0), namedChannels());
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
+  forWorker.splice(0).forEach(post);
+}
 
+/** Learns the dictionary, chooses the run that is going on or the last one, takes a first look at it, and connects. */
+export async function begin(): Promise<void> {
+  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
+  let first: Promise<FirstLook | undefined> | undefined;
+  const startFrom = () => Promise.all([askDictionary(), askRuns().then((all) => {
+    first = firstLook(all, wanted, namedChannels());
+    return all;
+  })]);
+  let knowing: Promise<void>;
   for (let attempt = 0; ; ++attempt) {
     try {
-      const knowing = learnAccess();
+      knowing = learnAccess();
       knowing.catch(() => undefined); // looked at below
-      const [reply, list] = await Promise.all([
-        ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs'), knowing,
-      ]).catch(async (error: unknown) => {
+      const [reply, all] = await startFrom().catch(async (error: unknown) => {
         if (!(error instanceof Refused) || error.status !== 401) throw error;
+        await knowing.then(learnAccess); // what turned us away may not be all that it says
         await admitted();
-        return Promise.all([ask<DictionaryReply>('dictionary', '/dictionary'), ask<RunList>('runs', '/runs')]);
+        return startFrom();
       });
       dictionary.value = new Dictionary(reply);
-      runs.value = [...list.runs].sort((a, b) => Number(b.run - a.run));
+      runs.value = all;
       break;
     } catch (error) {
       stream.value = { ...stream.value, state: 'lost', attempt: attempt + 1 };
@@ -284,20 +297,22 @@ export async function begin(): Promise<void> {
       await new Promise((resolve) => setTimeout(resolve, Math.min(5000, 250 * 2 ** attempt)));
     }
   }
-  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
     : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
   if (wanted > 0 && chosen !== wanted) notify(`Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`);
   watched.value = chosen;
+  knowing.catch((error: unknown) => notify(`the server does not say who you are: ${wordsFor(error)}`));
   const words = dictionary.value as Dictionary;
   const plotted = plottedChannels();
   const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
-  void first.then((look) => {
+  const looked = first?.then((look) => {
     if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
   });
+  await Promise.race([looked, new Promise((resolve) => setTimeout(resolve, FIRST_LOOK_MS))]);
+  startWorker();
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
     (list) => (scenarios.value = list.scenarios), () => undefined);

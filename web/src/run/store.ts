@@ -74,6 +74,8 @@ export class RunStore {
   notesVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
+  /** Counts what came with samples of what is drawn. */
+  samplesDrawn = 0;
   /** Counts changes of anything. */
   version = 0;
 
@@ -137,6 +139,7 @@ export class RunStore {
     this.completeThrough = Math.max(this.completeThrough, batch.completeThrough);
     if (batch.clocks) this.clocks = batch.clocks;
     if (batch.thinned) this.thinnedSinceHistory = true;
+    if (batch.columns.some((column) => this.isDrawn(column.id))) ++this.samplesDrawn;
     for (const column of batch.columns) {
       this.series(column).append(column.sclk, column.value);
       this.sawSclk(column.sclk.at(-1));
@@ -147,6 +150,7 @@ export class RunStore {
 
   addHistory(columns: Column[]): void {
     ++this.version;
+    ++this.samplesDrawn;
     for (const column of columns) {
       this.series(column).replaceBefore(column.sclk, column.value);
       this.sawSclk(column.sclk.at(-1));
@@ -156,6 +160,7 @@ export class RunStore {
   /** A range that was asked for: exact where what we held was thinned. */
   addRange(columns: Column[], from_sclk: number, to_sclk: number): void {
     ++this.version;
+    ++this.samplesDrawn;
     for (const column of columns) this.series(column).replace(from_sclk, to_sclk, column.sclk, column.value);
   }
 

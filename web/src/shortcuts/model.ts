@@ -18,7 +18,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
   { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
   { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
-  { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint by plan, tone, UHF and recording' },
+  { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint by plan, prediction at entry, tone, UHF and recording' },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
   { id: 'campaigns', title: 'Campaigns', key: 'd', words: 'campaigns of dispersed landings: start, watch the ellipse fill' },

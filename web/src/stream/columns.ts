@@ -1,5 +1,4 @@
 // Turns the stream's batches into columns: one run of samples a channel, and facts in order of sequence number.
-import type { ChannelSeries } from '../gen/aeolis/v1/run_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import type { BatchOfFacts, Column, Fact } from './messages';
 
@@ -84,24 +83,4 @@ export class ColumnCollector {
     column.sclk.push(sclk);
     column.value.push(value);
   }
-}
-
-/** Real time and recording are kept apart, so that each can be seen for itself. */
-export function splitBySource(series: ChannelSeries): Column[] {
-  const live: [number[], number[]] = [[], []];
-  const recorded: [number[], number[]] = [[], []];
-  for (let i = 0; i < series.sclk.length; ++i) {
-    const into = series.source[i] === SOURCE_RECORDED ? recorded : live;
-    into[0].push(series.sclk[i] ?? NaN);
-    into[1].push(series.value[i] ?? NaN);
-  }
-  const columns: Column[] = [];
-  for (const [part, isRecorded] of [[live, false], [recorded, true]] as const) {
-    if (part[0].length > 0) {
-      columns.push({
-        id: series.id, recorded: isRecorded, sclk: Float64Array.from(part[0]), value: Float64Array.from(part[1]),
-      });
-    }
-  }
-  return columns;
 }

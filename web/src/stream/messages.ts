@@ -54,7 +54,7 @@ export type ControlAction =
   | { action: 'pace'; pace: number }
   | { action: 'stop' };
 
-export type Question = 'runs' | 'dictionary' | 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof' | 'report' | 'commands';
+export type Question = 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof' | 'report' | 'commands';
 
 /** What a controller wants of the uplink, as CommandRequest has it: a command, or an action on one that waits. What is left out is not asked. */
 export interface CommandIntent {

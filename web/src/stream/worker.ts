@@ -1,5 +1,5 @@
 // Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
-// batches at most every 25 ms. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
+// batches every 25 ms at most, on the average. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
 //
 // A run is taken up in two steps. First everything that is not a sample, from the beginning; the answer is small.
 // Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
@@ -7,14 +7,15 @@
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
-  AsFlownReportSchema, ChannelSeriesListSchema, CommandListSchema, DictionaryReplySchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, RunListSchema,
-  ScenarioListSchema, TimepointListSchema,
+  AsFlownReportSchema, CommandListSchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, ScenarioListSchema, TimepointListSchema,
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
-import { ColumnCollector, splitBySource } from './columns';
-import type { ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
+import { Pace } from '../run/pace';
+import { ColumnCollector } from './columns';
+import type { Column, ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
 import { SequenceCheck, backoffSeconds } from './sequence';
+import { columnsOf, readSeriesList } from './series_answer';
 
 const POST_EVERY_MS = 25;
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
@@ -22,7 +23,7 @@ const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
-const post = (message: FromWorker) => self.postMessage(message);
+const post = (message: FromWorker, columns: Column[] = []) => self.postMessage(message, { transfer: columns.flatMap(({ sclk, value }) => [sclk.buffer, value.buffer] as ArrayBuffer[]) });
 
 const apiUrl = new URL('/api/v1', self.location.origin).href;
 const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
@@ -39,7 +40,7 @@ let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
 let posting = false;
-let lastPost = -Infinity;
+const posts = new Pace(POST_EVERY_MS, 5);
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
@@ -175,17 +176,16 @@ function receiveBatch(batch: Batch): void {
   }
   if (!posting) {
     posting = true;
-    setTimeout(flush, Math.max(0, lastPost + POST_EVERY_MS - performance.now())); // at once after a pause
+    setTimeout(flush, posts.wait(performance.now())); // at once after a pause
   }
 }
 
 function flush(): void {
   posting = false;
-  lastPost = performance.now();
+  posts.took(performance.now());
   if (collector.empty) return;
   const batch = collector.take();
-  self.postMessage({ type: 'batch', batch } satisfies FromWorker,
-    { transfer: batch.columns.flatMap((column) => [column.sclk.buffer, column.value.buffer] as ArrayBuffer[]) });
+  post({ type: 'batch', batch }, batch.columns);
 }
 
 function goOnWithSamples(): void {
@@ -208,9 +208,9 @@ async function fetchHistory(all = true): Promise<void> {
     for (const [names, points] of [[plotted, PLOTTED_POINTS], [all ? others : [], OTHER_POINTS]] as const) {
       for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
         const some = names.slice(i, i + CHANNELS_A_QUESTION).map(encodeURIComponent).join(',');
-        const list = await ask(ChannelSeriesListSchema, `/runs/${run}/channels?names=${some}&points=${points}`);
+        const columns = columnsOf(await askSeries(`/runs/${run}/channels?names=${some}&points=${points}&format=protobuf`));
         if (run !== currentRun) return;
-        post({ type: 'history', run, columns: list.channels.flatMap(splitBySource) });
+        post({ type: 'history', run, columns }, columns);
       }
     }
   } catch (error) {
@@ -218,29 +218,32 @@ async function fetchHistory(all = true): Promise<void> {
   }
 }
 
-const ANSWERS: Record<Question, DescMessage> = {
-  runs: RunListSchema, dictionary: DictionaryReplySchema, timepoints: TimepointListSchema, scenarios: ScenarioListSchema,
-  series: ChannelSeriesListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema, report: AsFlownReportSchema,
-  commands: CommandListSchema,
+const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
+  timepoints: TimepointListSchema, scenarios: ScenarioListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema,
+  report: AsFlownReportSchema, commands: CommandListSchema,
 };
 
-async function askJson(path: string): Promise<unknown> {
+/** The answer, once it has begun; throws the server's words with its status. */
+async function get(path: string): Promise<Response> {
   const response = await fetch(apiUrl + path);
+  if (response.ok) return response;
   const text = await response.text();
-  if (!response.ok) {
-    let error = text.slice(0, 300);
-    try {
-      error = (JSON.parse(text) as { error?: string }).error ?? error;
-    } catch {
-      // The answer was not of our API; its text says what it says.
-    }
-    throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
+  let error = text.slice(0, 300);
+  try {
+    error = (JSON.parse(text) as { error?: string }).error ?? error;
+  } catch {
+    // The answer was not of our API; its text says what it says.
   }
-  return JSON.parse(text);
+  throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
 }
 
-async function ask<T extends DescMessage>(schema: T, path: string) {
-  return fromJson(schema, (await askJson(path)) as never, { ignoreUnknownFields: true });
+const ask = async (schema: DescMessage, path: string) => fromJson(schema, await (await get(path)).json(), { ignoreUnknownFields: true });
+const askSeries = async (path: string) => readSeriesList(new Uint8Array(await (await get(path)).arrayBuffer()));
+
+async function answer(question: Question, path: string): Promise<{ value: unknown; columns?: Column[] }> {
+  if (question !== 'series') return { value: await ask(ANSWERS[question], path) };
+  const value = await askSeries(path);
+  return { value, columns: columnsOf(value) };
 }
 
 self.onmessage = (event: MessageEvent<ToWorker>) => {
@@ -279,8 +282,8 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       }
       break;
     case 'ask':
-      ask(ANSWERS[message.question], message.path).then(
-        (value) => post({ type: 'answer', ask: message.ask, ok: true, value }),
+      answer(message.question, message.path).then(
+        ({ value, columns }) => post({ type: 'answer', ask: message.ask, ok: true, value }, columns),
         (error: unknown) => post({
           type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error), status: (error as { status?: number }).status ?? 0,
         }),

@@ -1,7 +1,8 @@
 // A server of a few routes for tests: answers what is put in, keeps what was asked.
 import { afterEach, beforeEach, vi } from 'vitest';
 
-type Answer = { status?: number; json?: unknown } | (() => { status?: number; json?: unknown });
+interface Said { status?: number; json?: unknown; octets?: Uint8Array }
+type Answer = Said | (() => Said);
 
 export interface FakeServer {
   /** "GET /session" → what it answers. What is not there answers 404. */
@@ -19,9 +20,9 @@ export function aServer(): FakeServer {
       server.asked.push({ method, path, body: options.body === undefined ? undefined : JSON.parse(String(options.body)) });
       const found = server.routes[`${method} ${path}`];
       if (!found) return new Response('{"error":"no such route"}', { status: 404 });
-      const { status = 200, json } = typeof found === 'function' ? found() : found;
+      const { status = 200, json, octets } = typeof found === 'function' ? found() : found;
       if (status === 0) throw new TypeError('Failed to fetch');
-      return new Response(json === undefined ? null : JSON.stringify(json), { status });
+      return new Response((octets as BodyInit) ?? (json === undefined ? null : JSON.stringify(json)), { status });
     });
   });
   afterEach(() => void vi.unstubAllGlobals());

@@ -1,7 +1,7 @@
 // When each timepoint is predicted, from what is known now: the plan, moved by every anchor that was heard of, by UHF, recording
 // or tone; and what a command in the form would move.
 import { LAYOUT } from '../layout';
-import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { AnchorRow, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
 
 /** Times in seconds from entry. */
@@ -16,7 +16,8 @@ export interface Prediction {
 /** What a command would change; everything else stays. */
 export interface Change {
   timepoint?: { id: number; desired_s: number; minimum_s: number | undefined };
-  anchor?: { name: string; e_s: number };
+  /** So long after another one; without one, from entry. It holds until the anchor is heard of after `since_e_s`, when the vehicle carried it out. */
+  anchor?: { name: string; after: string; by_s: number; since_e_s: number };
 }
 
 export type Anchors = readonly (readonly [name: string, e_s: number])[];
@@ -29,7 +30,7 @@ export type Anchors = readonly (readonly [name: string, e_s: number])[];
 export function predictions(store: RunStore, plan: readonly TimepointRow[], anchors: Anchors, cutoff: number, changes: readonly Change[] = []): Prediction[] {
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
   const heard = heardOf(store, plan, cutoff);
-  const { before, after } = anchorTimes(plan, anchors, heard, now, changes.findLast((each) => each.anchor)?.anchor);
+  const { before, after } = anchorTimes(plan, anchors, heard, now, new Map(changes.flatMap(({ anchor }) => (anchor ? [[anchor.name, anchor] as const] : []))));
   const all: Prediction[] = [];
   let previous: number | undefined;
   for (const row of plan) {
@@ -63,49 +64,66 @@ function heardOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number)
 
 /** `before`: as each was predicted until it was heard of; `after`: as it is known or predicted now. */
 function anchorTimes(
-  plan: readonly TimepointRow[], anchors: Anchors, heard: ReadonlyMap<number, number>, now: number, change: Change['anchor'],
+  plan: readonly TimepointRow[], anchors: Anchors, heard: ReadonlyMap<number, number>, now: number, changes: ReadonlyMap<string, NonNullable<Change['anchor']>>,
 ): { before: Map<string, number>; after: Map<string, number> } {
   const [before, after] = [new Map<string, number>(), new Map<string, number>()];
   // A timepoint can be later than its anchor says, never earlier: the earliest tells the anchor best.
   const told = new Map<string, number>();
+  const toldAt = new Map<string, number>();
   for (const row of plan) {
     const at = heard.get(row.id);
     if (at === undefined || row.anchor === '' || row.desiredOffsetS === undefined) continue;
     told.set(row.anchor, Math.min(told.get(row.anchor) ?? Infinity, at - row.desiredOffsetS));
+    toldAt.set(row.anchor, Math.min(toldAt.get(row.anchor) ?? Infinity, at));
   }
   // The anchors that the plan itself knows stand at their planned time.
   for (const row of plan) {
     if (row.plannedES !== undefined && row.desiredOffsetS !== undefined && row.anchor !== '') before.set(row.anchor, row.plannedES - row.desiredOffsetS);
   }
+  const changed = (name: string): number | undefined => {
+    const change = changes.get(name);
+    if (!change || change.since_e_s < (toldAt.get(name) ?? -Infinity)) return undefined;
+    const from = change.after === '' ? 0 : after.get(change.after) ?? before.get(change.after);
+    return from === undefined ? undefined : from + change.by_s;
+  };
   anchors.forEach(([name, e_s], i) => {
     const [last, last_e_s] = anchors[i - 1] ?? ['', 0];
     if (!before.has(name)) before.set(name, (after.get(last) ?? 0) + e_s - last_e_s);
-    after.set(name, told.get(name) ?? Math.max(before.get(name) as number, i === 0 ? -Infinity : now));
-    if (change?.name === name) after.set(name, change.e_s);
+    after.set(name, changed(name) ?? told.get(name) ?? Math.max(before.get(name) as number, i === 0 ? -Infinity : now));
   });
-  for (const [name, e_s] of before) if (!after.has(name)) after.set(name, change?.name === name ? change.e_s : told.get(name) ?? e_s);
+  for (const [name, e_s] of before) if (!after.has(name)) after.set(name, changed(name) ?? told.get(name) ?? e_s);
   return { before, after };
 }
 
-/** What a command with these arguments changes, as far as they are known; undefined where it moves nothing. */
-export function changeOf(command: string, values: ReadonlyMap<string, number>, store: RunStore): Change | undefined {
+/** What a command with these arguments changes, as far as they are known; undefined where it moves nothing. Before it is carried out, nothing is heard after it. */
+export function changeOf(
+  command: string, values: ReadonlyMap<string, number>, store: RunStore, anchors: readonly AnchorRow[], since_e_s = Infinity,
+): Change | undefined {
   const moves = LAYOUT.moves.find((each) => each.command === command);
   if (!moves) return undefined;
   if ('anchor' in moves) {
     const sclk = values.get(moves.sclk);
-    return sclk === undefined ? undefined : { anchor: { name: moves.anchor, e_s: sclk - store.entrySclk } };
+    return sclk === undefined ? undefined : { anchor: { name: moves.anchor, after: '', by_s: sclk - store.entrySclk, since_e_s } };
+  }
+  if ('anchorNumber' in moves) {
+    const [row, offset_s] = [anchors.find((each) => each.id === values.get(moves.anchorNumber)), values.get(moves.offset)];
+    const parent = anchors.find((each) => each.name === row?.parent);
+    if (!row || !parent || offset_s === undefined) return undefined;
+    const ofClock = parent.parent === ''; // the root is time zero of the spacecraft's clock
+    return { anchor: { name: row.name, after: ofClock ? '' : parent.name, by_s: ofClock ? offset_s - store.entrySclk : offset_s, since_e_s } };
   }
   const [id, desired_s] = [values.get(moves.timepoint), values.get(moves.desired)];
   return id === undefined || desired_s === undefined ? undefined : { timepoint: { id, desired_s, minimum_s: values.get(moves.minimum) } };
 }
 
 /** What the vehicle has carried out of such commands. */
-export function changesMade(store: RunStore, cutoff: number): Change[] {
+export function changesMade(store: RunStore, anchors: readonly AnchorRow[], cutoff: number): Change[] {
   return [...store.commands.values()].flatMap((row) => {
     const executed = row.stages.get('executed')?.at(-1);
-    if (executed?.status !== 'ok' || store.sclkSeenAt(executed.at) > cutoff) return [];
+    const sclk = executed && store.sclkSeenAt(executed.at);
+    if (executed?.status !== 'ok' || sclk === undefined || sclk > cutoff) return [];
     const values = row.arguments.split(' ').map((part) => part.split('=')).filter((pair) => pair.length === 2);
-    return changeOf(row.name, new Map(values.map(([name, value]) => [name as string, Number(value)])), store) ?? [];
+    return changeOf(row.name, new Map(values.map(([name, value]) => [name as string, Number(value)])), store, anchors, sclk - store.entrySclk) ?? [];
   });
 }
 
