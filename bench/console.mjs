@@ -259,8 +259,8 @@ function tenMillion() {
 }
 
 async function zoom() {
-    const archive = tenMillion();
     await fetch(`${server.address}/api/v1/rehearsals/current`, { method: "POST", headers: { "content-type": "application/json" }, body: '{"pause":true}' });
+    const archive = tenMillion();
     const long = await serve({ archive, web });
     try {
         await zoomAt(long);

@@ -1,4 +1,4 @@
-// The one animation loop of the page: at most 20 draws a second, numbers at 5 a second, and nothing at all while
+// The one animation loop of the page: some 20 draws a second, numbers at 5 a second, and nothing at all while
 // nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
 import { step } from '../replay/model';
 import { Pace } from '../run/pace';
@@ -9,7 +9,7 @@ const FRAME_EARLY_MS = 4; // frames do not come to the millisecond
 const NUMBERS_EVERY_MS = 200;
 
 const drawings = new Set<() => void>();
-const draws = new Pace(DRAW_EVERY_MS, 30);
+const draws = new Pace(45, 25); // samples come 20 times a second: a pace no faster than theirs never makes up for one that was late
 let lastLook = 0;
 let drawnSamples = -1;
 let lastNumbers = 0;
