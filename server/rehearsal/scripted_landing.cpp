@@ -35,6 +35,7 @@ ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary
 commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
     const auto ert = [&](double after_entry_s) { return Ert{scenario.entry_scet.microseconds + static_cast<std::int64_t>(after_entry_s * 1.0e6)}; };
     std::vector<commands::TrackingPass> passes;
+    passes.reserve(scenario.radio.tracking_passes.size());
     for (const auto& pass : scenario.radio.tracking_passes)
         passes.push_back({pass.station, ert(pass.begin_after_entry_s), ert(pass.end_after_entry_s)});
     return commands::TrackingSchedule{std::move(passes)};
