@@ -270,19 +270,22 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
     if (own && !change.role().empty()) return Error{"role: nobody changes their own; another administrator does"};
     if (!change.role().empty() && !role_of(change.role())) return no_role(change.role());
     if (change.role().empty() && change.password().empty()) return Error{"the change says nothing: role or password is wanted"};
-    std::string hash;
+    std::string hash, hash_before;
     if (!change.password().empty()) {
         if (auto good = check_password(change.password()); !good) return good.error();
         if (own && change.password() == change.current_password()) return Error{"password: it is the one of before, choose another"};
-        if (own)
-            if (auto right = check_log_in(user, change.current_password(), who.from); !right)
-                return Error{"current_password: " + right.error().message};
+        if (own) {
+            auto right = check_log_in(user, change.current_password(), who.from);
+            if (!right) return Error{"current_password: " + right.error().message};
+            hash_before = std::move(*right);
+        }
         hash = password_hash(change.password());
     }
     v1::User shown;
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
         auto* account = find_account(file, user);
         if (account == nullptr) return no_user(user);
+        if (!hash_before.empty() && account->password_hash() != hash_before) return Error{"current_password: it was changed meanwhile"};
         if (!change.role().empty()) account->set_role(change.role());
         if (!hash.empty()) {
             account->set_password_hash(hash);

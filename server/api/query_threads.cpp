@@ -1,5 +1,7 @@
 #include "server/api/query_threads.hpp"
 
+#include <spdlog/spdlog.h>
+
 namespace aeolis::server {
 
 Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::path& archive,
@@ -31,7 +33,11 @@ QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& ope
 void QueryThreads::answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
     const auto deadline = std::chrono::steady_clock::now() + question_max;
     reader.stop_when([deadline, gone = asked.gone] { return (gone && gone()) || std::chrono::steady_clock::now() > deadline; });
-    asked.job(reader);
+    try {
+        asked.job(reader);
+    } catch (const std::exception& bug) { // costs that question only; who asked has had its answer, or sees the connection end
+        spdlog::error("a question could not be answered: {}", bug.what());
+    }
     reader.stop_when({});
 }
 

@@ -5,6 +5,8 @@
 #include "server/api/run_questions.hpp"
 #include "server/api/sample_text.hpp"
 
+#include <fmt/format.h>
+
 namespace aeolis::server {
 namespace {
 
@@ -16,25 +18,31 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
     archive::RunId run;
     std::vector<std::string> channels;
     archive::SclkRange range;
+    std::optional<archive::SampleCursor> after;
     bool done = false;
     std::function<bool()> gone;
 
-    /// The next page as text; empty: there is none.
+    /// The next page as text, which may be empty; none: there is no further one.
     BodyPart page(archive::Reader& reader) {
+        if (done) return std::optional<std::string>{};
+        const auto samples = reader.sample_page(run, channels, range, after);
+        if (!samples) return samples.error();
         std::string lines;
-        while (lines.empty() && !done) {
-            const auto samples = reader.sample_page(run, channels, range);
-            if (!samples) return samples.error();
-            text.append(lines, samples->samples);
-            range.from_s = samples->next_s;
-            done = !samples->next_s;
-        }
+        text.append(lines, samples->samples);
+        after = samples->next;
+        done = !after;
         if (done) text.finish(lines);
-        return lines;
+        return std::optional{std::move(lines)};
     }
     void tell_next(const std::function<void(BodyPart)>& tell) {
-        if (done) return tell(std::string{});
-        const auto job = [self = shared_from_this(), tell](archive::Reader& reader) { tell(self->page(reader)); };
+        if (done) return tell(std::optional<std::string>{});
+        const auto job = [self = shared_from_this(), tell](archive::Reader& reader) {
+            try {
+                tell(self->page(reader));
+            } catch (const std::exception& bug) {
+                tell(Error{fmt::format("this is a fault of the server: {}", bug.what())});
+            }
+        };
         if (!queries.ask(job, gone)) tell(Error{"too many questions wait"});
     }
 };
@@ -62,7 +70,7 @@ void Api::export_samples(const Asked& asked) {
         if (!first) return error_response(400, first.error().message);
         HttpResponse response;
         response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
-        response.body = wanted->text.head() + *first;
+        response.body = wanted->text.head() + first->value_or("");
         if (!wanted->done) response.more = [wanted](const auto& tell) { wanted->tell_next(tell); };
         return response;
     });

@@ -89,9 +89,13 @@ struct ChannelValue {
     Source source{};
 };
 
+/// How far a walk through samples has come, and how wide its windows of time are.
+struct SampleCursor {
+    double from_s = 0.0, to_s = 0.0, width_s = 0.0;
+};
 struct SamplePage {
     std::vector<ChannelValue> samples;
-    std::optional<double> next_s; ///< from where to ask on; none: that was all
+    std::optional<SampleCursor> next; ///< to ask on; none: that was all
 };
 
 /// Questions to an archive, while its writer goes on or after.
@@ -144,8 +148,10 @@ class Reader {
     /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
     Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range, const TakeSamples& take);
-    /// The first of them, in order of SCLK, and where the rest begins.
-    Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range);
+    /// The first of them, in order of SCLK, some ten thousand, and where the rest begins; or what follows a page. What came
+    /// after the first page was asked for belongs to none.
+    Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
+                                   const std::optional<SampleCursor>& after = {});
     /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
     Result<std::vector<ChannelValue>> latest(RunId run, std::optional<Sclk> at);
 

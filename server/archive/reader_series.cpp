@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON
 constexpr std::size_t window_samples = 100'000; ///< ours: that are in hand at once; at most four times as many
+constexpr std::size_t page_samples = 10'000;    ///< ours: the same for one page, a megabyte of text
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
 constexpr char unit_span_sql[] = "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
@@ -263,33 +264,35 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
 
 namespace {
 
-/// The samples of a range of time, a window of about window_samples at a time.
+/// The samples of a range of time, a window with about `wanted` of them at a time.
 class SampleWindows {
   public:
-    static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked);
+    static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
+                                    std::size_t wanted, const std::optional<SampleCursor>& after = {});
 
-    bool at_end() const { return from_s_ > to_s_; }
-    double from_s() const { return from_s_; } ///< of the next window
+    bool at_end() const { return cursor_.from_s > cursor_.to_s; }
+    const SampleCursor& cursor() const { return cursor_; } ///< of the next window
     /// Of the next window, in order of SCLK; there may be none in it.
     Result<void> next(std::vector<ChannelValue>& samples);
 
   private:
-    SampleWindows(Reader::State& reader, RunInfo run) : reader_(&reader), run_(std::move(run)) {}
+    SampleWindows(Reader::State& reader, RunInfo run, std::size_t wanted) : reader_(&reader), run_(std::move(run)), wanted_(wanted) {}
 
     Reader::State* reader_;
     RunInfo run_;
+    std::size_t wanted_;
     std::vector<const dictionary::Channel*> channels_;
-    double from_s_ = 0.0, to_s_ = 0.0;
-    double width_s_ = 0.0; ///< a first guess, then by what was found
+    SampleCursor cursor_; ///< its width a first guess, then by what was found
 };
 
-Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked) {
+Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
+                                        std::size_t wanted, const std::optional<SampleCursor>& after) {
     const auto range = closed(asked);
     if (!range) return range.error();
     const auto info = reader.info(run);
     if (!info) return info.error();
     if (auto same = reader.same_dictionary(*info); !same) return same.error();
-    SampleWindows windows(reader, *info);
+    SampleWindows windows(reader, *info, wanted);
     if (channels.empty()) {
         for (const auto& channel : reader.dictionary.channels)
             if (!reader.columns.places(channel.id).empty()) windows.channels_.push_back(&channel);
@@ -298,19 +301,23 @@ Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const 
         if (!found) return found.error();
         windows.channels_ = std::move(found).value();
     }
+    if (after) {
+        windows.cursor_ = *after;
+        return windows;
+    }
     const auto span = sample_span(reader, *info);
     if (!span) return span.error();
-    windows.from_s_ = std::max(range->from_s, span->range.from_s);
-    windows.to_s_ = std::min(range->to_s, span->range.to_s);
-    windows.width_s_ = (span->range.to_s - span->range.from_s) * window_samples /
-                       static_cast<double>(std::max<std::uint64_t>(1, span->samples * windows.channels_.size()));
+    windows.cursor_ = {std::max(range->from_s, span->range.from_s), std::min(range->to_s, span->range.to_s),
+                       (span->range.to_s - span->range.from_s) * static_cast<double>(wanted) /
+                           static_cast<double>(std::max<std::uint64_t>(1, span->samples * windows.channels_.size()))};
     return windows;
 }
 
 Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
+    auto& [from_s, to_s, width_s] = cursor_;
     for (;;) {
-        const double next_s = std::max(from_s_ + width_s_, std::nextafter(from_s_, to_s_ + 1.0));
-        const ClosedRange window{from_s_, std::min(to_s_, std::nextafter(next_s, from_s_))};
+        const double next_s = std::max(from_s + width_s, std::nextafter(from_s, to_s + 1.0));
+        const ClosedRange window{from_s, std::min(to_s, std::nextafter(next_s, from_s))};
         samples.clear();
         bool whole = true;
         for (const auto* channel : channels_) {
@@ -318,16 +325,16 @@ Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
             if (!found) return found.error();
             for (const Sample& sample : *found)
                 samples.push_back({channel->id, sample.value, Sclk{sample.sclk_s}, sample.source});
-            whole = samples.size() <= 4 * window_samples || window.from_s == window.to_s;
+            whole = samples.size() <= 4 * wanted_ || window.from_s == window.to_s;
             if (!whole) break;
         }
         if (!whole) {
-            width_s_ /= 2.0;
+            width_s /= 2.0;
             continue;
         }
         std::ranges::stable_sort(samples, {}, [](const ChannelValue& sample) { return sample.sclk.seconds; });
-        if (samples.size() < window_samples / 4) width_s_ = std::max(2.0 * width_s_, std::nextafter(0.0, 1.0));
-        from_s_ = next_s;
+        if (samples.size() < wanted_ / 4) width_s = std::max(2.0 * width_s, std::nextafter(0.0, 1.0));
+        from_s = next_s;
         return {};
     }
 }
@@ -337,7 +344,7 @@ Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
 Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto windows = SampleWindows::of(*state_, run, channels, asked);
+    auto windows = SampleWindows::of(*state_, run, channels, asked, window_samples);
     if (!windows) return windows.error();
     std::vector<ChannelValue> samples;
     while (!windows->at_end()) {
@@ -348,15 +355,16 @@ Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& chan
     return {};
 }
 
-Result<SamplePage> Reader::sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& asked) {
+Result<SamplePage> Reader::sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
+                                       const std::optional<SampleCursor>& after) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto windows = SampleWindows::of(*state_, run, channels, asked);
+    auto windows = SampleWindows::of(*state_, run, channels, asked, page_samples, after);
     if (!windows) return windows.error();
     SamplePage page;
     while (!windows->at_end() && page.samples.empty())
         if (auto done = windows->next(page.samples); !done) return done.error();
-    if (!windows->at_end()) page.next_s = windows->from_s();
+    if (!windows->at_end()) page.next = windows->cursor();
     return page;
 }
 

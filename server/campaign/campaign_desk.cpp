@@ -168,8 +168,9 @@ Result<v1::CampaignState> CampaignDesk::start(Order order) {
     if (!store) return Error{store.error().message + "; another seed makes another campaign"};
     const auto name = name_of_file(order.file);
     const auto file = order.file;
-    flight_ = std::make_unique<Flight>(name, std::move(order), std::move(*store));
-    flight_->thread = std::thread{[flight = flight_.get(), this] { flight->fly(dictionary_); }};
+    auto flight = std::make_unique<Flight>(name, std::move(order), std::move(*store));
+    flight->thread = std::thread{[flying = flight.get(), this] { flying->fly(dictionary_); }};
+    flight_ = std::move(flight);
     return state_of(name, file);
 }
 

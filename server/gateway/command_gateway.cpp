@@ -234,7 +234,7 @@ std::string CommandGateway::perform(const v1::CommandRequest& asked, const Under
     };
     if (action == "hold") return waits(queue_.hold(number));
     const auto* entry = waiting(number);
-    if (action == "release" && entry != nullptr) {
+    if (action == "release" && entry != nullptr && entry->held) {
         const Ert leaves = std::max(entry->release_at.value_or(now), now);
         if (!stations_.sees(leaves)) return fmt::format("command {} stays held: {}", number, stations_.refusal(leaves));
     }

@@ -4,17 +4,19 @@
 
 namespace aeolis::server {
 
-std::string ConnectionCount::enter(const std::string& address, bool loopback) {
-    const auto open = ++from_[address];
+std::string ConnectionCount::enter(const std::string& from, bool loopback) {
+    if (all_ >= all_max_) return fmt::format("{} connections are open already", all_max_);
+    const auto found = from_.find(from);
+    if (!loopback && found != from_.end() && found->second >= each_max_)
+        return fmt::format("{} connections are open from {} already", each_max_, from);
     ++all_;
-    if (all_ > all_max_) return fmt::format("{} connections are open already", all_max_);
-    if (!loopback && open > each_max_) return fmt::format("{} connections are open from {} already", each_max_, address);
+    ++from_[from];
     return {};
 }
 
-void ConnectionCount::leave(const std::string& address) {
+void ConnectionCount::leave(const std::string& from) {
     --all_;
-    if (const auto found = from_.find(address); --found->second == 0) from_.erase(found);
+    if (const auto found = from_.find(from); --found->second == 0) from_.erase(found);
 }
 
 } // namespace aeolis::server

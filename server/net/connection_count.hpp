@@ -6,15 +6,15 @@
 
 namespace aeolis::server {
 
-/// Connections that are open, in all and from each address, so that one address cannot take the places of all others. Loopback is
+/// Connections that are open, in all and from each address or network, so that one cannot take the places of all others. Loopback is
 /// this machine: whoever is on it can do worse, and a proxy in front of the server brings everybody from there.
 class ConnectionCount {
   public:
     ConnectionCount(std::size_t all_max, std::size_t each_max) : all_max_(all_max), each_max_(each_max) {}
 
-    /// Why one more from there may not stay; empty: it may. Counted either way, until leave().
-    std::string enter(const std::string& address, bool loopback);
-    void leave(const std::string& address);
+    /// Why one more from there may not stay, and is not counted; empty: it may, until leave().
+    std::string enter(const std::string& from, bool loopback);
+    void leave(const std::string& from);
     std::size_t all() const { return all_; }
 
   private:

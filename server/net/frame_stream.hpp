@@ -61,10 +61,8 @@ class FrameStream {
     /// Lives until its last write has ended.
     struct State {
         explicit State(Next stream) : next(std::move(stream)), drained(next.get_executor()) {
-            if constexpr (std::is_same_v<Next, Stream>) descriptor = next.socket().native_handle();
             drained.expires_at(std::chrono::steady_clock::time_point::max());
         }
-        int descriptor = -1; ///< none: TLS makes its own of what is written
         bool flushing = false, closing = false;
         std::string kept;
         Next next;
@@ -99,12 +97,16 @@ std::size_t FrameStream<Next>::write_header(std::size_t octets, bool binary, Hea
 
 template <typename Next>
 std::size_t FrameStream<Next>::give(State& state, std::span<iovec> parts) {
-    if (state.descriptor < 0) return 0;
-    msghdr message{};
-    message.msg_iov = parts.data();
-    message.msg_iovlen = parts.size();
-    const auto given = ::sendmsg(state.descriptor, &message, MSG_DONTWAIT | MSG_NOSIGNAL);
-    return given > 0 ? static_cast<std::size_t>(given) : 0; // what is wrong with the socket, flush() finds
+    if constexpr (std::is_same_v<Next, Stream>) {
+        msghdr message{};
+        message.msg_iov = parts.data();
+        message.msg_iovlen = parts.size();
+        // Asked for each time: a closed socket's number may be another client's by now.
+        const auto given = ::sendmsg(state.next.socket().native_handle(), &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+        return given > 0 ? static_cast<std::size_t>(given) : 0; // what is wrong with the socket, flush() finds
+    } else {
+        return 0; // TLS makes its own of what is written
+    }
 }
 
 template <typename Next>
@@ -159,8 +161,10 @@ auto FrameStream<Next>::async_write_some(const Buffers& buffers, Token&& token) 
     state_->kept += octets;
     flush(state_);
     return asio::async_compose<Token, void(error_code, std::size_t)>(
-        [state = state_, size = octets.size()](auto& self, error_code = {}) {
-            if (state->flushing)
+        [state = state_, size = octets.size(), first = true](auto& self, error_code = {}) mutable {
+            if (std::exchange(first, false) && !state->flushing)
+                asio::post(state->drained.get_executor(), std::move(self)); // nothing completes within its beginning
+            else if (state->flushing)
                 state->drained.async_wait(std::move(self));
             else
                 self.complete(state->failure, state->failure ? 0 : size);

@@ -4,6 +4,7 @@
 #include "server/access/access.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace aeolis::server {
@@ -17,8 +18,8 @@ struct HttpRequest {
     std::function<bool()> gone{}; ///< whether who asked has left: what still works on it may stop; from any thread; null: never told
 };
 
-/// The next part of a body; empty: that was all.
-using BodyPart = Result<std::string>;
+/// The next part of a body, which may be empty; none: that was all.
+using BodyPart = Result<std::optional<std::string>>;
 
 struct HttpResponse {
     unsigned status = 200;

@@ -34,7 +34,7 @@ class Connection final : public WriteTurn::Writer, public std::enable_shared_fro
     Task<> close(websocket::close_reason reason);
     bool gather(std::span<Encoded> messages, std::size_t& count);
 
-    bool open_ = true;
+    bool open_ = true; ///< for messages of ours
     FrameStream<AnyStream> frames_;
     std::shared_ptr<StreamSession> session_;
     websocket::stream<FrameStream<AnyStream>> socket_; ///< over frames_
@@ -80,7 +80,7 @@ template <typename AnyStream>
 Task<> Connection<AnyStream>::read() {
     beast::flat_buffer buffer;
     error_code error;
-    while (open_) {
+    for (;;) {
         co_await socket_.async_read_some(buffer, service_.message_octets_max + 1 - buffer.size(), asio::redirect_error(awaiting, error));
         if (error) co_return;
         if (buffer.size() > service_.message_octets_max) {
@@ -100,9 +100,9 @@ Task<> Connection<AnyStream>::read() {
 template <typename AnyStream>
 Task<> Connection<AnyStream>::close(websocket::close_reason reason) {
     const auto self = this->shared_from_this();
-    error_code ignored;
-    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored));
     open_ = false;
+    error_code ignored;
+    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored)); // then read() ends, too
 }
 
 /// Whether there may be more than what fits into one turn.
@@ -124,7 +124,6 @@ void Connection<AnyStream>::write() {
     std::size_t count = 0;
     const bool more = open_ && !frames_.busy() && gather(messages, count);
     if (auto why = session_->closing(); open_ && !why.empty()) {
-        open_ = false;
         asio::co_spawn(socket_.get_executor(), close({websocket::close_code::policy_error, why}), asio::detached);
         return;
     }

@@ -13,6 +13,7 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ip/network_v6.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -35,6 +36,7 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr const char* stream_path = "/api/v1/stream";
+constexpr std::size_t slice_octets = 64 << 10;    // ours: of a long body, written at once
 constexpr unsigned peers_looked_at_ms = 250; // ours: a question goes on for so long after its client has left
 struct Subprotocol {
     std::string_view name;
@@ -121,6 +123,18 @@ class WaitingPeers {
     std::list<Peer> waiting_;
 };
 
+/// An address of version 4 as such, also when the socket is one of version 6.
+asio::ip::address plain_address(const asio::ip::address& address) {
+    if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
+    return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
+}
+
+/// What one subscriber is given: an address of version 4, or the /64 of version 6.
+std::string network_of(const asio::ip::address& address) {
+    if (!address.is_v6()) return address.to_string();
+    return asio::ip::make_network_v6(address.to_v6(), 64).canonical().to_string();
+}
+
 /// Of certificate and key, or what is wrong with them; none: no TLS.
 Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& settings) {
     if (settings.certificate.empty() && settings.key.empty()) return std::optional<asio::ssl::context>{};
@@ -199,26 +213,33 @@ Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decl
     const bool chunked = first.version() >= 11; // before that a body ended with its connection
     if (!chunked) first.keep_alive(false);
     const bool keep = first.keep_alive();
-    BodyPart part{std::move(first.body())};
+    BodyPart part{std::optional{std::move(first.body())}};
     http::response<http::empty_body> head{std::move(first.base())};
     head.chunked(chunked);
     http::response_serializer<http::empty_body> serializer{head};
     error_code error;
     lowest.expires_after(std::chrono::seconds{request_seconds_max});
     co_await http::async_write_header(stream, serializer, asio::redirect_error(awaiting, error));
-    while (!error && part && !part->empty()) {
-        lowest.expires_after(std::chrono::seconds{request_seconds_max});
-        const auto octets = asio::buffer(*part);
-        if (chunked) {
-            const auto chunk = http::make_chunk(octets);
-            co_await asio::async_write(stream, chunk, asio::redirect_error(awaiting, error));
-        } else {
-            co_await asio::async_write(stream, octets, asio::redirect_error(awaiting, error));
+    while (!error && part && *part) {
+        for (std::string_view rest = **part; !error && !rest.empty(); rest.remove_prefix(std::min(rest.size(), slice_octets))) {
+            lowest.expires_after(std::chrono::seconds{request_seconds_max}); // a slow client needs only to go on
+            const auto octets = asio::buffer(rest.data(), std::min(rest.size(), slice_octets));
+            if (chunked) {
+                const auto chunk = http::make_chunk(octets);
+                co_await asio::async_write(stream, chunk, asio::redirect_error(awaiting, error));
+            } else {
+                co_await asio::async_write(stream, octets, asio::redirect_error(awaiting, error));
+            }
         }
         lowest.expires_never();
         if (!error) part = co_await told<BodyPart>(more);
     }
-    if (error || !part) co_return false;
+    if (error || !part) { // torn, not ended: without chunks an end would look like the end of the body
+        error_code ignored;
+        lowest.socket().set_option(asio::socket_base::linger{true, 0}, ignored);
+        lowest.socket().close(ignored);
+        co_return false;
+    }
     if (!chunked) co_return false;
     lowest.expires_after(std::chrono::seconds{request_seconds_max});
     const auto end = http::make_chunk_last();
@@ -326,10 +347,13 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
 
 Task<> WebServer::State::serve(Socket socket) {
     error_code ignored;
-    const auto peer = socket.remote_endpoint(ignored);
-    const std::string from = ignored ? "unknown" : peer.address().to_string();
-    const std::string refused = connections.enter(from, peer.address().is_loopback());
-    const std::shared_ptr<void> counted{nullptr, [this, &from](void*) { connections.leave(from); }};
+    const auto peer = plain_address(socket.remote_endpoint(ignored).address());
+    const std::string from = ignored ? "unknown" : peer.to_string();
+    const std::string share = network_of(peer);
+    const std::string refused = connections.enter(share, peer.is_loopback());
+    const std::shared_ptr<void> counted{nullptr, [this, &share, entered = refused.empty()](void*) {
+                                            if (entered) connections.leave(share);
+                                        }};
     socket.set_option(tcp::no_delay{true}, ignored);
     Stream stream{std::move(socket)};
     if (!refused.empty()) {

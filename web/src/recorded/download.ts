@@ -1,6 +1,8 @@
 // A file that the server makes while it is taken: how much has come is told, and it can be cancelled.
 import { Refused, turnedAway, wordsOf } from '../run/api';
 
+const LOOSE_MAX = 16e6; // ours
+
 /** All of it. `told` gets octets that have come, and of how many where the server says. Rejects with the server's words, or as aborted. */
 export async function download(path: string, stop: AbortSignal, told: (octets: number, of: number | undefined) => void): Promise<Blob> {
   const response = await fetch(path, { signal: stop, credentials: 'same-origin', cache: 'no-store' });
@@ -10,13 +12,15 @@ export async function download(path: string, stop: AbortSignal, told: (octets: n
   }
   const length = Number(response.headers.get('content-length') ?? NaN);
   const of = Number.isFinite(length) && !response.headers.has('content-encoding') ? length : undefined;
-  const parts: BlobPart[] = [];
+  let parts: BlobPart[] = [];
   let octets = 0;
+  let loose = 0; // octets of parts that the page itself holds; a blob may lie on the browser's disk
   const reader = response.body.getReader();
   for (;;) {
     const { done, value } = await reader.read();
     if (done) break;
     parts.push(value);
+    if ((loose += value.byteLength) > LOOSE_MAX) [parts, loose] = [[new Blob(parts)], 0];
     told((octets += value.byteLength), of);
   }
   return new Blob(parts, { type: response.headers.get('content-type') ?? '' });

@@ -69,6 +69,10 @@ function fieldsOf(octets: Uint8Array): { number: number; value: number; part: Ui
   while (at < octets.length) {
     const key = varint();
     const [number, type] = [key >>> 3, key & 7];
+    if (type === 1 || type === 5) { // of a later schema: passed over
+      at += type === 1 ? 8 : 4;
+      continue;
+    }
     if (type !== 0 && type !== 2) throw new Error(`samples: field ${number} of the answer has type ${type}`);
     const value = varint();
     const part = type === 2 ? octets.subarray(at, at += value) : NONE;
