@@ -28,6 +28,7 @@ struct Server {
         std::ofstream{recorded.folder / "secret.txt"} << secret;
         std::filesystem::create_symlink(recorded.folder / "secret.txt", recorded.folder / "web/link.txt");
         desk.close("nothing can be started here");
+        campaigns.close("nothing can be started here");
     }
     static StreamHub::Services no_services() {
         StreamHub::Services services;
@@ -45,14 +46,23 @@ struct Server {
                        [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
                        [](archive::RunId, const auto&, const auto& done) { done(std::string{}); },
                        {[](const auto&) {}, [](const auto&) {}}};
+    campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
-    Api api{{recorded.dictionary, scenarios, *queries, desk, hub, pipeline, console, *access, false, [] { return std::size_t{1}; }}};
+    Api api{{recorded.dictionary, scenarios, *queries, desk, campaigns, hub, pipeline, console, *access, false, [] { return std::size_t{1}; }}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {
     std::promise<HttpResponse> answered;
     server.api.handle(request, [&](HttpResponse response) { answered.set_value(std::move(response)); });
-    return answered.get_future().get();
+    auto response = answered.get_future().get();
+    for (bool more = response.more != nullptr; more;) {
+        std::promise<BodyPart> told;
+        response.more([&](BodyPart part) { told.set_value(std::move(part)); });
+        const auto part = told.get_future().get();
+        more = part && *part;
+        if (more) response.body += **part;
+    }
+    return response;
 }
 
 } // namespace
