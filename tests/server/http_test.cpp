@@ -211,7 +211,7 @@ TEST_CASE("a command that would break a constraint of the timeline is refused be
         return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", body);
     };
     WebReply reply;
-    for (int i = 0; i < 200 && reply.status != 202; ++i) {
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) { // a slow build is long in starting the run
         reply = ask(-600.0, 2.0, true);
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
