@@ -276,7 +276,7 @@ class SampleWindows {
     Result<void> next(std::vector<ChannelValue>& samples);
 
   private:
-    SampleWindows(Reader::State& reader, RunInfo run, std::size_t wanted) : reader_(&reader), run_(std::move(run)), wanted_(wanted) {}
+    SampleWindows(Reader::State& reader, const RunInfo& run, std::size_t wanted) : reader_(&reader), run_(run), wanted_(wanted) {}
 
     Reader::State* reader_;
     RunInfo run_;

@@ -195,7 +195,7 @@ std::string WebServer::State::refusal_of(const Request& request) const {
 template <typename T, typename Ask>
 Task<T> WebServer::State::told(Ask ask) {
     return asio::async_initiate<const asio::use_awaitable_t<Executor>, void(T)>(
-        [this](auto done, Ask asking) {
+        [this](auto done, const Ask& asking) {
             auto shared = std::make_shared<decltype(done)>(std::move(done));
             asking([this, shared](T answer) {
                 asio::post(io, [shared, answer = std::move(answer)]() mutable {
@@ -316,7 +316,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
             HttpRequest asked{std::string{plain(request.method_string())}, target->path(), std::string{target->encoded_query()},
                               std::move(request.body()), std::move(credentials), waiting_here->gone()};
-            const auto ask = [this, &asked](Respond respond) { handlers.request(std::move(asked), respond); };
+            const auto ask = [this, &asked](const Respond& respond) { handlers.request(std::move(asked), respond); };
             auto answered = co_await told<HttpResponse>(ask);
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
