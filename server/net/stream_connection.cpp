@@ -92,7 +92,8 @@ Task<> Connection<AnyStream>::read() {
             co_return;
         }
         if (!socket_.is_message_done()) continue;
-        session_->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
+        if (open_) // else it is told to go, and what it still says would wait for answers that nobody takes
+            session_->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
         buffer.consume(buffer.size());
     }
 }
