@@ -2,7 +2,8 @@
 // sockets: CPU a delivered message, and how long it is on its way. Then eight messages a tick.
 
 #include "bench/loopback_clients.hpp"
-#include "server/net/web_server.hpp"
+#include "bench/must.hpp"
+#include "tests/server/event_server.hpp"
 
 #include <arpa/inet.h>
 #include <chrono>
@@ -25,12 +26,6 @@ constexpr std::size_t clients = 1000;
 constexpr double messages_per_s = 64.0, seconds = 4.0;
 constexpr std::size_t message_octets = 300;
 constexpr int rounds = 3; // by turns, the best of each: the machine is shared
-
-void must(bool done, const char* what) {
-    if (done) return;
-    std::fprintf(stderr, "fan_out_bench: %s failed\n", what);
-    std::exit(1);
-}
 
 double cpu_s(clockid_t clock) {
     timespec time{};
@@ -95,74 +90,22 @@ Figures bare(LoopbackClients& all) {
     return result;
 }
 
-/// The server's own network thread, with every client subscribed to everything.
-class Server {
-  public:
-    Server() {
-        server::StreamHub::Services services;
-        services.want_items = [](bool) {};
-        hub_ = std::make_unique<server::StreamHub>(std::uint16_t{1}, services);
-        v1::RunState state;
-        state.set_run(1);
-        hub_->run_state(state);
-        server::WebServer::Handlers handlers;
-        handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
-        handlers.open_stream = [this](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
-            return std::make_shared<server::StreamSession>(*hub_, format, std::move(wake), server::StreamSession::follower());
-        };
-        auto opened = server::WebServer::open({}, handlers);
-        must(opened.ok(), "WebServer::open");
-        server_ = std::move(*opened);
-        thread_ = std::thread{[this] { server_->run(); }};
-        must(::pthread_getcpuclockid(thread_.native_handle(), &clock_) == 0, "pthread_getcpuclockid");
-    }
-    ~Server() {
-        server_->stop();
-        thread_.join();
-        server_.reset();
-    }
-    std::uint16_t port() const { return server_->port(); }
-    double cpu() const { return cpu_s(clock_); }
-
-    /// `count` batches of one event that is message_octets long on the wire, as the pipeline publishes them.
-    void publish(std::size_t count) {
-        std::vector<std::shared_ptr<const pipeline::PublishedBatch>> batches;
-        for (std::size_t i = 0; i < count; ++i) {
-            auto batch = std::make_shared<pipeline::PublishedBatch>();
-            batch->run = archive::RunId{1};
-            batch->first_seq = batch->last_seq = ++seq_;
-            v1::Item item;
-            item.set_seq(seq_);
-            auto text = mark_now();
-            text.resize(message_octets - 32, '.');
-            item.mutable_event()->set_text(text);
-            batch->items = {item};
-            batches.push_back(std::move(batch));
-        }
-        server_->post([this, batches = std::move(batches)] {
-            for (const auto& batch : batches)
-                hub_->published(batch);
-        });
-    }
-
-  private:
-    std::unique_ptr<server::StreamHub> hub_;
-    std::unique_ptr<server::WebServer> server_;
-    std::thread thread_;
-    clockid_t clock_{};
-    archive::Sequence seq_ = 0;
-};
-
 Figures served(LoopbackClients& all, std::size_t a_tick) {
-    Server server;
+    test::EventServer server;
+    clockid_t network{}; // the CPU time of the server's own thread
+    must(::pthread_getcpuclockid(server.network().native_handle(), &network) == 0, "pthread_getcpuclockid");
     v1::ClientMessage subscription;
     subscription.mutable_subscribe()->set_all_channels(true);
     all.connect(server.port(), {clients, 0, true, subscription.SerializeAsString()});
     std::this_thread::sleep_for(std::chrono::milliseconds{300});
     all.forget();
-    const double before = server.cpu();
-    tick(messages_per_s / static_cast<double>(a_tick), [&] { server.publish(a_tick); });
-    const auto result = figures(all, server.cpu() - before, clients * messages_per_s * seconds);
+    const double before = cpu_s(network);
+    tick(messages_per_s / static_cast<double>(a_tick), [&] {
+        auto text = mark_now();
+        text.resize(message_octets - 32, '.'); // message_octets on the wire
+        server.publish(std::vector<std::string>(a_tick, text));
+    });
+    const auto result = figures(all, cpu_s(network) - before, clients * messages_per_s * seconds);
     all.close();
     return result;
 }

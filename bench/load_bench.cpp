@@ -1,14 +1,19 @@
 // The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
-// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled. And the start of the real
-// program on an archive of a hundred runs, up to the first answer with data.
+// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled. Those that joined first, in the
+// middle and last are looked at, and the stalled one when it reads again. And the start of the real program on an archive of
+// a hundred runs, up to the first answer with data.
 
 #include "bench/loopback_clients.hpp"
+#include "bench/must.hpp"
 #include "common/bytes.hpp"
 #include "server/api/query_threads.hpp"
 #include "server/archive/reader.hpp"
 #include "server/net/web_server.hpp"
 #include "server/rehearsal/pipeline_thread.hpp"
+#include "tests/support/temporary_folder.hpp"
 
+#include <algorithm>
+#include <array>
 #include <arpa/inet.h>
 #include <chrono>
 #include <cmath>
@@ -30,31 +35,13 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr std::size_t clients = 1000, stalled = 1, watched_channels = 30;
+constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30; // one of those watched is stalled
 constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368; // 1.5 kB
-constexpr std::size_t events_per_s = 10;
+constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
+constexpr int stalled_receive_octets = 4096; // else the kernel would read for it
 constexpr double seconds = 10.0;
 constexpr double sample_rate_hz = 20.0;
 constexpr Apid event_apid{0x7F};
-
-void must(bool done, const char* what) {
-    if (done) return;
-    std::fprintf(stderr, "load_bench: %s failed\n", what);
-    std::exit(1);
-}
-
-struct Folder {
-    std::filesystem::path path;
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "aeolis-bench-XXXXXX").string();
-        must(::mkdtemp(name.data()) != nullptr, "mkdtemp");
-        path = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path, ignored);
-    }
-};
 
 double now_s() {
     return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
@@ -108,7 +95,10 @@ std::uint64_t resident_octets() {
 /// A client that reads every item: what a console knows. One thread.
 class Watcher {
   public:
-    Watcher(std::uint16_t port, const std::string& subscription) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    /// @param stalled  it says that it lives, and reads nothing until read_on()
+    Watcher(const char* who, std::uint16_t port, const std::string& subscription, bool stalled = false)
+        : name(who), reads_(!stalled), socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+        if (stalled) must(::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &stalled_receive_octets, sizeof stalled_receive_octets) == 0, "SO_RCVBUF");
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_port = htons(port);
@@ -124,12 +114,17 @@ class Watcher {
         thread_ = std::thread{[this] { follow(); }};
     }
     ~Watcher() {
+        reads_ = true;
         ::shutdown(socket_, SHUT_RDWR);
         thread_.join();
         ::close(socket_);
     }
 
-    std::atomic<std::uint64_t> events{0}, through{0};
+    void read_on() { reads_ = true; }
+
+    const char* name; ///< as it is told of
+    std::atomic<std::uint64_t> events{0}, tones{0}, stages{0}, through{0};
+    std::atomic<std::uint64_t> thinned{0};   ///< samples that say that some before them were left out
     std::atomic<bool> broken{false}; ///< a batch that does not join the one before
     std::vector<double> event_ms, sample_ms;
 
@@ -141,6 +136,10 @@ class Watcher {
         return got;
     }
     void follow() {
+        while (!reads_) {
+            say_that_it_lives();
+            std::this_thread::sleep_for(std::chrono::milliseconds{100});
+        }
         while (!over_) {
             const auto head = read(2);
             std::uint64_t octets = static_cast<std::uint8_t>(head[1]);
@@ -152,10 +151,13 @@ class Watcher {
             v1::ServerMessage message;
             if (over_ || (head[0] & 0xF) != 2 || !message.ParseFromString(payload) || !message.has_batch()) continue;
             take(message.batch());
-            if (now_s() - alive_s_ < 5.0) continue;
-            alive_s_ = now_s();
-            write(std::string{alive});
+            say_that_it_lives();
         }
+    }
+    void say_that_it_lives() {
+        if (now_s() - alive_s_ < 5.0) return;
+        alive_s_ = now_s();
+        write(std::string{alive});
     }
     void take(const v1::Batch& batch) {
         const double now = now_s();
@@ -164,6 +166,9 @@ class Watcher {
         double newest = 0.0;
         for (const auto& item : batch.items()) {
             if (item.has_samples()) newest = std::max(newest, item.samples().sclk());
+            if (item.has_samples() && item.samples().thinned()) ++thinned;
+            if (item.has_tone()) ++tones;
+            if (item.has_command_stage()) ++stages;
             if (!item.has_event()) continue;
             ++events;
             event_ms.push_back(1e3 * (now - item.event().sclk()));
@@ -171,6 +176,7 @@ class Watcher {
         if (newest > 0.0) sample_ms.push_back(1e3 * (now - newest));
     }
 
+    std::atomic<bool> reads_;
     int socket_;
     bool over_ = false;
     double alive_s_ = now_s();
@@ -186,8 +192,8 @@ double quantile(std::vector<double>& values, double q) {
 }
 
 bool met = true;
-void goal(const char* what, double figure, double most, const char* unit) {
-    std::printf("  %-52s %9.2f %s, goal %.0f", what, figure, unit, most);
+void goal(const std::string& what, double figure, double most, const char* unit) {
+    std::printf("  %-60s %9.2f %s, goal %.0f", what.c_str(), figure, unit, most);
     if (most > 0.0) std::printf(": ratio %.2f", figure / most);
     std::printf("\n");
     met = met && figure <= most;
@@ -195,10 +201,10 @@ void goal(const char* what, double figure, double most, const char* unit) {
 
 /// Threads and connections as `aeolis serve` has them, with packets made here in place of a landing.
 void under_load() {
-    LoopbackClients others;
+    std::array<LoopbackClients, 2> others; // who joins between the first and the middle one, and after it
     spdlog::set_level(spdlog::level::err);
-    const Folder folder;
-    const auto file = folder.path / "load.db";
+    const test::TemporaryFolder folder;
+    const auto file = folder / "load.db";
     const auto dictionary = load();
     auto archive = std::move(archive::Archive::open(file)).value();
     auto queries = std::move(server::QueryThreads::open(file, dictionary)).value();
@@ -209,8 +215,8 @@ void under_load() {
         const bool taken = queries->ask([&web, run, after, limit, kinds, done](archive::Reader& reader) {
             auto page = reader.items(run, after, limit, kinds);
             web->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
-        });
-        if (!taken) web->post([done] { done(Error{"too many questions wait: try again"}); });
+        }, {}, server::Haste::soon);
+        if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
     server::StreamHub hub{dictionary.id, services};
     server::WebServer::Handlers handlers;
@@ -235,14 +241,20 @@ void under_load() {
         subscription.mutable_subscribe()->add_channels(i);
     subscription.mutable_subscribe()->set_max_rate_hz(sample_rate_hz);
     subscription.mutable_subscribe()->set_without_units(true);
-    others.connect(web->port(), {clients - 1, stalled, true, subscription.SerializeAsString()});
-    std::uint64_t sent_packets = 0, sent_events = 0;
+    std::uint64_t sent_packets = 0, sent_events = 0, sent_tones = 0, sent_stages = 0;
     std::uint64_t resident = 0;
     double behind_s = 0.0;
     {
-        Watcher watcher{web->port(), subscription.SerializeAsString()};
+        const auto asked = subscription.SerializeAsString();
+        Watcher first{"the first to join", web->port(), asked}, stalled{"the one that was stalled", web->port(), asked, true};
+        others[0].connect(web->port(), {(clients - watched) / 2, 0, true, asked});
+        Watcher middle{"one in the middle", web->port(), asked};
+        others[1].connect(web->port(), {(clients - watched) / 2, 0, true, asked});
+        Watcher last{"the last to join", web->port(), asked};
+        const std::array all{&first, &middle, &last, &stalled};
         std::this_thread::sleep_for(std::chrono::milliseconds{500});
-        others.forget();
+        for (auto& each : others)
+            each.forget();
         std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet), event(tm_overhead_octets + 10);
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t i = 0; i < channels_a_packet; ++i)
@@ -263,31 +275,58 @@ void under_load() {
                 seal_tm_packet(event, event_apid, static_cast<std::uint16_t>(sent_events), Sclk{now}, dictionary.id);
                 delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, event});
             }
+            for (; static_cast<double>(sent_tones) < (now - begin) * tones_per_s; ++sent_tones)
+                delivery.entries.emplace_back(simulation::ReceivedTone{});
+            for (; static_cast<double>(sent_stages) < (now - begin) * stages_per_s; ++sent_stages) {
+                archive::StageRecord stage;
+                stage.command = sent_stages + 1;
+                stage.name = "LOAD";
+                stage.stage = "radiated";
+                stage.status = "ok";
+                delivery.entries.emplace_back(std::move(stage));
+            }
             must(pipeline.deliver(std::move(delivery)), "deliver");
             behind_s = std::max(behind_s, now_s() - now);
             resident = std::max(resident, resident_octets());
             std::this_thread::sleep_for(std::chrono::milliseconds{5});
         }
-        for (int i = 0; i < 100 && watcher.events < sent_events; ++i)
-            std::this_thread::sleep_for(std::chrono::milliseconds{100});
+        const double stopped = now_s();
+        stalled.read_on();
         must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
-        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels at %.0f Hz, %zu of them stalled\n",
-                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels, sample_rate_hz, stalled);
-        std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n", static_cast<double>(others.octets()) / seconds * 1e-6, 1e3 * behind_s);
-        goal("events of which one client saw none", static_cast<double>(sent_events - watcher.events), 0.0, "events");
-        goal("batches that do not join the one before", watcher.broken ? 1.0 : 0.0, 0.0, "");
-        goal("connections that ended", static_cast<double>(others.broken()), 0.0, "");
-        goal("event, from receipt to the client, p99", quantile(watcher.event_ms, 0.99), 40.0, "ms");
-        goal("newest sample's age when a batch arrives, p99", quantile(watcher.sample_ms, 0.99), 65.0, "ms");
+        state.set_state("finished");
+        web->post([&hub, state] { hub.run_state(state); }); // as a run tells its end
+        const std::uint64_t last_seq = 2 * (sent_packets + sent_events) + sent_tones + sent_stages;
+        const auto has_all = [&](const Watcher* each) { return each->through == last_seq; };
+        while (!std::ranges::all_of(all, has_all) && now_s() - stopped < 10.0)
+            std::this_thread::sleep_for(std::chrono::milliseconds{10});
+        const double caught_up_s = now_s() - stopped;
+        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels at %.0f Hz, one of them stalled\n",
+                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels, sample_rate_hz);
+        std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n", static_cast<double>(others[0].octets() + others[1].octets()) / seconds * 1e-6, 1e3 * behind_s);
+        for (Watcher* each : all) {
+            const std::string who = std::string{", "} + each->name;
+            const auto lost = [](std::uint64_t sent, std::uint64_t seen) { return static_cast<double>(sent) - static_cast<double>(seen); };
+            goal("events that are lost or doubled" + who, std::abs(lost(sent_events, each->events)), 0.0, "");
+            goal("tones and command stages that are" + who, std::abs(lost(sent_tones, each->tones)) + std::abs(lost(sent_stages, each->stages)), 0.0, "");
+            goal("sequence numbers without an answer" + who, lost(last_seq, each->through), 0.0, "");
+            goal("batches that do not join the one before" + who, each->broken ? 1.0 : 0.0, 0.0, "");
+            if (each == &stalled) continue; // what it sees late it sees by its own choice
+            goal("event, from receipt to the client, p99" + who, quantile(each->event_ms, 0.99), 40.0, "ms");
+            goal("newest sample's age when a batch arrives, p99" + who, quantile(each->sample_ms, 0.99), 65.0, "ms");
+        }
+        goal("samples' gaps that the stalled one is not told of", stalled.thinned > 0 ? 0.0 : 1.0, 0.0, "");
+        std::printf("  the stalled one had caught up after %.2f s\n", caught_up_s);
+        goal("connections that ended", static_cast<double>(others[0].broken() + others[1].broken()), 0.0, "");
         goal("resident memory", static_cast<double>(resident) * 1e-6, 300.0, "MB");
     }
-    others.close();
+    for (auto& each : others)
+        each.close();
     auto reader = archive::Reader::open(file, dictionary);
     must(reader.ok(), "Reader::open");
     archive::EventQuery events;
     events.limit = 10'000;
-    goal("packets and events that are not in the archive",
-         static_cast<double>(sent_packets + 2 * sent_events) + static_cast<double>(sent_packets) - static_cast<double>(reader->last_seq(*run).value()), 0.0, "");
+    goal("items that are not in the archive",
+         static_cast<double>(2 * (sent_packets + sent_events) + sent_tones + sent_stages) - static_cast<double>(reader->last_seq(*run).value()), 0.0, "");
     web->stop();
     network.join();
     queries.reset();
@@ -295,8 +334,8 @@ void under_load() {
 
 /// `aeolis serve` on an archive of a hundred runs: until its list of runs, and a channel of the last one, are there.
 void start() {
-    const Folder folder;
-    const auto file = folder.path / "runs.db";
+    const test::TemporaryFolder folder;
+    const auto file = folder / "runs.db";
     const std::string program = AEOLIS_SOURCE_DIR "/build/release/aeolis";
     const auto flown = program + " rehearse --scenario nominal_auto --archive " + file.string() + " >/dev/null";
     must(std::system(flown.c_str()) == 0, flown.c_str());

@@ -52,6 +52,13 @@ class CommandLink {
     void hear(const Clcw& clcw, Ert now);
     void pass(Ert now);
 
+    /// Takes out what was never radiated; the tags, in the order in which it would have gone.
+    std::vector<std::uint64_t> take_back() { return fop_.take_back(); }
+    /// Tags of what was radiated and is not acknowledged.
+    std::vector<std::uint64_t> unacknowledged() const { return fop_.unacknowledged(); }
+    /// What is not acknowledged is not sent again: it is reported as never acknowledged, and the vehicle is told the sequence anew.
+    void give_up() { fop_.restart(); }
+
     /// Whether a report came within `report_s`.
     bool hears(Ert now) const;
     std::size_t waiting() const { return fop_.waiting(); }

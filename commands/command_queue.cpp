@@ -6,15 +6,21 @@
 namespace aeolis::commands {
 
 void CommandQueue::add(const Entry& entry) {
-    const auto place = std::ranges::find_if(entries_, [&](const Entry& each) { return each.priority < entry.priority; });
+    const auto place = std::ranges::find_if(entries_, [&](const Entry& each) {
+        return each.priority != entry.priority ? each.priority < entry.priority : each.number > entry.number;
+    });
     entries_.insert(place, entry);
 }
 
-bool CommandQueue::set_held(std::uint64_t number, bool held) {
+CommandQueue::Entry* CommandQueue::find(std::uint64_t number) {
     const auto found = std::ranges::find(entries_, number, &Entry::number);
-    if (found == entries_.end()) return false;
-    found->held = held;
-    return true;
+    return found == entries_.end() ? nullptr : &*found;
+}
+
+bool CommandQueue::set_held(std::uint64_t number, bool held) {
+    auto* const entry = find(number);
+    if (entry != nullptr) entry->held = held;
+    return entry != nullptr;
 }
 
 bool CommandQueue::cancel(std::uint64_t number) {
@@ -22,17 +28,54 @@ bool CommandQueue::cancel(std::uint64_t number) {
 }
 
 bool CommandQueue::approve(std::uint64_t number) {
-    const auto found = std::ranges::find(entries_, number, &Entry::number);
-    if (found == entries_.end()) return false;
-    return std::exchange(found->needs_approval, false);
+    auto* const entry = find(number);
+    return entry != nullptr && std::exchange(entry->needs_approval, false);
 }
 
-std::vector<std::uint64_t> CommandQueue::take_due(Ert now) {
-    std::vector<std::uint64_t> due;
+std::vector<std::uint64_t> CommandQueue::doubt_after(std::uint64_t number) {
+    std::vector<std::uint64_t> doubted;
+    for (Entry& each : entries_) {
+        if (!each.in_order || each.number <= number) continue;
+        each.doubted = true;
+        doubted.push_back(each.number);
+    }
+    return doubted;
+}
+
+bool CommandQueue::judged(std::uint64_t number) {
+    auto* const entry = find(number);
+    return entry != nullptr && std::exchange(entry->doubted, false);
+}
+
+std::optional<std::uint64_t> CommandQueue::leaves_after(const Entry& entry) const {
+    std::optional<std::uint64_t> last;
     for (const Entry& each : entries_)
-        if (is_due(each, now)) due.push_back(each.number);
-    std::erase_if(entries_, [&](const Entry& each) { return is_due(each, now); });
-    return due;
+        if (entry.in_order && each.in_order && each.number < entry.number) last = std::max(last.value_or(0), each.number);
+    return last;
+}
+
+bool CommandQueue::is_due(const Entry& entry, Ert now) const {
+    return !entry.held && !entry.needs_approval && !entry.doubted && (!entry.release_at || *entry.release_at <= now) && !leaves_after(entry);
+}
+
+bool CommandQueue::due(std::uint64_t number, Ert now) const {
+    const auto found = std::ranges::find(entries_, number, &Entry::number);
+    return found != entries_.end() && is_due(*found, now);
+}
+
+std::vector<std::uint64_t> CommandQueue::take_all() {
+    std::vector<std::uint64_t> all;
+    for (const Entry& each : std::exchange(entries_, {}))
+        all.push_back(each.number);
+    return all;
+}
+
+std::optional<std::uint64_t> CommandQueue::take_next(Ert now) {
+    const auto next = std::ranges::find_if(entries_, [&](const Entry& each) { return is_due(each, now); });
+    if (next == entries_.end()) return {};
+    const auto number = next->number;
+    entries_.erase(next);
+    return number;
 }
 
 std::vector<std::uint64_t> CommandQueue::postpone_due(Ert now, Ert until) {

@@ -129,6 +129,24 @@ void Fop::restart() {
     why_halted_ = Halt::none;
 }
 
+std::vector<std::uint64_t> Fop::take_back() {
+    std::vector<std::uint64_t> tags;
+    for (auto* items : {&expedited_, &waiting_}) {
+        for (const Item& item : *items)
+            tags.push_back(item.tag);
+        items->clear();
+    }
+    return tags;
+}
+
+std::vector<std::uint64_t> Fop::unacknowledged() const {
+    std::vector<std::uint64_t> tags;
+    tags.reserve(outstanding_.size());
+    for (const Item& item : outstanding_)
+        tags.push_back(item.tag);
+    return tags;
+}
+
 std::vector<Fop::Report> Fop::take_reports() { return std::exchange(reports_, {}); }
 
 } // namespace aeolis::commands

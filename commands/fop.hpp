@@ -75,6 +75,11 @@ class Fop {
     /// Unlocks the receiver and tells it the next sequence; what waits is sent once it has said so.
     void restart();
 
+    /// Takes out what waits and was never radiated; the tags, in the order in which it would have gone.
+    std::vector<std::uint64_t> take_back();
+    /// Tags of what was radiated and is not acknowledged, in that order.
+    std::vector<std::uint64_t> unacknowledged() const;
+
     /// What became known since the last call, in order.
     std::vector<Report> take_reports();
 

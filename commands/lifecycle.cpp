@@ -103,9 +103,20 @@ void CommandLifecycle::await_release(std::string evidence, Ert at, std::vector<S
     set(Stage::released, Status::pending, std::move(evidence), at, out);
 }
 
+void CommandLifecycle::taken_back(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    AEOLIS_CHECK(status(Stage::released) == Status::ok && !radiated_.has_value());
+    status_[index_of(Stage::released)] = Status::pending;
+    out.push_back({Stage::released, Status::pending, std::move(evidence), at});
+}
+
 void CommandLifecycle::radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out) {
     AEOLIS_CHECK(radiated_.has_value());
     radiated_ = at;
+    out.push_back({Stage::radiated, Status::ok, std::move(evidence), at});
+}
+
+void CommandLifecycle::not_radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out) {
+    AEOLIS_CHECK(radiated_.has_value());
     out.push_back({Stage::radiated, Status::ok, std::move(evidence), at});
 }
 

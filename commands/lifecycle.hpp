@@ -47,7 +47,8 @@ struct Answer {
 ///          an answer, and says so.
 ///          Silence until the window (of the dictionary, from radiation) plus light time both ways is `unknown`, with
 ///          words: the answer may be lost, or come later with the recording; it then still counts. A refusal, or a
-///          read-back that differs, is `failed`. Ok never changes again; failed only when a later read-back is equal.
+///          read-back that differs, is `failed`. Ok never changes again, but for `released` of what is taken back before it was
+///          radiated; failed only when a later read-back is equal.
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:
@@ -62,8 +63,12 @@ class CommandLifecycle {
     void approved(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// It may be sent, and waits on the ground.
     void await_release(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// The uplink has given it back before it was radiated: it waits on the ground again, and `released` with it.
+    void taken_back(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Its frame went out once more: the windows begin anew.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// Its frame would have to go out once more, and must not.
+    void not_radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// The vehicle's receiver of frames reports that it took the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// No report will tell: the vehicle may have taken it or not.

@@ -37,4 +37,16 @@ void apply_offsets(dictionary::Dictionary& dictionary, std::string_view command,
     }
 }
 
+std::vector<std::size_t> moved_timepoints(const dictionary::Dictionary& dictionary, std::string_view command,
+                                          std::span<const NamedValue> arguments) {
+    std::vector<std::size_t> moved;
+    const double timepoint = command == timepoint_offset ? argument_of(arguments, "timepoint") : -1.0;
+    const double anchor = command == anchor_offset ? argument_of(arguments, "anchor") : -1.0;
+    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
+        const auto& hangs_on = dictionary.timeline[i].anchor;
+        if (timepoint == static_cast<double>(i) || (hangs_on && anchor == static_cast<double>(hangs_on->value))) moved.push_back(i);
+    }
+    return moved;
+}
+
 } // namespace aeolis::commands

@@ -30,8 +30,20 @@ constexpr std::size_t remembered_ticks = 256; // 4 s: an event report is recorde
 constexpr double symbol_s = 10.0;
 constexpr double uplink_burst_octets = 32.0; // ours: mean length of a burst of errors
 
+constexpr const char* station_out_reason = "station out";
+
 std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
+}
+
+/// What ground has of a symbol of which nothing reached it.
+ReceivedTone erased(const ReceivedTone& tone) {
+    ReceivedTone nothing;
+    nothing.start = tone.start;
+    nothing.end = tone.end;
+    nothing.sent = tone.sent;
+    nothing.sent_at = tone.sent_at;
+    return nothing;
 }
 
 } // namespace
@@ -103,6 +115,7 @@ struct Landing::State {
     LinkTeller uhf_told{.link = simulation::uhf_live_link}, x_band_told{.link = simulation::x_band_link}, relay_told{.link = simulation::relay_link};
     std::vector<StoredLinks> stored_told; ///< one a pass
     InFlight<ReceivedOctets> octets;
+    std::vector<LinkState> at_station; ///< how each link was last when that reached Earth
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -167,6 +180,9 @@ struct Landing::State {
     void note_parachute();
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
+    bool station_out() const;
+    /// What ground sees of links while the station, or the line from it, fails, and after that.
+    void tell_station(bool out, std::int64_t now_us);
     bool tones_from_samples() const { return scenario.radio.tones_from_samples.value_or(false); }
     bool relaying() const;
     bool passes_over() const;
@@ -327,6 +343,29 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
     tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
 }
 
+bool Landing::State::station_out() const {
+    const double before_entry_s = scenario.entry_sclk - sclk();
+    return std::ranges::any_of(scenario.station_outages, [&](const StationOutage& outage) {
+        return before_entry_s <= outage.begin_before_entry_s && before_entry_s > outage.begin_before_entry_s - outage.duration_s;
+    });
+}
+
+void Landing::State::tell_station(bool out, std::int64_t now_us) {
+    const bool begins = out && !report.station_out, ends = !out && report.station_out;
+    report.station_out = out;
+    if (begins)
+        for (const LinkState& state : at_station)
+            if (state.up) report.links.push_back({state.link, Ert{now_us}, false, station_out_reason});
+    links.arrive(now_us, [&](std::int64_t, LinkState&& state) {
+        const auto known = std::ranges::find(at_station, state.link, &LinkState::link);
+        (known != at_station.end() ? *known : at_station.emplace_back(state)) = state;
+        if (!out && !ends) report.links.push_back(std::move(state));
+    });
+    if (ends)
+        for (const LinkState& state : at_station)
+            report.links.push_back({state.link, Ert{now_us}, state.up, state.reason});
+}
+
 bool Landing::State::relaying() const {
     return world.outcome() == Outcome::touchdown;
 }
@@ -430,11 +469,17 @@ const CycleReport& Landing::step() {
     s.relay_recording(cycle_start_us);
 
     const std::int64_t now_us = s.now_us();
-    s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) { s.report.octets.push_back(std::move(o)); });
+    const bool out = s.station_out();
+    s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) {
+        if (!out) s.report.octets.push_back(std::move(o));
+    });
     auto& tones = s.tones_from_samples() ? s.report.symbols : s.report.tones;
-    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { tones.push_back(t); });
-    s.fields.arrive(now_us, [&](std::int64_t, const XBandField& f) { s.report.x_band.push_back(f); });
-    s.links.arrive(now_us, [&](std::int64_t, LinkState&& l) { s.report.links.push_back(std::move(l)); });
+    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { tones.push_back(out && !s.tones_from_samples() ? erased(t) : t); });
+    s.fields.arrive(now_us, [&](std::int64_t, XBandField f) {
+        f.up = f.up && !out;
+        s.report.x_band.push_back(f);
+    });
+    s.tell_station(out, now_us);
     return s.report;
 }
 
@@ -456,6 +501,23 @@ void Landing::uplink(std::span<const std::uint8_t> octets) {
 void Landing::forward(std::span<const std::uint8_t> pltu) {
     State& s = *state_;
     s.forwards.send(s.now_us() + s.light_time_us, {pltu.begin(), pltu.end()});
+}
+
+void Landing::inject(Fault fault) {
+    State& s = *state_;
+    const double before_entry_s = s.scenario.entry_sclk - s.world.sclk();
+    if (std::holds_alternative<ComputerReset>(fault)) {
+        s.scenario.computer_resets.push_back({before_entry_s});
+    } else if (auto* const device = std::get_if<DeviceFault>(&fault)) {
+        device->begin_before_entry_s = before_entry_s;
+        s.world.inject(*device);
+    } else if (auto* const system = std::get_if<SystemFault>(&fault)) {
+        system->begin_before_entry_s = before_entry_s;
+        s.world.inject(*system);
+    } else {
+        // By Earth's clock, which goes on where the computer is off.
+        s.scenario.station_outages.push_back({s.scenario.entry_sclk - s.sclk(), std::get<StationOutage>(fault).duration_s});
+    }
 }
 
 void Landing::run_prime_by(std::shared_ptr<flight::CycleRunner> runner) {

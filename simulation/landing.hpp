@@ -84,6 +84,7 @@ struct LinkState {
     Ert ert;
     bool up = false;
     std::string reason; ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
+    bool lost = false;  ///< down, and ground knows no reason, or one on the ground: it should be there. Ground's word, never told here
 };
 
 /// A moment of the truth, named as in the design's table.
@@ -140,6 +141,7 @@ struct CycleReport {
     std::vector<XBandField> x_band;    ///< when tones come from samples: what then arrives instead of `tones`
     std::vector<ReceivedTone> symbols; ///< and the symbols that were sent in it, undecided: for the score only
     std::vector<LinkState> links;
+    bool station_out = false; ///< nothing of what reaches Earth in it reaches ground, and ground knows why
     std::vector<TruthEvent> events;
 };
 
@@ -194,6 +196,9 @@ class Landing {
 
     /// A PLTU for the rover leaves the station now; the next orbiter in view when it is there hands it down.
     void forward(std::span<const std::uint8_t> pltu);
+
+    /// It begins with the next cycle, whatever it says itself.
+    void inject(Fault fault);
 
     /// The prime computer's modules are run by a venue's executive from here on.
     void run_prime_by(std::shared_ptr<flight::CycleRunner> runner);

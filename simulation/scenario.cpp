@@ -114,6 +114,28 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
     };
 }
 
+void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
+    const auto at_most = [&](std::size_t most, const std::string& list, std::size_t rows) {
+        if (rows > most) found.push_back(list + ": has " + std::to_string(rows) + " rows, more than the " + std::to_string(most) + " that are taken");
+    };
+    at_most(scenario_passes_max, "radio.relay_passes", s.radio.relay_passes.size());
+    at_most(scenario_passes_max, "radio.tracking_passes", s.radio.tracking_passes.size());
+    at_most(scenario_rows_max, "radio.tone_outages", s.radio.tone_outages.size());
+    at_most(scenario_rows_max, "radio.delivery_restarts_after_touchdown_s", s.radio.delivery_restarts_after_touchdown_s.size());
+    at_most(scenario_rows_max, "density_scale", s.density_scale.size());
+    at_most(scenario_rows_max, "commands", s.commands.size());
+    at_most(scenario_rows_max, "second_person", s.second_person.size());
+    at_most(scenario_rows_max, "system_faults", s.system_faults.size());
+    at_most(scenario_rows_max, "device_faults", s.device_faults.size());
+    at_most(scenario_rows_max, "computer_resets", s.computer_resets.size());
+    at_most(scenario_rows_max, "station_outages", s.station_outages.size());
+    if (!found.empty()) return;
+    for (std::size_t i = 0; i < s.radio.relay_passes.size(); ++i)
+        at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates", s.radio.relay_passes[i].rates.size());
+    for (std::size_t i = 0; i < s.commands.size(); ++i)
+        at_most(scenario_rows_max, "commands[" + std::to_string(i) + "].arguments", s.commands[i].arguments.size());
+}
+
 void check_masses(const Masses& masses, std::vector<std::string>& found) {
     if (masses.powered_descent_kg <= masses.propellant_kg + masses.rover_kg)
         found.push_back("masses.powered_descent_kg: " + number(masses.powered_descent_kg) +
@@ -252,10 +274,12 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
     }
 }
 
-void check_system_faults(const Scenario& scenario, std::vector<std::string>& found) {
-    for (std::size_t i = 0; i < scenario.system_faults.size(); ++i) {
-        const SystemFault& fault = scenario.system_faults[i];
-        const std::string name = "system_faults[" + std::to_string(i) + "]";
+/// Of SystemFault or StationOutage.
+template <typename Row>
+void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const std::string& field, std::vector<std::string>& found) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Row& fault = rows[i];
+        const std::string name = field + "[" + std::to_string(i) + "]";
         if (!(fault.begin_before_entry_s <= scenario.start_before_entry_s &&
               fault.begin_before_entry_s >= -scenario.timeout_after_entry_s))
             found.push_back(name + ".begin_before_entry_s: " + number(fault.begin_before_entry_s) +
@@ -329,6 +353,8 @@ void check_target_range(const Scenario& s, std::vector<std::string>& found) {
 
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
+    check_list_sizes(scenario, found);
+    if (!found.empty()) return found; // not a line for each row of a list that is too long
     // Not within, rather than outside: a value that is no number is neither.
     for (const Bounded& field : bounded_fields(scenario))
         if (!(field.value >= field.least && field.value <= field.most))
@@ -352,7 +378,8 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     check_density_scale(scenario.density_scale, found);
     check_dispersion_moment(scenario, found);
     check_commands(scenario, found);
-    check_system_faults(scenario, found);
+    check_spells(scenario, scenario.system_faults, "system_faults", found);
+    check_spells(scenario, scenario.station_outages, "station_outages", found);
     check_device_faults(scenario, found);
     check_computer_resets(scenario, found);
     check_test_venue(scenario, found);

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 // All that makes one landing what it is. Filled by the server from a text file, checked there with `validate`.
@@ -195,6 +196,15 @@ struct ComputerReset {
     double before_entry_s = 0.0; ///< a multiple of 1/64 s; negative after entry
 };
 
+/// What reaches Earth meanwhile is lost to ground: its station, or the line from there. Commands still leave.
+struct StationOutage {
+    double begin_before_entry_s = 0.0; ///< by Earth's clock: before the instant of entry, not before that is seen
+    double duration_s = 0.0;
+};
+
+/// What an instructor may break while a landing flies.
+using Fault = std::variant<SystemFault, DeviceFault, ComputerReset, StationOutage>;
+
 /// What of the flight software flies, and what is simulated beside it; the software is the same in each. R36
 enum class TestVenue : std::uint8_t {
     flight_software, ///< all of it
@@ -238,8 +248,14 @@ struct Scenario {
     std::vector<SystemFault> system_faults;
     std::vector<DeviceFault> device_faults;
     std::vector<ComputerReset> computer_resets;
+    std::vector<StationOutage> station_outages;
     double bus_message_error_fraction = 1.0e-4; ///< of the messages on the buses, each time they are sent. Ours
 };
+
+/// How many rows a list of a scenario may have. Ours: more than a landing needs, and so few that looking at all of them in every cycle costs
+/// nothing beside the flight, wherever the scenario comes from.
+inline constexpr std::size_t scenario_passes_max = 128; ///< of orbiters, of stations: five a day over all the time in which one may lie
+inline constexpr std::size_t scenario_rows_max = 256;   ///< of each other list
 
 /// Whether the dispersions are drawn later than at the start: all cases then have the flight up to there in common.
 bool disperses_later(const Scenario& scenario);

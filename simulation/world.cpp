@@ -400,6 +400,14 @@ bool World::receive(std::span<const std::uint8_t> cltu) {
     return state_->received.try_push_back(packet);
 }
 
+void World::inject(const DeviceFault& fault) {
+    state_->buses.inject(fault, state_->sclk());
+}
+
+void World::inject(const SystemFault& fault) {
+    state_->scenario.system_faults.push_back(fault);
+}
+
 void World::set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets) {
     state_->nvm_used_octets = used_octets;
     state_->nvm_capacity_octets = capacity_octets;

@@ -59,6 +59,9 @@ class World {
 
     /// An uplinked unit (CLTU) reaches the receiver with the next tick; false when it is too long for one.
     bool receive(std::span<const std::uint8_t> cltu);
+    /// Something breaks, when it says.
+    void inject(const DeviceFault& fault);
+    void inject(const SystemFault& fault);
     /// The vehicle's recorder tells the computer how full it is.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 

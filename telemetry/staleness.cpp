@@ -58,6 +58,12 @@ void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert 
     out.push_back({expected.packet, false, seconds_between(*expected.last, now), 0.0, reason});
 }
 
+std::string StalenessMonitor::lost_for() const {
+    if (best_ != LinkIs::lost) return {};
+    const auto lost = std::ranges::find_if(links_, [](const auto& each) { return each.second.is == LinkIs::lost; });
+    return "the link is lost: " + lost->second.reason;
+}
+
 void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessChange>& out) {
     const auto found = std::ranges::find(expected_, packet, &Expected::packet);
     if (found == expected_.end()) return;
@@ -66,13 +72,17 @@ void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessC
     found->last = found->since = ert;
 }
 
-void StalenessMonitor::link(std::string_view name, bool up, std::string_view reason, Ert ert, std::vector<StalenessChange>& out) {
+void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view reason, Ert ert, std::vector<StalenessChange>& out) {
     if (!brings_packets(name)) return;
-    links_.insert_or_assign(std::string(name), up);
-    const bool any = std::ranges::any_of(links_, [](const auto& each) { return each.second; });
-    if (any == std::exchange(any_link_, any)) return;
+    links_.insert_or_assign(std::string(name), Link{is, std::string(reason)});
+    LinkIs best = LinkIs::down;
+    for (const auto& each : links_)
+        best = std::max(best, each.second.is);
+    const LinkIs before = std::exchange(best_, best);
+    if (best == before) return;
+    if (before == LinkIs::up && best == LinkIs::lost) return; // its absence goes on to count from when it was last heard
     for (Expected& expected : expected_) {
-        if (!any) clear(expected, "the link is down: " + std::string(reason), ert, out);
+        if (best == LinkIs::down) clear(expected, "the link is down: " + std::string(reason), ert, out);
         expected.since = ert;
     }
 }
@@ -90,13 +100,13 @@ void StalenessMonitor::phase(std::string_view label, Ert ert, std::vector<Stalen
 }
 
 void StalenessMonitor::pass(Ert now, std::vector<StalenessChange>& out) {
-    if (!any_link_) return;
+    if (best_ == LinkIs::down) return;
     for (Expected& expected : expected_) {
         const double interval = interval_s(expected);
         if (expected.stale || !expected.last || interval == 0.0) continue;
         if (seconds_between(expected.since, now) <= std::max(expected.intervals * interval, stale_least_s)) continue;
         expected.stale = true;
-        out.push_back({expected.packet, true, seconds_between(*expected.last, now), interval, {}});
+        out.push_back({expected.packet, true, seconds_between(*expected.last, now), interval, lost_for()});
     }
 }
 

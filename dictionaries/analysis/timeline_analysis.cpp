@@ -33,6 +33,10 @@ BoundProof prove(TimelineNetwork& network, const Moment& from, const Moment& to,
     return result;
 }
 
+TimelineNetwork network_of(const Dictionary& dictionary, TimelineAnalysis& analysis, const std::function<bool()>& stop) {
+    return {dictionary, [&analysis, &stop] { return analysis.stopped = analysis.stopped || (stop && stop()); }};
+}
+
 } // namespace
 
 bool TimelineAnalysis::all_proven() const {
@@ -54,9 +58,9 @@ std::string moment_text(const Dictionary& dictionary, const Moment& moment) {
     return {};
 }
 
-TimelineAnalysis analyse_timeline(const Dictionary& dictionary) {
+TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop) {
     TimelineAnalysis analysis;
-    TimelineNetwork network{dictionary};
+    auto network = network_of(dictionary, analysis, stop);
     analysis.contradiction = network.contradiction();
     if (!analysis.contradiction.empty()) return analysis;
     const Moment last{Kind::fired, static_cast<std::uint16_t>(dictionary.timeline.size() - 1)};
@@ -79,7 +83,13 @@ TimelineAnalysis analyse_timeline(const Dictionary& dictionary) {
         if (row.minimum_s) prove_row(i, true);
         if (row.maximum_s) prove_row(i, false);
     }
+    return analysis;
+}
 
+TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop) {
+    auto analysis = analyse_bounds(dictionary, stop);
+    if (!analysis.contradiction.empty() || !analysis.admits_schedule) return analysis;
+    auto network = network_of(dictionary, analysis, stop);
     for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
         const TimelineRow& row = dictionary.timeline[i];
         if (!row.anchor || !row.desired_offset_s) continue;

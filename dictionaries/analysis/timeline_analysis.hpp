@@ -2,6 +2,7 @@
 
 #include "dictionaries/dictionary.hpp"
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,7 @@ struct DueMargin {
 struct TimelineAnalysis {
     /// Not empty: the timeline and the given rows admit no schedule, by this ring; then nothing else is there.
     std::vector<ChainStep> contradiction;
+    bool stopped = false; ///< it was asked to end before it was done: what is there is not all
     /// Without a ring of its own: no schedule has a cause for every firing.
     bool admits_schedule = true;
     std::vector<BoundProof> bounds;
@@ -74,7 +76,10 @@ struct TimelineAnalysis {
     bool all_proven() const;
 };
 
-TimelineAnalysis analyse_timeline(const Dictionary& dictionary);
+/// `stop` is asked at each step of the search, some thousand times a second; null: the analysis goes on to its end.
+TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::function<bool()>& stop = {});
+/// The same without the margins, which decide nothing.
+TimelineAnalysis analyse_bounds(const Dictionary& dictionary, const std::function<bool()>& stop = {});
 
 /// As in constraints.csv: "do_edl", "parachute:anchor", "radar_power:fired".
 std::string moment_text(const Dictionary& dictionary, const Moment& moment);

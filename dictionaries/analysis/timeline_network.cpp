@@ -22,8 +22,8 @@ Moment at(Kind kind, std::size_t index = 0) {
 
 } // namespace
 
-TimelineNetwork::TimelineNetwork(const Dictionary& dictionary)
-    : dictionary_(dictionary), network_(1 + dictionary.anchors.size() + 2 * dictionary.timeline.size()),
+TimelineNetwork::TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop)
+    : dictionary_(dictionary), stop_(std::move(stop)), network_(1 + dictionary.anchors.size() + 2 * dictionary.timeline.size()),
       causes_(dictionary.timeline.size()) {
     add_anchors();
     for (std::size_t i = 0; i < dictionary.timeline.size(); ++i)
@@ -163,7 +163,7 @@ void TimelineNetwork::search(Query& query) {
     Worst& worst = query.worst;
     if (least && worst.found && least->ticks >= worst.ticks) return;
     const std::int64_t aim = least ? least->ticks : -horizon_ticks_ - std::abs(query.enough_ticks);
-    if (++query.nodes > search_nodes_max) {
+    if (stop_() || ++query.nodes > search_nodes_max) {
         const bool is_first = !worst.exhausted;
         worst.exhausted = true;
         if (!least)

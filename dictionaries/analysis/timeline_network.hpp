@@ -4,6 +4,7 @@
 #include "dictionaries/analysis/timeline_analysis.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,7 +17,8 @@ class TimelineNetwork {
   public:
     using MaybeTicks = std::optional<std::int64_t>;
 
-    explicit TimelineNetwork(const Dictionary& dictionary);
+    /// The search is cut short where it is asked to `stop`.
+    TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop);
 
     /// Why nothing satisfies the constraints; empty: something does, though perhaps not as soon as it could.
     std::vector<ChainStep> contradiction() const;
@@ -57,6 +59,7 @@ class TimelineNetwork {
     std::vector<ChainStep> steps(const std::vector<EdgeIndex>& edges) const;
 
     const Dictionary& dictionary_;
+    std::function<bool()> stop_;
     DifferenceNetwork network_;
     std::int64_t horizon_ticks_ = 0;                              ///< no bounded difference is less than its negative
     std::vector<std::pair<ChainStep::Reason, unsigned>> reasons_; ///< of the edges, by index

@@ -1,6 +1,7 @@
 #include "server/access/access.hpp"
 
 #include "server/access/account_file.hpp"
+#include "server/access/network.hpp"
 #include "server/access/secrets.hpp"
 
 #include <algorithm>
@@ -17,15 +18,15 @@ std::string iso_text(Access::Clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
 }
 
-/// The value of our cookie in a Cookie field; empty: it is not there.
-std::string cookie_value(std::string_view field) {
+/// The value of the cookie `name` in a Cookie field; empty: it is not there.
+std::string cookie_value(std::string_view field, std::string_view name) {
     while (!field.empty()) {
         const auto end = field.find(';');
         auto pair = field.substr(0, end);
         field = end == std::string_view::npos ? std::string_view{} : field.substr(end + 1);
         while (pair.starts_with(' ')) pair.remove_prefix(1);
         const auto equals = pair.find('=');
-        if (equals != std::string_view::npos && pair.substr(0, equals) == session_cookie) return std::string{pair.substr(equals + 1)};
+        if (equals != std::string_view::npos && pair.substr(0, equals) == name) return std::string{pair.substr(equals + 1)};
     }
     return {};
 }
@@ -45,6 +46,7 @@ v1::Token token_of(const v1::AccessToken& token) {
     shown.set_role(token.role());
     shown.set_created(token.created());
     shown.set_expires(token.expires());
+    *shown.mutable_commands() = token.commands();
     return shown;
 }
 
@@ -126,6 +128,8 @@ Operator Access::identify(const Credentials& credentials) {
     if (!accounts()) {
         nobody.accounts = false;
         nobody.role = Role::director;
+        const auto browser = cookie_value(credentials.cookie, browser_cookie);
+        nobody.browser = browser.empty() ? std::string{no_browser} : secret_hash(browser);
         return nobody;
     }
     const auto now = settings_.now();
@@ -139,9 +143,10 @@ Operator Access::identify(const Credentials& credentials) {
         nobody.user = "token " + token->name();
         nobody.role = role_of(token->role());
         nobody.expires = token->expires();
+        nobody.commands.assign(token->commands().begin(), token->commands().end());
         return nobody;
     }
-    const auto secret = cookie_value(credentials.cookie);
+    const auto secret = cookie_value(credentials.cookie, session_cookie);
     if (secret.empty()) return nobody;
     const auto session = sessions_.find(secret_hash(secret));
     if (session == sessions_.end()) return nobody;
@@ -178,7 +183,8 @@ void Access::count_failure(const std::string& key, unsigned allowed) {
     failures.locked_until = now + std::min<std::chrono::seconds>(first_lock_out * (1U << doublings), longest_lock_out);
 }
 
-Result<std::string> Access::check_log_in(const std::string& user, const std::string& password, const std::string& from) {
+Result<std::string> Access::check_log_in(const std::string& user, const std::string& password, const std::string& address) {
+    const std::string from = network_of(address);
     std::string hash;
     {
         const std::scoped_lock lock{mutex_};
@@ -269,7 +275,11 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
     if (!own && !may(who, Right::administer)) return Error{fmt::format("only an administrator changes user '{}'", user)};
     if (own && !change.role().empty()) return Error{"role: nobody changes their own; another administrator does"};
     if (!change.role().empty() && !role_of(change.role())) return no_role(change.role());
-    if (change.role().empty() && change.password().empty()) return Error{"the change says nothing: role or password is wanted"};
+    const bool other_commands = change.all_commands() || !change.commands().empty();
+    if (own && other_commands) return Error{"commands: nobody changes their own; another administrator does"};
+    if (change.all_commands() && !change.commands().empty()) return Error{"commands and all_commands: one of them, not both"};
+    if (change.role().empty() && change.password().empty() && !other_commands)
+        return Error{"the change says nothing: role, password, commands or all_commands is wanted"};
     std::string hash, hash_before;
     if (!change.password().empty()) {
         if (auto good = check_password(change.password()); !good) return good.error();
@@ -287,6 +297,7 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
         if (account == nullptr) return no_user(user);
         if (!hash_before.empty() && account->password_hash() != hash_before) return Error{"current_password: it was changed meanwhile"};
         if (!change.role().empty()) account->set_role(change.role());
+        if (other_commands) *account->mutable_commands() = change.commands();
         if (!hash.empty()) {
             account->set_password_hash(hash);
             account->set_choose_password(!own);
@@ -335,6 +346,7 @@ Result<v1::Token> Access::add_token(const v1::NewToken& asked) {
     token.set_role(asked.role());
     token.set_secret_hash(secret_hash(secret));
     token.set_created(iso_text(now));
+    *token.mutable_commands() = asked.commands();
     if (asked.days() > 0) token.set_expires(iso_text(now + std::chrono::hours{24} * asked.days()));
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
         if (std::ranges::find(file.tokens(), asked.name(), &v1::AccessToken::name) != file.tokens().end())

@@ -24,7 +24,7 @@ struct Credentials {
 /// In       credentials, log-ins, changes by an administrator; the file again when another program changed it
 /// Out      identities
 /// Threads  any. What takes a password is slow by intention (argon2id): not on the network thread
-/// Memory   sessions_max sessions, failures_max addresses that guessed; sessions end with the process
+/// Memory   sessions_max sessions, failures_max networks that guessed; sessions end with the process
 class Access {
   public:
     using Clock = std::chrono::system_clock;
@@ -33,7 +33,7 @@ class Access {
     static constexpr std::size_t sessions_of_user_max = 16;  ///< ours: the oldest of that user ends
     static constexpr const char* wrong_log_in = "user or password is wrong";
     static constexpr std::size_t failures_max = 4'096;       ///< ours: the oldest is forgotten
-    static constexpr unsigned tries_of_user = 5;             ///< ours: then this user waits, from this address
+    static constexpr unsigned tries_of_user = 5;             ///< ours: then this user waits, from this address; of version 6, from its /64
     static constexpr unsigned tries_of_address = 20;         ///< ours: then this address waits, whatever the user
     static constexpr std::chrono::seconds first_lock_out{30}; ///< ours: doubled by each further failure
     static constexpr std::chrono::seconds longest_lock_out{900};
@@ -90,7 +90,7 @@ class Access {
     Operator operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const;
     /// Without it: takes the mutex, and compares while it is free.
     /// @return the hash that it matched
-    Result<std::string> check_log_in(const std::string& user, const std::string& password, const std::string& from);
+    Result<std::string> check_log_in(const std::string& user, const std::string& password, const std::string& address);
 
     Settings settings_;
     std::string first_password_;
@@ -99,10 +99,10 @@ class Access {
     v1::AccountFile file_;
     std::filesystem::file_time_type file_time_;
     std::map<std::string, LiveSession> sessions_; ///< by the hash of their secret
-    std::map<std::string, Failures> failures_;    ///< by address, and by address and user
+    std::map<std::string, Failures> failures_;    ///< by network_of() the address, and by that and user
 };
 
-/// The cookie's name.
-inline constexpr std::string_view session_cookie = "aeolis_session";
+/// The cookies' names: of a log-in; and, without accounts, of a browser, by which a second person is told from the first.
+inline constexpr std::string_view session_cookie = "aeolis_session", browser_cookie = "aeolis_browser";
 
 } // namespace aeolis::server

@@ -31,6 +31,9 @@ bool may(Role role, Right right);
 /// The least that has it; none: nobody needs a role for it.
 std::optional<Role> least_role(Right right);
 
+/// Stands for all programs that bring no browser's secret: of them nobody can say whether they are one person's.
+inline constexpr std::string_view no_browser = "none";
+
 /// Who asks.
 struct Operator {
     std::string user;                  ///< empty: nobody, or a server without accounts; "token NAME" of a program
@@ -41,6 +44,7 @@ struct Operator {
     std::string session;               ///< hash of the session's secret; empty: a token, or none
     std::string expires;               ///< ISO 8601; empty: never
     bool accounts = true;              ///< false: the server has none
+    std::string browser;               ///< without accounts: hash of the browser's secret, or no_browser; with them empty
 };
 bool may(const Operator& who, Right right);
 

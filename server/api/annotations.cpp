@@ -2,6 +2,7 @@
 
 #include "server/rehearsal/wall_clock.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -21,10 +22,14 @@ Result<void> check_author(const std::string& by) {
 
 } // namespace
 
+Result<void> check_note(const std::string& text, const std::string& by) {
+    if (auto author = check_author(by); !author) return author;
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) return Error{"text: the note is empty"};
+    return check_text("text", text, note_octets_max);
+}
+
 Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::string& by, Ert now) {
-    if (auto author = check_author(by); !author) return author.error();
-    if (request.text().find_first_not_of(" \t\r\n") == std::string::npos) return Error{"text: the note is empty"};
-    if (auto text = check_text("text", request.text(), note_octets_max); !text) return text.error();
+    if (auto checked = check_note(request.text(), by); !checked) return checked.error();
     archive::NoteRecord note;
     if (request.has_sclk()) {
         if (!std::isfinite(request.sclk())) return Error{"sclk: not a number of seconds"};
@@ -38,7 +43,7 @@ Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::s
 }
 
 Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& request, const dictionary::Dictionary& dictionary,
-                                                   const std::string& by, Ert now) {
+                                                   std::span<const std::string> links, const std::string& by, Ert now) {
     if (auto author = check_author(by); !author) return author.error();
     if (auto text = check_text("note", request.note(), note_octets_max); !text) return text.error();
     archive::AlarmActionRecord record;
@@ -46,8 +51,10 @@ Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& reque
         record.alarm = channel->name;
     else if (const auto* packet = dictionary.packet(request.channel()))
         record.alarm = packet->name;
+    else if (std::ranges::find(links, request.channel()) != links.end())
+        record.alarm = request.channel();
     else
-        return Error{fmt::format("channel: there is no channel or packet '{}'", request.channel())};
+        return Error{fmt::format("channel: there is no channel, packet or link '{}'", request.channel())};
     const auto act = telemetry::alarm_act(request.action());
     if (!act) return Error{fmt::format("action: '{}' is none of acknowledge, shelve, unshelve, reset", request.action())};
     if (*act == telemetry::AlarmAct::shelve) {

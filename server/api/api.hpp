@@ -11,11 +11,13 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 #include "server/scenario/scenario_library.hpp"
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 
 namespace aeolis::server {
 
@@ -55,41 +57,53 @@ class Api {
     /// None: it will be given later. `respond` is called on whatever thread has the answer.
     using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
+    enum class Query { none, own }; ///< behind '?': nothing; or what its answer reads
+    enum class Noted { all, refusals }; ///< refusals: the rest its answer notes, a dry run is no action
     struct Route {
         std::string_view method; ///< GET answers HEAD, too
         std::string_view path;   ///< "{…}" takes one part
         Right right;
         void (Api::*answer)(const Asked&);
-        std::string_view audit;     ///< the action's word; empty: it changes nothing, or its answer writes it
-        bool only_refusals = false; ///< the rest its answer notes: a dry run is no action
-        bool parameters = false;    ///< behind '?': its answer reads them; else there are none
+        Query query = Query::none;
+        std::string_view audit{}; ///< the action's word; empty: it changes nothing, or its answer writes it
+        Noted noted = Noted::all;
     };
     static std::span<const Route> routes();
 
   private:
     void run_question(const Asked& asked);
-    void export_samples(const Asked& asked); // sample_export.cpp
     void list_runs(const Asked& asked);
     void list_scenarios(const Asked& asked);
     void dictionary(const Asked& asked);
     void openapi(const Asked& asked);
     void stream(const Asked& asked);
     void health(const Asked& asked);
+    // sample_export.cpp
+    void export_samples(const Asked& asked);
+    // metrics.cpp
     void metrics(const Asked& asked);
+    // rehearsal_routes.cpp
     void list_rehearsals(const Asked& asked);
     void current_rehearsal(const Asked& asked);
     void start_rehearsal(const Asked& asked);
     void control_rehearsal(const Asked& asked);
+    // command_routes.cpp
     void post_command(const Asked& asked);
     void post_sequence(const Asked& asked);
+    // annotation_routes.cpp
     void post_alarm(const Asked& asked);
     void post_note(const Asked& asked);
+    using Annotated = std::variant<archive::Annotation, HttpResponse>; ///< the latter says why not
+    using Annotating = std::function<Annotated(archive::Reader&, archive::RunId, Ert now)>;
+    void annotate(const Asked& asked, Annotating annotating);
     // campaign_routes.cpp
     void list_campaigns(const Asked& asked);
     void start_campaign(const Asked& asked);
     void campaign_report(const Asked& asked);
     void campaign_touchdowns(const Asked& asked);
     void cancel_campaign(const Asked& asked);
+    using CampaignQuestion = std::function<HttpResponse(const std::filesystem::path& file, const std::function<bool()>& stop)>;
+    void ask_campaign(const Asked& asked, CampaignQuestion question);
     // access_routes.cpp
     void session(const Asked& asked);
     void log_in(const Asked& asked);
@@ -106,10 +120,12 @@ class Api {
     void answer(const Route& route, Asked asked);
     /// Answers, and notes what became of it.
     Respond noted(const Asked& asked, std::string_view action);
+    /// `latest` is the run that goes on, or went on last, in this server; else the newest of the archive: for every route the same.
+    void name_latest(Asked& asked) const;
     void note(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);
     /// Answered on a query thread; 503 when too much waits.
-    void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer);
-    void ask(const Asked& asked, QueryText query, RunQuestion question);
+    void aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer, Haste haste = Haste::in_turn);
+    void ask(const Asked& asked, QueryText query, RunQuestion question, Haste haste = Haste::in_turn);
     /// The time on Earth in a run that goes on; none in others.
     std::function<std::optional<Ert>(archive::RunId)> clock() const;
     v1::RunState current_run() const; ///< with what only the stream knows; run 0: none since the server started
@@ -119,15 +135,29 @@ class Api {
 };
 
 HttpResponse error_response(unsigned status, const std::string& error);
+/// `status`, unless the fault is ours: then 500.
+HttpResponse error_response(unsigned status, const Error& error);
 HttpResponse json_response(const google::protobuf::Message& message, unsigned status = 200);
+
+/// To a question that was asked too long, with what to ask `instead`.
+HttpResponse stopped_response(std::string_view instead);
+/// Of a path's {run}; none: it is no number.
+std::optional<archive::RunId> run_id(std::string_view text);
 
 /// Why this one may not; empty: nothing is against it.
 HttpResponse refusal_of(const Operator& who, Right right);
-/// Whether they may send this command, by its significance and their own list.
-Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const v1::CommandRequest& request);
+/// Whether they may send this command, by its significance and their own list; of one that waits in the run of `desk`: whether they may
+/// do something about it, which needs the right to send it.
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk, const v1::CommandRequest& request);
+
+/// Writes into the request what only the server knows of who asks.
+void name_asker(const Operator& who, v1::CommandRequest& request);
 
 /// Whether the operator may start this: of an inline scenario each command of its script must be one that they may send.
 Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start);
+
+/// With accounts nobody writes in another's name.
+void sign(const Operator& who, v1::RehearsalControl& control);
 
 /// An entry of the audit, now.
 archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome);

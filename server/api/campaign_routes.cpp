@@ -8,16 +8,22 @@
 namespace aeolis::server {
 namespace {
 
-HttpResponse no_campaign(const std::string& campaign) {
-    return error_response(404, fmt::format("campaign '{}': there is none; GET /api/v1/campaigns lists them", campaign));
-}
-
 template <typename Message>
 HttpResponse response_or_conflict(const Result<Message>& done, unsigned status = 200) {
-    return done ? json_response(*done, status) : error_response(409, done.error().message);
+    return done ? json_response(*done, status) : error_response(409, done.error().message); // a file that cannot be read, too: it is another's, or an old one
 }
 
 } // namespace
+
+void Api::ask_campaign(const Asked& asked, CampaignQuestion question) {
+    aside(asked.respond, [this, name = asked.parts[0], gone = asked.request.gone, question = std::move(question)](archive::Reader&) {
+        const auto file = parts_.campaigns.file_of(name);
+        if (!file) return error_response(404, fmt::format("campaign '{}': there is none; GET /api/v1/campaigns lists them", name));
+        const auto stop = parts_.queries.stop_of_question(gone);
+        auto response = question(*file, stop);
+        return stop() ? stopped_response("ask for fewer touchdowns by limit; aeolis campaign reads a file of any size") : response;
+    });
+}
 
 void Api::list_campaigns(const Asked& asked) {
     aside(asked.respond, [this](archive::Reader&) { return json_response(parts_.campaigns.list()); });
@@ -26,35 +32,35 @@ void Api::list_campaigns(const Asked& asked) {
 void Api::start_campaign(const Asked& asked) {
     v1::StartCampaign wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
-        return asked.respond(error_response(400, parsed.error().message));
+        return asked.respond(error_response(400, parsed.error()));
     aside(asked.respond, [this, wanted](archive::Reader&) {
         auto order = parts_.campaigns.order_of(wanted);
-        if (!order) return error_response(422, order.error().message);
+        if (!order) return error_response(422, order.error());
         return response_or_conflict(parts_.campaigns.start(std::move(*order)), 202);
     });
 }
 
 void Api::campaign_report(const Asked& asked) {
-    aside(asked.respond, [this, name = asked.parts[0]](archive::Reader&) {
-        return parts_.campaigns.has(name) ? response_or_conflict(parts_.campaigns.report(name)) : no_campaign(name);
+    ask_campaign(asked, [this](const std::filesystem::path& file, const std::function<bool()>& stop) {
+        return response_or_conflict(parts_.campaigns.report(file, stop));
     });
 }
 
 void Api::campaign_touchdowns(const Asked& asked) {
     const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
-    if (!query) return asked.respond(error_response(400, query.error().message));
+    if (!query) return asked.respond(error_response(400, query.error()));
     constexpr auto most = campaign::CampaignDesk::touchdowns_max;
     const auto after = query->count("after", UINT32_MAX), limit = query->count("limit", most);
-    if (!after) return asked.respond(error_response(400, after.error().message));
-    if (!limit) return asked.respond(error_response(400, limit.error().message));
-    aside(asked.respond, [this, name = asked.parts[0], place = after->value_or(0), limit = limit->value_or(most)](archive::Reader&) {
-        return parts_.campaigns.has(name) ? response_or_conflict(parts_.campaigns.touchdowns(name, place, limit)) : no_campaign(name);
+    if (!after) return asked.respond(error_response(400, after.error()));
+    if (!limit) return asked.respond(error_response(400, limit.error()));
+    ask_campaign(asked, [this, place = after->value_or(0), limit = limit->value_or(most)](const std::filesystem::path& file, const std::function<bool()>& stop) {
+        return response_or_conflict(parts_.campaigns.touchdowns(file, place, limit, stop));
     });
 }
 
 void Api::cancel_campaign(const Asked& asked) {
-    aside(asked.respond, [this, name = asked.parts[0]](archive::Reader&) {
-        return parts_.campaigns.has(name) ? response_or_conflict(parts_.campaigns.cancel(name)) : no_campaign(name);
+    ask_campaign(asked, [this, name = asked.parts[0]](const std::filesystem::path&, const std::function<bool()>&) {
+        return response_or_conflict(parts_.campaigns.cancel(name), 202);
     });
 }
 

@@ -128,12 +128,6 @@ v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
         added.set_meaning(tone.meaning);
         added.set_set(name_of(tone.set));
     }
-    for (std::size_t i = 0; i < dictionary.predicted_anchor_e_s.size(); ++i) {
-        if (!dictionary.predicted_anchor_e_s[i]) continue;
-        auto& added = *reply.add_predicted_anchors();
-        added.set_anchor(dictionary.anchors[i].name);
-        added.set_after_entry_s(*dictionary.predicted_anchor_e_s[i]);
-    }
     return reply;
 }
 

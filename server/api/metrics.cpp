@@ -50,6 +50,7 @@ class MetricsText {
 void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
     text.counter("archive_deliveries_total", "deliveries taken by the pipeline", pipeline.deliveries);
     text.gauge("archive_deliveries_waiting", "deliveries in the pipeline's queue", pipeline.waiting);
+    text.gauge("archive_pending_bytes", "packets and samples in memory until the disk takes them", pipeline.pending_octets);
     text.gauge("audit_waiting", "entries of the audit that are not durable yet", pipeline.audit_waiting);
     text.counter("archive_commits_published_total", "group commits published", pipeline.published_batches);
     text.counter("archive_failed_commits_total", "commits that failed and were tried again", pipeline.failed_commits);
@@ -88,6 +89,10 @@ void Api::metrics(const Asked& asked) {
     text.counter("queries_total", "questions to the archive", parts_.queries.asked());
     text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());
     const auto run = parts_.desk.current();
+    text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle", parts_.desk.commands_waiting());
+    text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided", parts_.desk.commands_put_off());
+    text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis", parts_.desk.commands_queued());
+    text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated", parts_.desk.commands_at_uplink());
     text.gauge("run", "number of the current run", run.run());
     text.gauge("run_attained_pace", "seconds of the vehicle a second", run.attained_pace());
     text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());

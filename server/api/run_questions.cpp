@@ -1,25 +1,37 @@
 #include "server/api/run_questions.hpp"
 
+#include "server/api/csv_text.hpp"
 #include "server/api/json.hpp"
+#include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
+#include "server/api/state_at.hpp"
+#include "server/archive/items.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <functional>
 
 namespace aeolis::server {
 namespace {
 
 constexpr std::uint64_t seq_max = UINT64_MAX >> 1; // SQLite's integers are signed
+constexpr double scet_text_s = 1.0e-3;             // day-of-year texts are cut to it: the tick within it is the one that was read off
 
 template <typename Message>
 HttpResponse answer(const Result<Message>& result) {
-    if (!result) return error_response(400, result.error().message);
+    if (!result) return error_response(400, result.error());
     HttpResponse response;
     response.body = to_json(*result);
     return response;
+}
+
+template <typename List>
+HttpResponse answer_rows(const QueryText& query, const Result<List>& list, const Rows& rows) {
+    return list ? list_response(query, *list, rows) : error_response(400, list.error());
 }
 
 struct Page {
@@ -50,9 +62,9 @@ HttpResponse run_itself(const Ground&, archive::Reader& reader, archive::RunId r
 std::string csv_of(const v1::ChannelSeriesList& list) {
     std::string csv = "channel,unit,sclk_s,value,source\n";
     for (const auto& series : list.channels()) {
-        const auto name = series.name().find(',') == std::string::npos ? series.name() : '"' + series.name() + '"'; // a formula may have commas
+        const auto name = csv_text(series.name()), unit = csv_text(series.unit()); // a formula may have commas
         for (int i = 0; i < series.sclk_size(); ++i)
-            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, series.unit(), series.sclk(i),
+            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, unit, series.sclk(i),
                            series.value(i), series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
     }
     return csv;
@@ -77,16 +89,26 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     if (series.channels.size() > archive::channels_max)
         return error_response(
             400, fmt::format("names: {} channels, at most {} at once", series.channels.size(), archive::channels_max));
-    const auto range = range_of(query);
-    if (!range) return error_response(400, range.error().message);
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
     series.range = *range;
     const auto points = query.count("points", archive::thinned_points_max);
-    if (!points) return error_response(400, points.error().message);
+    if (!points) return error_response(400, points.error());
     if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
     if (*points) series.points = static_cast<std::size_t>(**points);
     const auto format = query.text("format").value_or("json");
     if (format != "json" && format != "csv" && format != "protobuf")
         return error_response(400, fmt::format("format: '{}' is none of json, csv, protobuf", format));
+    if (const auto source = query.text("source")) {
+        if (*source != "realtime" && *source != "recorded")
+            return error_response(400, fmt::format("source: '{}' is neither realtime nor recorded", *source));
+        if (expression) return error_response(400, "source: of named channels only, not of an expression");
+        series.source = *source == "realtime" ? archive::Source::realtime : archive::Source::recorded;
+    }
+    const auto provenance = flag_of(query, "provenance");
+    if (!provenance) return error_response(400, provenance.error());
+    if (*provenance && (expression || format == "csv")) return error_response(400, "provenance: of named channels only, as json or protobuf");
+    series.provenance = *provenance;
     const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
     if (format == "json" || !result) return answer(result);
     if (format == "csv") return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
@@ -98,7 +120,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     archive::PacketQuery packets;
     packets.name = query.text("name");
     const auto apid = query.count("apid", 0x7FF);
-    if (!apid) return error_response(400, apid.error().message);
+    if (!apid) return error_response(400, apid.error());
     if (*apid) {
         if (packets.name) return error_response(400, "apid and name: one of them, not both");
         std::vector<std::string> names;
@@ -110,10 +132,10 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
                                                    names.size(), **apid, names.front()));
         packets.name = names.front();
     }
-    const auto range = range_of(query);
-    if (!range) return error_response(400, range.error().message);
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
     const auto page = page_of(query, 100, archive::packets_page_max);
-    if (!page) return error_response(400, page.error().message);
+    if (!page) return error_response(400, page.error());
     packets.verdict = query.text("verdict").value_or("");
     if (!packets.verdict.empty() && std::ranges::none_of(archive::verdicts, [&](const char* name) { return packets.verdict == name; }))
         return error_response(400, fmt::format("verdict: there is no '{}'; verdicts are {}", packets.verdict,
@@ -121,7 +143,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     packets.range = *range;
     packets.after = page->after;
     packets.limit = page->limit;
-    return answer(reader.packets(run, packets));
+    return answer_rows(query, reader.packets(run, packets), {"packets"});
 }
 
 HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
@@ -136,17 +158,17 @@ HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
         if (std::ranges::none_of(levels, [&](EventLevel each) { return telemetry::name_of(each) == level; }))
             return error_response(400, fmt::format("level: there is no '{}'; levels are FATAL … DIAGNOSTIC", level));
     events.text = query.text("text").value_or("");
-    const auto range = range_of(query);
-    if (!range) return error_response(400, range.error().message);
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
     const auto page = page_of(query, 1'000, archive::rows_page_max);
-    if (!page) return error_response(400, page.error().message);
+    if (!page) return error_response(400, page.error());
     const auto duplicates = flag_of(query, "duplicates");
-    if (!duplicates) return error_response(400, duplicates.error().message);
+    if (!duplicates) return error_response(400, duplicates.error());
     events.range = *range;
     events.after = page->after;
     events.limit = page->limit;
     events.duplicates = *duplicates;
-    return answer(reader.events(run, events));
+    return answer_rows(query, reader.events(run, events), {"events", {"event"}});
 }
 
 /// The decisions that flight can explain, as the dictionary words them.
@@ -163,48 +185,62 @@ HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive
     explanations.decision = query.text("decision").value_or("");
     if (!explanations.decision.empty() && !is_decision(ground.dictionary, explanations.decision))
         return error_response(400, fmt::format("decision: flight explains none called '{}'", explanations.decision));
-    const auto range = range_of(query);
-    if (!range) return error_response(400, range.error().message);
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
     const auto page = page_of(query, 1'000, archive::rows_page_max);
-    if (!page) return error_response(400, page.error().message);
+    if (!page) return error_response(400, page.error());
     const auto duplicates = flag_of(query, "duplicates");
-    if (!duplicates) return error_response(400, duplicates.error().message);
+    if (!duplicates) return error_response(400, duplicates.error());
     explanations.text = query.text("text").value_or("");
     explanations.range = *range;
     explanations.after = page->after;
     explanations.limit = page->limit;
     explanations.duplicates = *duplicates;
-    return answer(reader.explanations(run, explanations));
+    return answer_rows(query, reader.explanations(run, explanations), {"explanations", {"explanation"}});
 }
 
 HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    const auto range = range_of(query);
-    if (!range) return error_response(400, range.error().message);
-    return answer(reader.tones(run, *range));
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
+    const auto page = page_of(query, archive::rows_page_max, archive::rows_page_max);
+    if (!page) return error_response(400, page.error());
+    return answer_rows(query, reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}), {"tones", {"tone"}});
 }
 
 HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    return answer(reader.commands(run, query.text("text").value_or("")));
+    const auto range = range_of(query, reader, run);
+    if (!range) return error_response(400, range.error());
+    return answer_rows(query, reader.commands(run, {*range, query.text("text").value_or("")}), {"commands"});
 }
 
 /// What happened to alarms; or how they stand now.
 HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
-    if (!page) return error_response(400, page.error().message);
+    if (!page) return error_response(400, page.error());
     const auto state = query.text("state");
-    if (!state) return answer(reader.alarms(run, page->after, page->limit));
+    if (!state)
+        return answer_rows(query, reader.alarms(run, page->after, page->limit), {"changes", {"alarm", "staleness", "alarm_action", "link"}});
     if (*state != "current") return error_response(400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
-    return answer(reader.alarm_states(run, ground.now));
+    return answer_rows(query, reader.alarm_states(run, ground.now), {"alarms"});
 }
 
 HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
-    if (!page) return error_response(400, page.error().message);
-    return answer(reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}));
+    if (!page) return error_response(400, page.error());
+    return answer_rows(query, reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}), {"notes", {"note"}});
 }
 
-HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
-    return answer(reader.timepoints(run));
+HttpResponse interventions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText&) {
+    if (!ground.instructor) {
+        const auto state = reader.run(run);
+        if (!state) return error_response(400, state.error());
+        if (state->state() == "running") return error_response(403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
+    }
+    return answer(reader.interventions(run));
+}
+
+HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    return answer_rows(query, reader.timepoints(run), {"timepoints"});
 }
 
 HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -224,71 +260,44 @@ std::string csv_of(const v1::ProofReport& report) {
     return csv;
 }
 
+/// As JSON, or where format=csv asks for it as a table.
+template <typename Report>
+HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make, std::string (*as_csv)(const Report&)) {
+    const auto format = query.text("format").value_or("json");
+    if (format != "json" && format != "csv")
+        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
+    const auto report = make();
+    if (format == "json" || !report) return answer(report);
+    return {200, "text/csv; charset=utf-8", "no-store", as_csv(*report)};
+}
+
 HttpResponse proof(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    const auto format = query.text("format").value_or("json");
-    if (format != "json" && format != "csv")
-        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
-    const auto report = reader.proof(run);
-    if (format == "json" || !report) return answer(report);
-    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
+    return answer_in_format<v1::ProofReport>(query, [&] { return reader.proof(run); }, csv_of);
 }
 
-std::string csv_of(const v1::AsFlownReport& report) {
-    std::string csv = "timepoint,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict\n";
-    const auto cell = [](bool known, double value) { return known ? fmt::format("{:.6f}", value) : std::string{}; };
-    for (const auto& row : report.timepoints())
-        fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{}\n", row.name(), cell(row.has_planned_e_s(), row.planned_e_s()),
-                       cell(row.has_predicted_e_s(), row.predicted_e_s()), cell(row.has_tone_e_s(), row.tone_e_s()),
-                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()),
-                       cell(row.has_margin_s(), row.margin_s()), row.tone(), row.verdict());
-    return csv;
-}
-
-/// As CSV its timepoints alone.
+/// As CSV its timepoints and events.
 HttpResponse report(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    const auto format = query.text("format").value_or("json");
-    if (format != "json" && format != "csv")
-        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
-    const auto report = reader.as_flown(run);
-    if (format == "json" || !report) return answer(report);
-    return {200, "text/csv; charset=utf-8", "no-store", csv_of(*report)};
+    return answer_in_format<v1::AsFlownReport>(query, [&] { return reader.as_flown(run); }, as_flown_csv);
 }
 
-/// The newest value of every channel at an instant: a series of one sample each.
-HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId run,
-                   const QueryText& query) {
-    const auto at = query.number("at");
-    if (!at) return error_response(400, at.error().message);
-    const auto values = reader.latest(run, *at ? std::optional{Sclk{**at}} : std::nullopt);
-    if (!values) return error_response(400, values.error().message);
-    v1::ChannelSeriesList list;
-    for (const auto& value : *values) {
-        const auto& channel = ground.dictionary.channels[value.channel.value];
-        auto& series = *list.add_channels();
-        series.set_id(channel.id.value);
-        series.set_name(channel.name);
-        series.set_unit(channel.type.unit);
-        series.set_samples(1);
-        series.add_sclk(value.sclk.seconds);
-        series.add_value(value.value);
-        series.add_source(static_cast<v1::Source>(value.source));
-    }
-    HttpResponse response;
-    response.body = to_json(list);
-    return response;
+HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
+    const auto at = instant_of(query, "at", reader, run);
+    if (!at) return error_response(400, at.error());
+    return answer(state_at(reader, run, ground.dictionary, *at));
 }
 
 const std::array questions{
     RunQuestionEntry{"", {}, run_itself},
-    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "format"}, channels},
-    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit"}, packets},
-    RunQuestionEntry{"tones", {"from", "to"}, tones},
-    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates"}, events},
-    RunQuestionEntry{"commands", {"text"}, commands},
-    RunQuestionEntry{"alarms", {"state", "after", "limit"}, alarms},
-    RunQuestionEntry{"notes", {"text", "after", "limit"}, notes},
-    RunQuestionEntry{"timepoints", {}, timepoints},
-    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates"}, explanations},
+    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "source", "provenance", "format"}, channels},
+    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, packets},
+    RunQuestionEntry{"tones", {"text", "from", "to", "after", "limit", "format"}, tones},
+    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, events},
+    RunQuestionEntry{"commands", {"text", "from", "to", "format"}, commands},
+    RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, alarms},
+    RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, notes},
+    RunQuestionEntry{"interventions", {}, interventions},
+    RunQuestionEntry{"timepoints", {"format"}, timepoints},
+    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"}, explanations},
     RunQuestionEntry{"recording", {}, recording},
     RunQuestionEntry{"proof", {"format"}, proof},
     RunQuestionEntry{"report", {"format"}, report},
@@ -297,14 +306,44 @@ const std::array questions{
 
 } // namespace
 
-Result<archive::SclkRange> range_of(const QueryText& query) {
-    const auto from = query.number("from");
+std::string as_flown_csv(const v1::AsFlownReport& report) {
+    std::string csv = "of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\n";
+    const auto cell = [](bool known, double value) { return known ? fmt::format("{:.6f}", value) : std::string{}; };
+    for (const auto& row : report.timepoints())
+        fmt::format_to(std::back_inserter(csv), "timepoint,{},{},{},{},{},{},{},{},{},\n", row.name(), cell(row.has_planned_e_s(), row.planned_e_s()),
+                       cell(row.has_predicted_e_s(), row.predicted_e_s()), cell(row.has_tone_e_s(), row.tone_e_s()),
+                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()),
+                       cell(row.has_margin_s(), row.margin_s()), row.tone(), row.verdict());
+    for (const auto& row : report.events())
+        fmt::format_to(std::back_inserter(csv), "event,{},,{},,{},{},,,,{}\n", row.name(), cell(row.has_predicted_e_s(), row.predicted_e_s()),
+                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()), csv_text(row.text()));
+    return csv;
+}
+
+Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader, archive::RunId run) {
+    const auto scet = scet_from_day_of_year(query.text(name).value_or(""));
+    if (!scet) {
+        const auto sclk_s = query.number(name);
+        if (!sclk_s) return Error{sclk_s.error().message + ": seconds of SCLK, or SCET as 2012-219T05:00:00"};
+        return *sclk_s ? std::optional{Sclk{**sclk_s}} : std::nullopt;
+    }
+    const auto state = reader.run(run);
+    if (!state) return state.error();
+    const auto clock = archive::correlation_of(*state);
+    if (clock.scet == Scet{}) return Error{fmt::format("{}: nobody knows which SCET run {} has: seconds of SCLK are wanted", name, run.value)};
+    const Sclk exact = clock.sclk_of(*scet), tick = Sclk::from_ticks(std::llround(exact.seconds / seconds_per_tick));
+    return std::optional{std::abs(tick - exact) < scet_text_s ? tick : exact};
+}
+
+Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& reader, archive::RunId run) {
+    const auto from = instant_of(query, "from", reader, run);
     if (!from) return from.error();
-    const auto to = query.number("to");
+    const auto to = instant_of(query, "to", reader, run);
     if (!to) return to.error();
     if (*from && *to && **from > **to)
-        return Error{fmt::format("from {} is after to {}: the range is upside down", **from, **to)};
-    return archive::SclkRange{*from, *to};
+        return Error{fmt::format("from {} is after to {}: the range is upside down", query.text("from").value_or(""), query.text("to").value_or(""))};
+    const auto seconds = [](const std::optional<Sclk>& at) { return at ? std::optional{at->seconds} : std::nullopt; };
+    return archive::SclkRange{seconds(*from), seconds(*to)};
 }
 
 const RunQuestionEntry* run_question(std::string_view name) {

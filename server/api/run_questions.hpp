@@ -11,6 +11,7 @@ namespace aeolis::server {
 struct Ground {
     const dictionary::Dictionary& dictionary;
     std::optional<Ert> now; ///< of a run that goes on
+    bool instructor;        ///< who asks may rehearse
 };
 
 /// A question to one run: the last part of its path, the parameters it knows, and how it is answered.
@@ -20,8 +21,13 @@ struct RunQuestionEntry {
     HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
 };
 
-/// Of the parameters "from" and "to", seconds of SCLK.
-Result<archive::SclkRange> range_of(const QueryText& query);
+/// A parameter that names an instant: seconds of SCLK, or SCET as day_of_year_text() writes it, by the run's clock. None: left out.
+Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader, archive::RunId run);
+/// Of the parameters "from" and "to".
+Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& reader, archive::RunId run);
+
+/// A row a timepoint, then a row an event.
+std::string as_flown_csv(const v1::AsFlownReport& report);
 
 /// Null when there is no such question.
 const RunQuestionEntry* run_question(std::string_view name);

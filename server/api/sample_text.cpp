@@ -1,5 +1,8 @@
 #include "server/api/sample_text.hpp"
 
+#include "server/api/csv_text.hpp"
+#include "server/api/json_object.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -14,8 +17,8 @@ const char* word_for(archive::Source source) {
 }
 
 /// JSON has no infinities: they are texts.
-std::string json_number(double value) {
-    return std::isfinite(value) ? fmt::format("{}", value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
+std::string number_or_text(double value) {
+    return std::isfinite(value) ? json_number(value) : value > 0 ? "\"Infinity\"" : "\"-Infinity\"";
 }
 
 std::optional<double> seconds_of(const std::string& text) {
@@ -28,10 +31,15 @@ std::optional<double> seconds_of(const std::string& text) {
 
 } // namespace
 
+SampleText::SampleText(const dictionary::Dictionary& dictionary, bool csv) : csv_(csv) {
+    words_.reserve(dictionary.channels.size());
+    for (const auto& channel : dictionary.channels)
+        words_.push_back(csv ? Words{csv_text(channel.name), csv_text(channel.type.unit)} : Words{json_text(channel.name), json_text(channel.type.unit)});
+}
+
 Result<SampleText> SampleText::make(const dictionary::Dictionary& dictionary, const std::vector<std::string>& channels, const Options& options) {
-    SampleText text(dictionary);
     if (options.format != "csv" && options.format != "jsonl") return Error{fmt::format("format: '{}' is neither csv nor jsonl", options.format)};
-    text.csv_ = options.format == "csv";
+    SampleText text(dictionary, options.format == "csv");
     if (options.align.empty()) return text;
     if (channels.empty()) return Error{"align: the columns are the channels that are named, and none is"};
     for (const auto& name : channels) {
@@ -56,7 +64,7 @@ std::string SampleText::head() const {
     if (columns_.empty()) return "sclk,e_s,channel,value,unit,source\n";
     std::string line = "sclk,e_s";
     for (const auto* channel : columns_)
-        line += ',' + channel->name;
+        line += ',' + words_[channel->id.value].name;
     return line + '\n';
 }
 
@@ -72,14 +80,14 @@ void SampleText::finish(std::string& text) {
 
 void SampleText::append_sample(std::string& text, const archive::ChannelValue& sample) const {
     const auto into = std::back_inserter(text);
-    const auto& channel = dictionary_->channels[sample.channel.value];
+    const auto& [channel, unit] = words_[sample.channel.value];
     const double sclk_s = sample.sclk.seconds, e_s = sclk_s - entry_.seconds;
     if (csv_)
-        fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel.name, sample.value, channel.type.unit, word_for(sample.source));
+        fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel, sample.value, unit, word_for(sample.source));
     else
-        fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":"{}","value":{},"unit":"{}","source":"{}"}})"
+        fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":{},"value":{},"unit":{},"source":"{}"}})"
                              "\n",
-                       sclk_s, e_s, channel.name, json_number(sample.value), channel.type.unit, word_for(sample.source));
+                       sclk_s, e_s, channel, number_or_text(sample.value), unit, word_for(sample.source));
 }
 
 void SampleText::append_aligned(std::string& text, const archive::ChannelValue& sample) {
@@ -104,7 +112,7 @@ void SampleText::append_line(std::string& text, double sclk_s) const {
         if (csv_)
             text += values_[i] ? fmt::format(",{}", *values_[i]) : ",";
         else
-            fmt::format_to(into, R"(,"{}":{})", columns_[i]->name, values_[i] ? json_number(*values_[i]) : "null");
+            fmt::format_to(into, ",{}:{}", words_[columns_[i]->id.value].name, values_[i] ? number_or_text(*values_[i]) : "null");
     }
     text += csv_ ? "\n" : "}\n";
 }

@@ -38,13 +38,16 @@ class SampleText {
     void finish(std::string& text);
 
   private:
-    explicit SampleText(const dictionary::Dictionary& dictionary) : dictionary_(&dictionary) {}
+    SampleText(const dictionary::Dictionary& dictionary, bool csv);
     void append_sample(std::string& text, const archive::ChannelValue& sample) const;
     void append_aligned(std::string& text, const archive::ChannelValue& sample);
     void append_line(std::string& text, double sclk_s) const;
 
-    const dictionary::Dictionary* dictionary_; // outlives this
-    bool csv_ = true;
+    struct Words {
+        std::string name, unit;
+    };
+    bool csv_;
+    std::vector<Words> words_; ///< a channel each, as the format writes a text: names are whatever a dictionary says
     Sclk entry_{};
     std::vector<const dictionary::Channel*> columns_; ///< of aligned lines; empty: a line a sample
     const dictionary::Channel* leader_ = nullptr;     ///< null: by step_s_

@@ -13,13 +13,17 @@ namespace aeolis::archive {
 
 namespace {
 
-// The WAL is folded into the file every 4000 pages (16 MB): fewer, longer writes than SQLite's default of 1000; and
-// it is cut back to that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
-const char* const writer_pragmas = "PRAGMA journal_mode = WAL;"
-                                   "PRAGMA synchronous = FULL;"
-                                   "PRAGMA wal_autocheckpoint = 4000;"
-                                   "PRAGMA journal_size_limit = 16384000;"
-                                   "PRAGMA cache_size = -16000;";
+// So much the log holds before it is folded into the file: fewer, longer writes than by SQLite's default; and it is cut back to
+// that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
+constexpr std::int64_t log_octets = 16'384'000;
+
+Result<void> set_up_writer(sqlite::Database& database) {
+    const auto page = database.integer_of("PRAGMA page_size"); // archives of before schema 7 have smaller ones
+    if (!page) return page.error();
+    return database.execute(("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = " +
+                             std::to_string(log_octets / *page) + "; PRAGMA journal_size_limit = " + std::to_string(log_octets))
+                                .c_str());
+}
 
 std::int64_t number(std::uint64_t value) {
     return static_cast<std::int64_t>(value);
@@ -93,7 +97,7 @@ Result<void> Archive::State::connect() {
     auto fresh = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
     if (!fresh) return fresh.error();
     if (auto done = prepare_for_writing(*fresh); !done) return done;
-    if (auto done = fresh->execute(writer_pragmas); !done) return done;
+    if (auto done = set_up_writer(*fresh); !done) return done;
     auto row_writer = RowWriter::open(*fresh);
     if (!row_writer) return row_writer.error();
     auto key = fresh->prepare(last_key_sql);
@@ -250,6 +254,17 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
     if (!clock) return clock.error();
     clock->bind(1, *next).bind(2, std::int64_t{start.correlation.version}).bind(3, start.correlation.rate).bind(4, std::int64_t{start.correlation.leap_seconds});
     if (auto done = clock->run(); !done) return done.error();
+    // A row an anchor, predicted or not: so a run that has none is known to be of an older schema.
+    auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
+    if (!anchor) return anchor.error();
+    for (std::size_t i = 0; i < dictionary.anchors.size(); ++i) {
+        anchor->bind(1, *next).bind(2, number(i)).bind(3, std::string_view(dictionary.anchors[i].name));
+        if (const auto predicted = i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt)
+            anchor->bind(4, *predicted);
+        else
+            anchor->bind_null(4);
+        if (auto done = anchor->run(); !done) return done.error();
+    }
     auto solution = database.prepare("INSERT INTO run_solution VALUES (?,?,?,?)");
     if (!solution) return solution.error();
     std::int64_t position = 0;

@@ -15,7 +15,7 @@ namespace aeolis::archive {
 struct AuditRecord {
     std::string at;     ///< wall clock, ISO 8601
     std::string who;    ///< user, "token NAME", or empty: a server without accounts
-    std::string from;   ///< address of the peer
+    std::string from;   ///< address of the peer; of a program that was started and not asked, "command line"
     std::string action; ///< one word
     std::string detail;
     std::string outcome;

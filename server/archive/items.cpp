@@ -1,6 +1,7 @@
 #include "server/archive/items.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace aeolis::archive {
 
@@ -11,6 +12,8 @@ v1::Source source_of(Source source) {
 static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
 static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
 static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
+
+constexpr double heard_span_s = 8.0e12; ///< ours: 250 000 years; as microseconds, with any day of year, still an int64
 } // namespace
 
 v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {
@@ -151,6 +154,7 @@ v1::Item to_item(const LinkRecord& record) {
     link.set_up(record.up);
     link.set_reason(record.reason);
     link.set_ert(day_of_year_text(record.ert));
+    link.set_lost(record.lost);
     return item;
 }
 
@@ -212,6 +216,19 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
     reply.set_rate(clock.rate);
     reply.set_leap_seconds(clock.leap_seconds);
     return reply;
+}
+
+ClockCorrelation correlation_of(const v1::RunState& run) {
+    const auto& clock = run.clock();
+    return {Sclk{clock.sclk()}, scet_from_day_of_year(clock.scet()).value_or(Scet{}), clock.rate(), clock.leap_seconds(), clock.version()};
+}
+
+Ert heard_at(const v1::RunState& run, Sclk at) {
+    const auto clock = correlation_of(run);
+    const double since_s = (at - clock.sclk) * clock.rate + run.light_time_s();
+    if (since_s > heard_span_s) return {std::numeric_limits<std::int64_t>::max()};
+    if (since_s < -heard_span_s) return {std::numeric_limits<std::int64_t>::min()};
+    return {clock.scet_of(at).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
 }
 
 } // namespace aeolis::archive

@@ -1,6 +1,7 @@
 #include "server/archive/reader.hpp"
 
 #include "server/archive/items.hpp"
+#include "server/archive/kept_request.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/schema.hpp"
 
@@ -46,15 +47,21 @@ bool Reader::stopped() const {
     return state_->database.stopped();
 }
 
-std::string search_words(std::string_view text) {
+std::vector<std::string_view> words_in(std::string_view text) {
     const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80; };
-    std::string words;
-    for (std::size_t at = 0; at < text.size();) {
-        const auto begin = std::find_if(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), in_word);
-        const auto end = std::find_if_not(begin, text.end(), in_word);
-        if (begin != end) words += (words.empty() ? "\"" : " \"") + std::string(begin, end) + "\"*";
-        at = static_cast<std::size_t>(end - text.begin());
+    std::vector<std::string_view> words;
+    for (auto at = text.begin(); at != text.end();) {
+        const auto begin = std::find_if(at, text.end(), in_word);
+        at = std::find_if_not(begin, text.end(), in_word);
+        if (begin != at) words.emplace_back(begin, at);
     }
+    return words;
+}
+
+std::string search_words(std::string_view text) {
+    std::string words;
+    for (const auto word : words_in(text))
+        words += (words.empty() ? "\"" : " \"") + std::string(word) + "\"*";
     return words;
 }
 
@@ -84,6 +91,14 @@ Result<RunInfo> Reader::State::info(RunId run) {
     return RunInfo{run, row.text(0) == "finished", static_cast<std::uint16_t>(row.integer(1)), Sclk{row.real(2)}};
 }
 
+Result<Reader::State::Instant> Reader::State::instant(RunId run) {
+    auto snapshot = sqlite::Transaction::begin_read(database);
+    if (!snapshot) return snapshot.error();
+    const auto known = info(run);
+    if (!known) return known.error();
+    return Instant{std::move(*snapshot), *known};
+}
+
 Result<void> Reader::State::same_dictionary(const RunInfo& run) const {
     if (words_of(run) != nullptr) return {};
     return Error{"run " + std::to_string(run.run.value) + " was recorded with dictionary " +
@@ -110,10 +125,53 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
     return audit_entries(state_->database, after, limit);
 }
 
+namespace {
+
+/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns. Without a row in run_clocks it is of schema
+/// 5 or before: those clocks had no drift.
+ClockCorrelation clock_of(const sqlite::Statement& row, int column) {
+    return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.is_null(column + 2) ? 1.0 : row.real(column + 2),
+            static_cast<std::int32_t>(row.integer(column + 3)), static_cast<std::uint32_t>(row.integer(column + 4))};
+}
+
+} // namespace
+
+Result<std::vector<RequestRecord>> Reader::State::requests(RunId run) {
+    auto rows = query("SELECT cycle, request FROM requests WHERE run = ? ORDER BY position");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    std::vector<RequestRecord> all;
+    for (;;) {
+        auto one = row.step();
+        if (!one) return one.error();
+        if (!*one) return all;
+        all.push_back({static_cast<std::uint64_t>(row.integer(0)), std::string(row.text(1))});
+    }
+}
+
+Result<v1::InterventionList> Reader::interventions(RunId run) {
+    const auto state = this->run(run);
+    if (!state) return state.error();
+    const auto requests = state_->requests(run);
+    if (!requests) return requests.error();
+    v1::InterventionList list;
+    for (const auto& request : *requests) {
+        auto kept = kept_request(request.request);
+        auto* intervention = std::get_if<v1::Intervention>(&kept);
+        if (intervention == nullptr) continue;
+        intervention->set_e_s(state->start_sclk() - state->entry_sclk() + static_cast<double>(request.cycle) * seconds_per_tick);
+        *list.add_interventions() = std::move(*intervention);
+    }
+    return list;
+}
+
 Result<CutOffRun> Reader::cut_off(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    auto rows = state_->query("SELECT state, scenario_text, started, seed, dictionary FROM runs WHERE run = ?");
+    static constexpr char run_sql[] = "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, rate,"
+                                      " leap_seconds, version FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?";
+    auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.value});
@@ -122,21 +180,21 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     if (!*found) return Error{"no run " + std::to_string(run.value)};
     if (row.text(0) != "interrupted")
         return Error{"run " + std::to_string(run.value) + " was not cut off: it is " + std::string(row.text(0))};
-    CutOffRun cut{run, std::string(row.text(1)), std::string(row.text(2)), static_cast<std::uint64_t>(row.integer(3)), 0, {}, {}};
+    CutOffRun cut;
+    cut.run = run;
+    cut.scenario_text = row.text(1);
+    cut.started = row.text(2);
+    cut.seed = static_cast<std::uint64_t>(row.integer(3));
+    cut.clock = clock_of(row, 5);
+    cut.clock_kept = !row.is_null(7);
     if (auto same = state_->same_dictionary({run, false, static_cast<std::uint16_t>(row.integer(4)), {}}); !same)
         return same.error();
     auto last = state_->last_seq(run);
     if (!last) return last.error();
     cut.last_seq = *last;
-    auto requests = state_->query("SELECT cycle, request FROM requests WHERE run = ? ORDER BY position");
+    auto requests = state_->requests(run);
     if (!requests) return requests.error();
-    (*requests)->bind(1, std::int64_t{run.value});
-    for (;;) {
-        auto one = (*requests)->step();
-        if (!one) return one.error();
-        if (!*one) break;
-        cut.requests.push_back({static_cast<std::uint64_t>((*requests)->integer(0)), std::string((*requests)->text(1))});
-    }
+    cut.requests = std::move(*requests);
     static constexpr char annotations_sql[] = "SELECT key FROM notes WHERE key BETWEEN ?1 AND ?2 UNION ALL"
                                               " SELECT key FROM alarm_actions WHERE key BETWEEN ?1 AND ?2 ORDER BY key";
     auto annotations = state_->query(annotations_sql);
@@ -177,9 +235,7 @@ Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     state.set_tone_model(std::string(row.text(13)));
     state.set_digest(std::string(row.text(14)));
     state.set_relay_progress(row.real(15));
-    const ClockCorrelation clock{Sclk{row.real(16)}, Scet{row.integer(17)}, row.is_null(18) ? 1.0 : row.real(18),
-                                 static_cast<std::int32_t>(row.integer(19)), static_cast<std::uint32_t>(row.integer(20))};
-    *state.mutable_clock() = to_reply(clock);
+    *state.mutable_clock() = to_reply(clock_of(row, 16));
     auto last = row.is_null(9) ? last_seq(run) : Result<Sequence>(static_cast<Sequence>(row.integer(9)));
     if (!last) return last.error();
     state.set_last_seq(*last);

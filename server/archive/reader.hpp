@@ -43,6 +43,8 @@ struct SeriesQuery {
     std::vector<std::string> channels; ///< names or aliases
     SclkRange range;
     std::optional<std::size_t> points; ///< thin to at most so many; none: exact
+    std::optional<Source> source{};    ///< only what came so; none: both, each sample once
+    bool provenance = false;           ///< with the origin of every sample, and the gaps
 };
 
 /// Verdicts on a unit against the other path. Before the whole recording is down, nothing is missing in it: pending.
@@ -65,6 +67,18 @@ struct EventQuery {
     bool duplicates = false;         ///< also those of the recording that were seen in real time
     Sequence after = 0;
     std::size_t limit = 1'000;
+};
+
+struct ToneQuery {
+    SclkRange range;
+    std::string text; ///< words of name or meaning, as in EventQuery
+    Sequence after = 0;
+    std::size_t limit = rows_page_max;
+};
+
+struct CommandQuery {
+    SclkRange range;  ///< with a stage that is dated between when Earth heard of its beginning and when of its end
+    std::string text; ///< words of a stage, as in EventQuery
 };
 
 struct ExplanationQuery {
@@ -157,20 +171,23 @@ class Reader {
 
     Result<v1::PacketList> packets(RunId run, const PacketQuery& query);
     Result<v1::EventList> events(RunId run, const EventQuery& query);
-    Result<v1::ToneList> tones(RunId run, SclkRange range);
+    Result<v1::ToneList> tones(RunId run, const ToneQuery& query);
     Result<v1::ExplanationList> explanations(RunId run, const ExplanationQuery& query);
-    /// @param text  words, as in EventQuery, of a stage; empty: all commands
-    Result<v1::CommandList> commands(RunId run, const std::string& text = {});
+    Result<v1::CommandList> commands(RunId run, const CommandQuery& query = {});
     /// What changed about alarms, and what was done about them, a page at a time.
     Result<v1::AlarmList> alarms(RunId run, Sequence after, std::size_t limit);
     /// All alarms that are not normal, the most severe first. Refused for a run of another dictionary.
     /// @param now  on Earth; none: when the run's newest unit came
     Result<v1::AlarmList> alarm_states(RunId run, std::optional<Ert> now);
+    /// Names of all links that any run had.
+    Result<std::vector<std::string>> links();
     /// An Error says why `act` may not be done about the alarm of that name.
     Result<void> may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now);
     /// When the run's newest unit came.
     Result<Ert> newest_ert(RunId run);
     Result<v1::NoteList> notes(RunId run, const NoteQuery& query);
+    /// What instructors did to the run, in order: for those who are rehearsed only once it is over.
+    Result<v1::InterventionList> interventions(RunId run);
     Result<v1::TimepointList> timepoints(RunId run);
     Result<v1::RecordingSummary> recording(RunId run);
     /// Each unit and tone that was seen live against the recording, in totals; takes as long as reading all units.
@@ -187,7 +204,6 @@ class Reader {
     explicit Reader(std::unique_ptr<State> state);
     Result<void> add_tones(RunId run, bool complete, v1::ProofReport& report);
     Result<void> add_counters(RunId run, v1::ProofReport& report);
-    Result<void> add_silences(RunId run, v1::AsFlownReport& report);
     Result<telemetry::AlarmDesk> alarm_desk(RunId run, std::vector<v1::Item>& changes);
     std::unique_ptr<State> state_;
 };

@@ -18,6 +18,7 @@ Ert ert_of(const std::string& day_of_year) {
 
 const std::string& name_of_alarm(const v1::Item& item, const dictionary::Dictionary& dictionary) {
     if (item.has_alarm()) return dictionary.channels[item.alarm().channel()].name;
+    if (item.has_link()) return item.link().link();
     return item.has_staleness() ? item.staleness().packet() : item.alarm_action().alarm();
 }
 
@@ -29,6 +30,8 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
         desk.change(name, telemetry::severity_of(item.alarm().severity()).value_or(Severity::none), telemetry::latches(alarms));
     } else if (item.has_staleness()) {
         desk.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
+    } else if (item.has_link()) {
+        desk.change(name, item.link().lost() ? telemetry::lost_severity : Severity::none, false);
     } else if (const auto act = telemetry::alarm_act(item.alarm_action().action())) {
         desk.act(name, *act, ert_of(item.alarm_action().at()), ert_of(item.alarm_action().until()));
     }
@@ -45,6 +48,10 @@ void describe(const v1::Item& item, v1::AlarmState& state) {
     } else if (item.has_staleness()) {
         state.set_kind("staleness");
         state.set_value(item.staleness().silent_s());
+        state.set_reason(item.staleness().reason());
+    } else if (item.has_link()) {
+        state.set_kind("link");
+        state.set_reason(item.link().reason());
     } else {
         state.set_by(item.alarm_action().by());
         state.set_note(item.alarm_action().note());
@@ -89,7 +96,8 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
         if (std::string_view(state.name(at)) == "normal") continue;
         auto& written = states.emplace_back(std::move(described[name]));
         written.set_name(name);
-        if (written.kind().empty()) written.set_kind(state_->dictionary.channel(name) != nullptr ? "limit" : "staleness");
+        if (written.kind().empty())
+            written.set_kind(state_->dictionary.channel(name) != nullptr ? "limit" : state_->dictionary.packet(name) != nullptr ? "staleness" : "link");
         written.set_state(state.name(at));
         written.set_severity(telemetry::name_of(state.severity));
         written.set_worst(telemetry::name_of(state.worst));
@@ -102,6 +110,18 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     for (auto& state : states)
         *list.add_alarms() = std::move(state);
     return list;
+}
+
+Result<std::vector<std::string>> Reader::links() {
+    auto rows = state_->query("SELECT word FROM words WHERE kind = 'link' ORDER BY number");
+    if (!rows) return rows.error();
+    std::vector<std::string> names;
+    for (;;) {
+        auto found = (*rows)->step();
+        if (!found) return found.error();
+        if (!*found) return names;
+        names.emplace_back((*rows)->text(0));
+    }
 }
 
 Result<void> Reader::may(RunId run, const std::string& alarm, telemetry::AlarmAct act, Ert now) {

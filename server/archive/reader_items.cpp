@@ -108,17 +108,15 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit) {
 
 Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, ItemKinds kinds) {
     if (auto fits = check_limit(limit, items_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     const auto last = state_->last_seq(run);
     if (!last) return last.error();
     if (after >= *last) return ItemPage{{}, *last, false};
 
     Page page{run, after, *last, limit, {}};
     if (kinds.units || kinds.samples)
-        if (auto done = collect_units(*state_, *info, page, kinds); !done) return done.error();
+        if (auto done = collect_units(*state_, instant->run, page, kinds); !done) return done.error();
     const auto explanation = [this](const sqlite::Statement& row) { return state_->explanation_item(row); };
     const auto tone = [this](const sqlite::Statement& row) { return state_->tone_item(row); };
     auto done = collect(*state_, row::event_rows, page, as_item(row::event));
@@ -128,7 +126,7 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
     if (done) done = collect(*state_, row::explanation_rows, page, explanation);
     if (done) done = collect(*state_, row::link_rows, page, as_item(row::link));
     if (done) done = collect(*state_, row::note_rows, page, as_item(row::note));
-    if (done) done = collect_alarms(*state_, *info, page);
+    if (done) done = collect_alarms(*state_, instant->run, page);
     if (!done) return done.error();
     finish(page);
     return ItemPage{std::move(page.items), page.through, page.through < *last};
@@ -136,12 +134,12 @@ Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit, Ite
 
 Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limit) {
     if (auto fits = check_limit(limit, rows_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     Page page{run, std::min(after, sequence_max - 1), sequence_max, limit, {}};
-    if (auto done = collect_alarms(*state_, *info, page); !done) return done.error();
+    auto done = collect_alarms(*state_, instant->run, page);
+    if (done) done = collect(*state_, row::lost_link_rows, page, as_item(row::link));
+    if (!done) return done.error();
     finish(page);
     v1::AlarmList list;
     for (auto& item : page.items)

@@ -7,6 +7,7 @@
 #include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 namespace aeolis::archive {
@@ -46,6 +47,17 @@ struct Wanted {
     bool nothing() const { return asked && words.empty(); } ///< only signs: no row has them
 };
 
+/// Whether each of `wanted` begins a word of the text, in any case. For rows of which FTS5 has no words: tones are few.
+bool has_words(std::string_view text, std::span<const std::string_view> wanted) {
+    const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
+    const auto words = words_in(text);
+    return std::ranges::all_of(wanted, [&](std::string_view beginning) {
+        return std::ranges::any_of(words, [&](std::string_view word) {
+            return word.size() >= beginning.size() && std::ranges::equal(word.substr(0, beginning.size()), beginning, {}, lower, lower);
+        });
+    });
+}
+
 /// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
 /// more.
 template <typename Take>
@@ -66,6 +78,21 @@ Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequenc
         if (!full) return full.error();
         if (*full) return last;
     }
+}
+
+struct HeardRange {
+    Ert from, to;
+};
+/// When Earth heard of the ends of a range.
+Result<HeardRange> heard_range(Reader& reader, RunId run, const SclkRange& asked) {
+    if (const auto range = closed(asked); !range) return range.error();
+    HeardRange heard{Ert{INT64_MIN}, Ert{INT64_MAX}};
+    if (!asked.from_s && !asked.to_s) return heard;
+    const auto state = reader.run(run);
+    if (!state) return state.error();
+    if (asked.from_s) heard.from = heard_at(*state, Sclk{*asked.from_s});
+    if (asked.to_s) heard.to = heard_at(*state, Sclk{*asked.to_s});
+    return heard;
 }
 
 void add_fields(v1::PacketRow& row, const dictionary::Packet& packet, const telemetry::Decoded& decoded) {
@@ -96,20 +123,18 @@ Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     const auto range = closed(query.range);
     if (!range) return range.error();
     if (auto fits = check_limit(query.limit, packets_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     std::optional<std::uint16_t> wanted;
     if (query.name) {
-        if (auto same = state_->same_dictionary(*info); !same) return same.error();
+        if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
         const auto* packet = state_->dictionary.packet(*query.name);
         if (packet == nullptr) return Error{"no packet '" + *query.name + "'"};
         wanted = static_cast<std::uint16_t>(packet - state_->dictionary.packets.data());
     }
     const auto complete = state_->recording_complete(run);
     if (!complete) return complete.error();
-    const auto* words = state_->words_of(*info);
+    const auto* words = state_->words_of(instant->run);
     v1::PacketList list;
     const auto next = scan(*state_, row::unit_rows, run, query.after, [&](const auto& row) -> Result<bool> {
         const auto unit = row::unit(row);
@@ -138,9 +163,8 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     const auto range = closed(query.range);
     if (!range) return range.error();
     if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     const Wanted wanted(query.text);
     v1::EventList list;
     if (wanted.nothing()) return list;
@@ -159,20 +183,25 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     return list;
 }
 
-Result<v1::ToneList> Reader::tones(RunId run, SclkRange asked) {
-    const auto range = closed(asked);
+Result<v1::ToneList> Reader::tones(RunId run, const ToneQuery& query) {
+    const auto range = closed(query.range);
     if (!range) return range.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+    if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    const auto wanted = words_in(query.text);
     v1::ToneList list;
-    const auto done = scan(*state_, row::tone_rows, run, 0, [&](const auto& row) -> Result<bool> {
+    if (wanted.empty() && !query.text.empty()) return list; // only signs: no tone has them
+    const auto next = scan(*state_, row::tone_rows, run, query.after, [&](const auto& row) -> Result<bool> {
+        const auto record = row::tone(row);
+        if (!range->holds(record.sclk.seconds) || !has_words(record.name + " " + record.meaning, wanted)) return false;
         auto tone = state_->tone_item(row);
         if (!tone) return tone.error();
-        if (range->holds(tone->tone().sclk())) *list.add_tones() = std::move(*tone);
-        return false;
+        *list.add_tones() = std::move(*tone);
+        return static_cast<std::size_t>(list.tones_size()) == query.limit;
     });
-    if (!done) return done.error();
+    if (!next) return next.error();
+    list.set_next_after(*next);
     return list;
 }
 
@@ -180,9 +209,8 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
     const auto range = closed(query.range);
     if (!range) return range.error();
     if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     const Wanted wanted(query.text);
     v1::ExplanationList list;
     if (wanted.nothing()) return list;
@@ -202,9 +230,8 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
 
 Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
     if (auto fits = check_limit(query.limit, rows_page_max); !fits) return fits.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     const Wanted wanted(query.text);
     v1::NoteList list;
     if (wanted.nothing()) return list;
@@ -217,10 +244,12 @@ Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
     return list;
 }
 
-Result<v1::CommandList> Reader::commands(RunId run, const std::string& text) {
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
+    const auto range = heard_range(*this, run, query.range);
+    if (!range) return range.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    std::set<std::uint64_t> in_range;
     std::map<std::uint64_t, v1::CommandHistory> histories;
     const auto done = scan(*state_, row::stage_rows, run, 0, [&](const auto& row) -> Result<bool> {
         const auto stage = row::stage(row);
@@ -235,10 +264,12 @@ Result<v1::CommandList> Reader::commands(RunId run, const std::string& text) {
             history.set_needs_approval(stage.needs_approval);
         }
         *history.add_stages() = to_item(stage);
+        if (range->from <= stage.at && stage.at <= range->to) in_range.insert(stage.command);
         return false;
     });
     if (!done) return done.error();
-    if (const Wanted wanted(text); wanted.asked) {
+    std::erase_if(histories, [&](const auto& history) { return !in_range.contains(history.first); });
+    if (const Wanted wanted(query.text); wanted.asked) {
         std::set<std::uint64_t> found;
         if (!wanted.nothing()) {
             const auto looked = scan(*state_, found_stages, run, 0, [&](const auto& row) -> Result<bool> {
@@ -267,12 +298,32 @@ Result<v1::CommandList> Reader::commands(RunId run, const std::string& text) {
     return list;
 }
 
+Result<void> Reader::State::add_predicted_anchors(RunId run, v1::TimepointList& list) {
+    auto rows = query("SELECT anchor, predicted_e_s FROM run_anchors WHERE run = ?1");
+    if (!rows) return rows.error();
+    auto& row = **rows;
+    row.bind(1, std::int64_t{run.value});
+    bool kept = false;
+    for (;;) {
+        auto found = row.step();
+        if (!found) return found.error();
+        if (!*found) break;
+        kept = true;
+        const auto anchor = row.integer(0);
+        if (anchor < list.anchors_size() && !row.is_null(1)) list.mutable_anchors(static_cast<int>(anchor))->set_predicted_e_s(row.real(1));
+    }
+    if (kept) return {};
+    for (std::size_t i = 0; i < dictionary.predicted_anchor_e_s.size(); ++i)
+        if (const auto& predicted = dictionary.predicted_anchor_e_s[i]) list.mutable_anchors(static_cast<int>(i))->set_predicted_e_s(*predicted);
+    if (list.anchors_size() > 0)
+        list.set_prediction_note("the archive has not kept what was predicted when this run began: it is predicted by today's predicted_anchors.csv");
+    return {};
+}
+
 Result<v1::TimepointList> Reader::timepoints(RunId run) {
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
-    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
     const auto& dictionary = state_->dictionary;
     const auto planned = planned_from_entry_s(dictionary);
     v1::TimepointList list;
@@ -299,6 +350,7 @@ Result<v1::TimepointList> Reader::timepoints(RunId run) {
         if (anchor.parent) written.set_parent(dictionary.anchors[anchor.parent->value].name);
         if (anchor.offset_s) written.set_offset_s(*anchor.offset_s);
     }
+    if (auto done = state_->add_predicted_anchors(run, list); !done) return done.error();
     const auto done = scan(*state_, row::firing_rows, run, 0, [&](const auto& row) -> Result<bool> {
         const auto firing = row::firing(row);
         if (firing.timepoint.value >= dictionary.timeline.size()) return false;
@@ -315,9 +367,8 @@ Result<v1::TimepointList> Reader::timepoints(RunId run) {
 }
 
 Result<v1::RecordingSummary> Reader::recording(RunId run) {
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    if (const auto info = state_->info(run); !info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     static constexpr char sql[] = "SELECT recorded, realtime, realtime_not_recorded, realtime_differs,"
                                   " never_seen_live, progress, recorded_octets FROM recordings WHERE run = ?1";
     auto rows = state_->query(sql);

@@ -1,3 +1,4 @@
+#include "server/archive/other_path.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/row_reader.hpp"
@@ -8,33 +9,8 @@
 #include <cmath>
 #include <map>
 
-// What was seen live against the recording. A unit is found on the other path by APID, SCLK and packet count; its octets decide.
+// What was seen live against the recording.
 namespace aeolis::archive {
-
-namespace {
-
-enum class OnOtherPath : std::uint8_t { identical = 0, differs = 1, absent = 2, not_decoded = 3 };
-
-constexpr char other_sql[] =
-    "SELECT o.octets <> u.octets, o.octets FROM units u JOIN units o ON o.run = u.run AND o.apid = u.apid"
-    " AND o.source = 3 - u.source AND o.sclk = u.sclk AND o.packet IS NOT NULL"
-    " AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2) WHERE u.key = ?1 ORDER BY 1 LIMIT 1";
-
-constexpr char totals_sql[] =
-    "SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), u.packet, u.apid, u.source,"
-    " u.standing = 1, CASE WHEN u.packet IS NULL THEN 3 ELSE coalesce("
-    "(SELECT o.octets <> u.octets FROM units o WHERE o.run = u.run AND o.apid = u.apid AND o.source = 3 - u.source"
-    " AND o.sclk = u.sclk AND o.packet IS NOT NULL AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2)"
-    " ORDER BY 1 LIMIT 1), 2) END, count(*)"
-    " FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
-
-constexpr char selections_sql[] =
-    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
-
-constexpr char counters_sql[] = "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
-                                " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
-
-constexpr double half_a_symbol_s = 5.0; // a tone is sent for 10 s; no two begin in less than that
 
 const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
     switch (found) {
@@ -50,6 +26,25 @@ const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
     if (source == Source::recorded) return "never_seen_live";
     return recording_complete ? "missing_in_recording" : "pending";
 }
+
+namespace {
+
+constexpr char other_sql[] =
+    "SELECT o.octets <> u.octets, o.octets FROM units u JOIN units o ON o.run = u.run AND o.apid = u.apid"
+    " AND o.source = 3 - u.source AND o.sclk = u.sclk AND o.packet IS NOT NULL"
+    " AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2) WHERE u.key = ?1 ORDER BY 1 LIMIT 1";
+
+const std::string totals_sql =
+    std::string("SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), u.packet, u.apid, u.source, u.standing = 1, ") +
+    on_other_path_sql + ", count(*) FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
+
+constexpr char selections_sql[] =
+    "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
+
+constexpr char counters_sql[] = "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
+                                " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
+
+constexpr double half_a_symbol_s = 5.0; // a tone is sent for 10 s; no two begin in less than that
 
 void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_complete, std::uint64_t units) {
     if (found == OnOtherPath::not_decoded) {
@@ -140,16 +135,14 @@ Result<Reader::State::Verdict> Reader::State::verdict_on(RunId run, const UnitRe
 }
 
 Result<v1::ProofReport> Reader::proof(RunId run) {
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
     const auto complete = state_->recording_complete(run);
     if (!complete) return complete.error();
-    const auto* words = state_->words_of(*info);
+    const auto* words = state_->words_of(instant->run);
 
     std::map<std::string, v1::ProofRow> streams, links;
-    auto rows = state_->query(totals_sql);
+    auto rows = state_->query(totals_sql.c_str());
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max));
     for (;;) {

@@ -1,11 +1,15 @@
 #include "commands/timeline_change.hpp"
+#include "server/archive/items.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
 #include "server/archive/timeline_plan.hpp"
+#include "telemetry/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <map>
+#include <tuple>
 
 namespace aeolis::archive {
 namespace {
@@ -29,13 +33,6 @@ std::optional<double> fired_sclk(const v1::TimepointRow& row) {
     return std::nullopt;
 }
 
-/// When entry interface was due, as Earth's clock shows it when what happens there comes home.
-Ert entry_heard_at(const v1::RunState& run) {
-    const auto scet = scet_from_day_of_year(run.clock().scet()).value_or(Scet{});
-    const ClockCorrelation clock{Sclk{run.clock().sclk()}, scet, run.clock().rate(), run.clock().leap_seconds(), run.clock().version()};
-    return {clock.scet_of(Sclk{run.entry_sclk()}).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
-}
-
 bool executed_by(const v1::CommandHistory& command, Ert by) {
     return std::ranges::any_of(command.stages(), [&](const v1::Item& item) {
         const auto& stage = item.command_stage();
@@ -56,7 +53,7 @@ std::vector<std::uint8_t> octets_of_hex(std::string_view hex) {
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline, const v1::CommandList& commands,
                      const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;
-    const Ert at_entry = entry_heard_at(run);
+    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()}); // when entry interface was due
     for (const auto& command : commands.commands()) {
         const auto* known = dictionary.command(command.name());
         if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;
@@ -70,7 +67,11 @@ void add_predictions(const dictionary::Dictionary& dictionary, const v1::Timepoi
         const auto& row = timeline.timepoints(static_cast<int>(i));
         if (row.has_realtime_sclk() && row.realtime_sclk() <= run.entry_sclk()) heard_e_s[i] = row.realtime_sclk() - run.entry_sclk();
     }
-    const auto predicted = predicted_from_entry_s(changed ? *changed : dictionary, heard_e_s);
+    std::vector<std::optional<double>> design_e_s;
+    for (const auto& anchor : timeline.anchors())
+        design_e_s.push_back(anchor.has_predicted_e_s() ? std::optional{anchor.predicted_e_s()} : std::nullopt);
+    const auto predicted = predicted_from_entry_s(changed ? *changed : dictionary, design_e_s, heard_e_s);
+    report.set_prediction_note(timeline.prediction_note());
     for (std::size_t i = 0; i < predicted.size(); ++i)
         if (predicted[i]) report.mutable_timepoints(static_cast<int>(i))->set_predicted_e_s(*predicted[i]);
 }
@@ -92,6 +93,68 @@ void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones
     }
 }
 
+Result<std::vector<v1::Silence>> silences_of(Reader::State& reader, RunId run) {
+    const auto snapshot = sqlite::Transaction::begin_read(reader.database);
+    if (!snapshot) return snapshot.error();
+    return reader.silences(run);
+}
+
+/// However many there are: all pages of `list`, one after another.
+template <typename List, typename Query>
+Result<List> all_of(Reader& reader, RunId run, Result<List> (Reader::*list)(RunId, const Query&), Query query) {
+    List all;
+    do {
+        auto page = (reader.*list)(run, query);
+        if (!page) return page.error();
+        query.after = page->next_after();
+        all.MergeFrom(*page);
+    } while (query.after != 0);
+    return all;
+}
+
+std::string in_small_letters(std::string name) {
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name;
+}
+
+/// What the dictionary calls a high activity, and no timepoint of that name reports; whatever of it flight has reported, live or recorded.
+/// What comes several times is numbered.
+Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, double entry_sclk, v1::AsFlownReport& report) {
+    EventQuery query;
+    query.levels = {telemetry::name_of(dictionary::EventLevel::activity_hi)};
+    query.duplicates = true;
+    query.limit = rows_page_max;
+    const auto told = all_of(reader, run, &Reader::events, query);
+    if (!told) return told.error();
+    const auto of_timepoint = [&](const v1::Event& event) {
+        return std::ranges::any_of(timeline.timepoints(), [&](const v1::TimepointRow& row) { return row.event() == event.name() && row.name() == in_small_letters(event.name()); });
+    };
+    std::map<std::tuple<double, std::string, std::string>, v1::AsFlownEvent> flown; // an event that is told twice is one
+    std::map<std::string, int> times, number;
+    for (const auto& item : told->events()) {
+        const auto& event = item.event();
+        if (of_timepoint(event)) continue;
+        const auto [place, is_new] = flown.try_emplace({event.sclk(), event.name(), event.text()});
+        auto& row = place->second;
+        if (is_new) {
+            row.set_name(in_small_letters(event.name()));
+            row.set_text(event.text());
+            ++times[row.name()];
+        }
+        if (event.source() == v1::SOURCE_REALTIME)
+            row.set_realtime_e_s(event.sclk() - entry_sclk);
+        else
+            row.set_recorded_e_s(event.sclk() - entry_sclk);
+    }
+    for (auto& [key, row] : flown) {
+        const auto anchor = std::ranges::find(timeline.anchors(), row.name(), &v1::AnchorRow::name);
+        if (anchor != timeline.anchors().end() && anchor->has_predicted_e_s()) row.set_predicted_e_s(anchor->predicted_e_s());
+        if (times[row.name()] > 1) row.set_name(row.name() + '_' + std::to_string(++number[row.name()]));
+        *report.add_events() = std::move(row);
+    }
+    return {};
+}
+
 } // namespace
 
 Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
@@ -99,7 +162,7 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     if (!state) return state.error();
     const auto timeline = timepoints(run);
     if (!timeline) return timeline.error();
-    const auto heard = tones(run, {});
+    const auto heard = all_of(*this, run, &Reader::tones, ToneQuery{});
     if (!heard) return heard.error();
     auto sent = commands(run);
     if (!sent) return sent.error();
@@ -108,10 +171,13 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     v1::AsFlownReport report;
     add_timepoints(*timeline, *heard, state->entry_sclk(), report);
     add_predictions(state_->dictionary, *timeline, *sent, *state, report); // timepoints() gave it for this dictionary only
+    if (auto added = add_events(*this, run, *timeline, state->entry_sclk(), report); !added) return added.error();
     const auto decoded = std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));
     report.set_tones_erased(static_cast<std::uint64_t>(heard->tones_size() - decoded));
-    if (auto done = add_silences(run, report); !done) return done.error();
+    auto silences = silences_of(*state_, run);
+    if (!silences) return silences.error();
+    report.mutable_silences()->Assign(silences->begin(), silences->end());
     NoteQuery all;
     all.limit = rows_page_max;
     auto written = notes(run, all);
@@ -123,10 +189,8 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     return report;
 }
 
-Result<void> Reader::add_silences(RunId run, v1::AsFlownReport& report) {
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    auto times = state_->query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
+Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
+    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
     if (!times) return times.error();
     (*times)->bind(1, std::int64_t{run.value});
     auto found = (*times)->step();
@@ -134,23 +198,24 @@ Result<void> Reader::add_silences(RunId run, v1::AsFlownReport& report) {
     if (!*found) return Error{"no run " + std::to_string(run.value)};
     const double entry_ert_us = (*times)->real(0);
 
-    auto rows = state_->query(row::link_rows);
+    auto rows = query(row::link_rows);
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
-    std::map<std::string, int> silent; ///< a link, and its silence in the report
+    std::vector<v1::Silence> all;
+    std::map<std::string, std::size_t> silent; ///< a link, and its silence among them
     for (;;) {
         auto next = (*rows)->step();
         if (!next) return next.error();
-        if (!*next) return {};
+        if (!*next) return all;
         const LinkRecord change = row::link(**rows);
         const double e_s = (static_cast<double>(change.ert.microseconds) - entry_ert_us) * 1e-6;
         if (const auto before = silent.find(change.link); before != silent.end()) {
-            report.mutable_silences(before->second)->set_to_e_s(e_s);
+            all[before->second].set_to_e_s(e_s);
             silent.erase(before);
         }
         if (change.up) continue;
-        silent[change.link] = report.silences_size();
-        auto& silence = *report.add_silences();
+        silent[change.link] = all.size();
+        auto& silence = all.emplace_back();
         silence.set_link(change.link);
         silence.set_reason(change.reason);
         silence.set_from_e_s(e_s);

@@ -1,5 +1,6 @@
 #include "server/archive/expression.hpp"
 #include "server/archive/reader.hpp"
+#include "server/archive/sample_origins.hpp"
 #include "server/archive/sample_query.hpp"
 #include "server/archive/schema.hpp"
 
@@ -11,7 +12,7 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON
+constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON; each origin and gap counts as one
 constexpr std::size_t window_samples = 100'000; ///< ours: that are in hand at once; at most four times as many
 constexpr std::size_t page_samples = 10'000;    ///< ours: the same for one page, a megabyte of text
 
@@ -54,12 +55,13 @@ void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
 }
 
 Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, const dictionary::Channel& channel,
-                                     const ClosedRange& range, std::optional<std::size_t> points) {
+                                     const ClosedRange& range, const SeriesQuery& query) {
+    const auto& points = query.points;
     v1::ChannelSeries series;
     series.set_id(channel.id.value);
     series.set_name(channel.name);
     series.set_unit(channel.type.unit);
-    const auto coverage = cover(reader, run, channel.id, range);
+    const auto coverage = cover(reader, run, channel.id, range, query.source);
     if (!coverage) return coverage.error();
     const std::size_t count = coverage->samples_at_most;
     if (points && count > *points) {
@@ -147,22 +149,23 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
     if (!range) return range.error();
     if (query.points && (*query.points < 2 || *query.points > thinned_points_max))
         return Error{"points " + std::to_string(*query.points) + " is not 2 … " + std::to_string(thinned_points_max)};
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
-    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
     const auto channels = find_channels(state_->dictionary, query.channels);
     if (!channels) return channels.error();
     v1::ChannelSeriesList list;
     std::size_t given = 0;
     for (const auto* channel : *channels) {
-        auto series = one_series(*state_, *info, *channel, *range, query.points);
+        auto series = one_series(*state_, instant->run, *channel, *range, query);
         if (!series) return series.error();
-        given += static_cast<std::size_t>(series->sclk_size());
+        if (query.provenance)
+            if (auto done = add_origins(*state_, instant->run, channel->id, query.range, *range, query.source, *series); !done) return done.error();
+        given += static_cast<std::size_t>(series->sclk_size()) + static_cast<std::size_t>(series->origins_size()) +
+                 static_cast<std::size_t>(series->gaps_size());
         if (given > exact_samples_of_all_max)
             return Error{"the channels have more than " + std::to_string(exact_samples_of_all_max) +
-                         " samples in the range: ask for points, or less; aeolis export gives any number"};
+                         (query.provenance ? " samples, origins and gaps" : " samples") + " in the range: ask for points, or less; aeolis export gives any number"};
         *list.add_channels() = std::move(series).value();
     }
     return list;
@@ -229,11 +232,9 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
     if (!channels) return channels.error();
     ClosedRange within = *range;
     {
-        auto snapshot = sqlite::Transaction::begin_read(state_->database);
-        if (!snapshot) return snapshot.error();
-        const auto info = state_->info(run);
-        if (!info) return info.error();
-        const auto span = sample_span(*state_, *info);
+        const auto instant = state_->instant(run);
+        if (!instant) return instant.error();
+        const auto span = sample_span(*state_, instant->run);
         if (!span) return span.error();
         within = {std::max(within.from_s, span->range.from_s), std::min(within.to_s, span->range.to_s)};
     }
@@ -371,11 +372,9 @@ Result<SamplePage> Reader::sample_page(RunId run, const std::vector<std::string>
 Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> at) {
     const auto range = closed({{}, at ? std::optional(at->seconds) : std::nullopt});
     if (!range) return range.error();
-    auto snapshot = sqlite::Transaction::begin_read(state_->database);
-    if (!snapshot) return snapshot.error();
-    const auto info = state_->info(run);
-    if (!info) return info.error();
-    if (auto same = state_->same_dictionary(*info); !same) return same.error();
+    const auto instant = state_->instant(run);
+    if (!instant) return instant.error();
+    if (auto same = state_->same_dictionary(instant->run); !same) return same.error();
     std::vector<std::optional<ChannelValue>> newest(state_->dictionary.channels.size());
     for (std::size_t packet = 0; packet < state_->columns.packets(); ++packet)
         for (const Source source : {Source::realtime, Source::recorded})

@@ -44,6 +44,8 @@ Result<ClosedRange> closed(const SclkRange& range);
 /// 1 … `most`, or an Error that says so.
 Result<void> check_limit(std::size_t limit, std::size_t most);
 
+/// The words of a text, whatever signs stand between.
+std::vector<std::string_view> words_in(std::string_view text);
 /// What FTS5 looks for when people type words: each as it begins, all of them, whatever signs stand between. Empty when
 /// there is no word in it.
 std::string search_words(std::string_view text);
@@ -68,10 +70,21 @@ struct Reader::State {
     /// Prepared once; `sql` is a constant.
     Result<Query> query(const char* sql);
     Result<RunInfo> info(RunId run);
+    /// A run as it is now: what is read while this lives belongs together.
+    struct Instant {
+        sqlite::Transaction snapshot;
+        RunInfo run;
+    };
+    Result<Instant> instant(RunId run);
     Result<Sequence> last_seq(RunId run);
+    Result<std::vector<RequestRecord>> requests(RunId run); ///< as they were taken
     Result<v1::RunState> run_state(const sqlite::Statement& row);
+    /// When the design had each anchor, as kept with the run; of a run of schema 6 or before by today's sheet, with a note.
+    Result<void> add_predicted_anchors(RunId run, v1::TimepointList& list);
     Result<v1::Item> explanation_item(const sqlite::Statement& row);
     Result<v1::Item> tone_item(const sqlite::Statement& row);
+    /// When each link brought nothing, and why, as was told. Call within a read transaction.
+    Result<std::vector<v1::Silence>> silences(RunId run);
     /// Whether the whole recording of a run is down.
     Result<bool> recording_complete(RunId run);
     /// A unit against the other path; of one that differs, that one's octets.

@@ -128,6 +128,7 @@ struct LinkRecord {
     bool up = false;
     std::string reason;
     Ert ert;
+    bool lost = false; ///< down, and it should be there
 };
 
 struct AlarmRecord {
@@ -237,10 +238,11 @@ struct RunEnd {
     std::string ended; ///< wall clock, ISO 8601
 };
 
-/// A controller's request to the gateway that it took: with the scenario and the seed, all that decides how a run goes.
+/// A controller's request to the gateway that it took, or what an instructor did: with the scenario and the seed, all that
+/// decides how a run goes, and what an instructor wrote about it.
 struct RequestRecord {
     std::uint64_t cycle = 0; ///< cycles of 1/64 s that had been flown
-    std::string request;     ///< CommandRequest as Protobuf text
+    std::string request;     ///< as kept_text() has it
 };
 
 /// A run that was cut off, and what it takes to fly it again up to there.
@@ -248,6 +250,8 @@ struct CutOffRun {
     RunId run;
     std::string scenario_text, started;
     std::uint64_t seed = 0;
+    ClockCorrelation clock;  ///< by which it was flown, whatever the dictionary's sheet says by now
+    bool clock_kept = false; ///< false: of schema 5 or before, whose clocks had no drift
     Sequence last_seq = 0; ///< durable, and perhaps published
     std::vector<RequestRecord> requests; ///< as they were taken
     std::vector<Sequence> annotations;   ///< items that people made: they do not come again by flying

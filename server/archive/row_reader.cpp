@@ -131,7 +131,7 @@ telemetry::Condition condition(const sqlite::Statement& row) {
 }
 
 LinkRecord link(const sqlite::Statement& row) {
-    return {seq(row), text(row, 1), row.integer(2) != 0, text(row, 3), Ert{row.integer(4)}};
+    return {seq(row), text(row, 1), row.integer(2) != 0, text(row, 3), Ert{row.integer(4)}, row.integer(5) != 0};
 }
 
 AlarmRecord alarm(const sqlite::Statement& row) {

@@ -45,8 +45,14 @@ inline constexpr char condition_rows[] = "SELECT quantity, value, comparison, bo
                                          " FROM explanation_conditions WHERE key = ?1 ORDER BY position";
 telemetry::Condition condition(const sqlite::Statement& row);
 
-inline constexpr char link_rows[] = "SELECT key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us"
-                                    " FROM link_changes WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+inline constexpr char link_rows[] =
+    "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us, l.key IS NOT NULL"
+    " FROM link_changes c LEFT JOIN link_losses l ON l.key = c.key WHERE c.key BETWEEN ?1 AND ?2 ORDER BY c.key LIMIT ?3";
+/// Of links that were lost some time in the run.
+inline constexpr char lost_link_rows[] =
+    "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us, l.key IS NOT NULL"
+    " FROM link_changes c LEFT JOIN link_losses l ON l.key = c.key WHERE c.key BETWEEN ?1 AND ?2 AND link IN"
+    " (SELECT link FROM link_changes JOIN link_losses USING (key) WHERE key BETWEEN ?1 >> 40 << 40 AND ?2) ORDER BY c.key LIMIT ?3";
 LinkRecord link(const sqlite::Statement& row);
 
 inline constexpr char alarm_rows[] = "SELECT key, unit, channel, severity, value, sclk, limit_text"

@@ -46,6 +46,7 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::explanation_, "INSERT INTO explanations VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::condition_, "INSERT INTO explanation_conditions VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::link_, "INSERT INTO link_changes VALUES (?,?,?,?,?)"},
+        {&RowWriter::link_loss_, "INSERT INTO link_losses VALUES (?)"},
         {&RowWriter::alarm_, "INSERT INTO alarms VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::staleness_, "INSERT INTO staleness VALUES (?,?,?,?,?,?,?)"},
         {&RowWriter::alarm_action_, "INSERT INTO alarm_actions VALUES (?,?,?,?,?,?,?)"},
@@ -261,7 +262,9 @@ Result<void> RowWriter::link(RunId run, const LinkRecord& record) {
         .bind(3, std::int64_t{record.up})
         .bind(4, std::string_view(record.reason))
         .bind(5, record.ert.microseconds);
-    return link_.run();
+    if (auto done = link_.run(); !done || !record.lost) return done;
+    link_loss_.bind(1, item_key(run, record.seq));
+    return link_loss_.run();
 }
 
 Result<void> RowWriter::alarm(RunId run, const AlarmRecord& record) {

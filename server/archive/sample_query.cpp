@@ -205,10 +205,12 @@ unsigned level_for(std::size_t samples, std::size_t intervals) {
 
 } // namespace
 
-Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
+Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
+                       std::optional<Source> only) {
     Coverage coverage{channel, range, {}, {}, 0};
     for (const auto place : reader.columns.places(channel)) {
         for (const Source source : {Source::realtime, Source::recorded}) {
+            if (only && *only != source) continue;
             const auto series = sealed_series(reader, run.run, place.packet, source);
             if (!series) return series.error();
             auto found = stretches(reader, *series, range);

@@ -22,7 +22,9 @@ struct Coverage {
 };
 /// Sealed segments hold most; what came after the last of them is made again from the raw units, so that the answer is
 /// everything durable without the writer's help. Call within a read transaction, and use it within the same.
-Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range);
+/// @param only  what came so; none: both sources
+Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
+                       std::optional<Source> only = std::nullopt);
 
 /// The samples of one channel in a range, defined ones only, in order of SCLK, live and recorded as one series. Valid
 /// until the next question: they stand in the reader's memory, which is not asked of the kernel anew for each.

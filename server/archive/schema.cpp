@@ -281,7 +281,31 @@ CREATE TABLE command_waits (
     key INTEGER PRIMARY KEY, held INTEGER NOT NULL, needs_approval INTEGER NOT NULL, asked_by TEXT NOT NULL) STRICT;
 )sql",
      nullptr},
+    {7, R"sql(
+CREATE TABLE run_anchors (
+    run INTEGER NOT NULL, anchor INTEGER NOT NULL, name TEXT NOT NULL, predicted_e_s REAL,
+    PRIMARY KEY (run, anchor)) STRICT, WITHOUT ROWID;
+CREATE TABLE link_losses (key INTEGER PRIMARY KEY) STRICT;
+CREATE VIEW clock_log AS
+    SELECT r.run, r.scenario, k.version, r.correlation_sclk AS sclk,
+           strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6 + 946728000, 'unixepoch') AS scet,
+           coalesce(k.rate, 1.0) - 1.0 AS drift, k.leap_seconds, r.entry_sclk,
+           strftime('%Y-%jT%H:%M:%f', r.correlation_scet_us / 1e6
+               + (r.entry_sclk - r.correlation_sclk) * coalesce(k.rate, 1.0) + 946728000, 'unixepoch') AS entry_scet,
+           r.light_time_s
+    FROM runs r LEFT JOIN run_clocks k ON k.run = r.run;
+CREATE VIEW command_wait_log AS
+    SELECT w.key >> 40 AS run, w.key & 0xFFFFFFFFFF AS seq,
+           strftime('%Y-%jT%H:%M:%f', c.at_us / 1e6 + 946728000, 'unixepoch') AS at, c.command, c.name, w.held,
+           w.needs_approval, w.asked_by, c.evidence
+    FROM command_waits w JOIN command_stages c ON c.key = w.key;
+)sql",
+     nullptr},
 };
+
+// Of a new archive; SQLite's own is 4 kB. A block of the pyramid, or a packed column, lies in one page, and trees are a level less deep:
+// a plot that is looked at first reads a third of the pages. docs/decisions/0028
+constexpr char page_size_sql[] = "PRAGMA page_size = 16384";
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
 constexpr char by_run[] = "run = ?1";
@@ -310,6 +334,7 @@ constexpr RunTable tables_of_runs[] = {
     {"command_waits", by_key, false},
     {"command_stages", by_key, false},
     {"commands", by_run, false},
+    {"link_losses", by_key, false},
     {"link_changes", by_key, false},
     {"link_totals", by_run, false},
     {"staleness", by_key, false},
@@ -318,6 +343,7 @@ constexpr RunTable tables_of_runs[] = {
     {"requests", by_run, false},
     {"run_solution", by_run, false},
     {"run_clocks", by_run, false},
+    {"run_anchors", by_run, false},
     {"runs", by_run, false},
 };
 
@@ -364,6 +390,8 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     auto version = version_of(database);
     if (!version) return version.error();
     if (*version == schema_version) return {};
+    if (*version == 0)
+        if (auto done = database.execute(page_size_sql); !done) return done;
     // One transaction, before WAL is switched on: a crash leaves the file as it was, or a whole archive, nothing between.
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();

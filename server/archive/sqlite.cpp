@@ -60,7 +60,7 @@ Result<bool> Statement::step() {
     }
     sqlite3* database = sqlite3_db_handle(statement_.get());
     const char* name = sqlite3_db_filename(database, "main");
-    Error error{std::string(name == nullptr ? "archive" : name) + ": " + sqlite3_errmsg(database)};
+    Error error{std::string(name == nullptr ? "archive" : name) + ": " + sqlite3_errmsg(database), true};
     sqlite3_reset(statement_.get());
     return error;
 }
@@ -106,7 +106,7 @@ Result<Database> Database::open(const std::string& file, Mode mode) {
     sqlite3* handle = nullptr;
     const int code = sqlite3_open_v2(file.c_str(), &handle, flags, nullptr);
     database.database_.reset(handle);
-    if (code != SQLITE_OK) return Error{file + ": " + sqlite3_errstr(code)};
+    if (code != SQLITE_OK) return Error{file + ": " + sqlite3_errstr(code), true};
     sqlite3_extended_result_codes(handle, 1);
     sqlite3_busy_timeout(handle, busy_timeout_ms);
     return database;
@@ -150,7 +150,7 @@ Result<void> Database::attach_read_only(const std::filesystem::path& file, const
     uri += "?mode=ro";
     statement->bind(1, std::string_view(uri)).bind(2, std::string_view(name));
     if (statement->run()) return {};
-    return Error{file.string() + ": " + sqlite3_errmsg(database_.get())};
+    return Error{file.string() + ": " + sqlite3_errmsg(database_.get()), true};
 }
 
 Result<void> Database::copy_to(Database& empty) const {
@@ -160,7 +160,7 @@ Result<void> Database::copy_to(Database& empty) const {
     const int stepped = sqlite3_backup_step(backup, -1);
     const int finished = sqlite3_backup_finish(backup);
     if (stepped == SQLITE_DONE && finished == SQLITE_OK) return {};
-    return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped)};
+    return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped), true};
 }
 
 void Database::stop_when(std::function<bool()> stop) {
@@ -192,7 +192,7 @@ bool Database::autocommit() const {
 Error Database::error(std::string_view doing) const {
     std::string text = file_ + ": ";
     if (!doing.empty()) text.append(doing).append(": ");
-    return {text + sqlite3_errmsg(database_.get())};
+    return {text + sqlite3_errmsg(database_.get()), true};
 }
 
 Result<Transaction> Transaction::begin_write(Database& database) {

@@ -43,14 +43,14 @@ struct Anchors {
     Times now;
 };
 
-Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times& told) {
+Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times& design_e_s, const Times& told) {
     Anchors anchors{anchors_from_entry_s(dictionary), Times(dictionary.anchors.size())};
     std::optional<std::size_t> last; ///< of those that the design predicts
     for (std::size_t i = 0; i < anchors.now.size(); ++i) {
         const auto& row = dictionary.anchors[i];
-        const auto predicted = i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt;
+        const auto predicted = i < design_e_s.size() ? design_e_s[i] : std::nullopt;
         if (!anchors.before[i] && predicted)
-            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *dictionary.predicted_anchor_e_s[*last]) : *predicted; // by its distance to the last
+            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *design_e_s[*last]) : *predicted; // by its distance to the last
         const bool from_parent = row.parent && row.parent->value < i && row.offset_s && anchors.now[row.parent->value];
         anchors.now[i] = told[i] ? told[i] : from_parent ? sum(anchors.now[row.parent->value], row.offset_s) : anchors.before[i];
         if (predicted) last = i;
@@ -83,8 +83,9 @@ std::vector<std::optional<double>> planned_from_entry_s(const dictionary::Dictio
 }
 
 std::vector<std::optional<double>> predicted_from_entry_s(const dictionary::Dictionary& dictionary,
+                                                          const std::vector<std::optional<double>>& design_e_s,
                                                           const std::vector<std::optional<double>>& heard_e_s) {
-    return fires_from_entry_s(dictionary, predicted_anchors(dictionary, told_anchors(dictionary, heard_e_s)), heard_e_s);
+    return fires_from_entry_s(dictionary, predicted_anchors(dictionary, design_e_s, told_anchors(dictionary, heard_e_s)), heard_e_s);
 }
 
 } // namespace aeolis::archive

@@ -65,7 +65,7 @@ Result<std::vector<RunLine>> run_lines(sqlite::Database& database) {
     }
 }
 
-Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs) {
+Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRecord by) {
     auto& database = archive.database();
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
@@ -84,7 +84,11 @@ Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs) {
             taken->bind(1, std::int64_t{run.value});
             if (auto done = taken->run(); !done) return done;
         }
+        by.detail += (by.detail.empty() ? "runs " : ", ") + std::to_string(run.value);
     }
+    by.action = "prune";
+    by.outcome = "done";
+    if (auto noted = append_audit(database, {&by, 1}); !noted) return noted;
     return transaction->commit();
 }
 

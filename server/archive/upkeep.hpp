@@ -1,6 +1,7 @@
 #pragma once
 
 #include "common/result.hpp"
+#include "server/archive/audit.hpp"
 #include "server/archive/records.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/archive/writer_lock.hpp"
@@ -39,7 +40,8 @@ Result<std::vector<RunLine>> run_lines(sqlite::Database& database);
 
 /// Takes the runs away, all of them or none, and notes in `pruned_runs` that they were there. Their numbers are not
 /// given again. The file keeps its size until it is vacuumed.
-Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs);
+/// @param by  when, who and from where, of the entry in the audit; what was done is added here
+Result<void> prune(Maintenance& archive, const std::vector<RunId>& runs, AuditRecord by);
 
 /// Gives the room that pruned runs left back to the disk; needs as much again while it works.
 Result<void> vacuum(Maintenance& archive);

@@ -20,18 +20,39 @@ std::string name_of_file(const std::filesystem::path& file) {
     return name.substr(file_prefix.size(), name.size() - file_prefix.size() - file_extension.size());
 }
 
-/// By name; the newest first.
+/// The newest first. What cannot be read is left out: a folder may change while it is looked at.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
     std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> found;
     std::error_code error;
-    for (const auto& entry : std::filesystem::directory_iterator{folder, error})
-        if (!name_of_file(entry.path()).empty() && entry.is_regular_file(error)) found.emplace_back(entry.last_write_time(error), entry.path());
+    for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end; entry.increment(error)) {
+        std::error_code gone;
+        if (name_of_file(entry->path()).empty() || !entry->is_regular_file(gone)) continue;
+        if (const auto written = entry->last_write_time(gone); !gone) found.emplace_back(written, entry->path());
+    }
     std::ranges::sort(found, std::greater{});
     std::vector<std::filesystem::path> files;
     files.reserve(found.size());
     for (auto& [written, file] : found)
         files.push_back(std::move(file));
     return files;
+}
+
+/// What the file says of itself.
+v1::CampaignState kept_in(const std::filesystem::path& file) {
+    v1::CampaignState state;
+    state.set_campaign(name_of_file(file));
+    const auto heading = heading_of(file);
+    if (!heading) {
+        state.set_state("unreadable");
+        state.set_fault(heading.error().message);
+        return state;
+    }
+    state.set_scenario(heading->scenario);
+    state.set_seed(heading->seed);
+    state.set_cases(static_cast<std::uint32_t>(heading->cases));
+    state.set_kept(static_cast<std::uint32_t>(heading->kept));
+    state.set_state(heading->kept >= heading->cases ? "complete" : "incomplete");
+    return state;
 }
 
 v1::Spread message_of(const Spread& spread) {
@@ -160,52 +181,46 @@ Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
 }
 
 Result<v1::CampaignState> CampaignDesk::start(Order order) {
-    const std::scoped_lock lock{mutex_};
-    if (!closed_.empty()) return Error{closed_};
-    if (flying()) return Error{fmt::format("the campaign {} flies: cancel it first, or wait for its end", flight_->name)};
-    flight_.reset();
-    auto store = open_store(order, dictionary_);
-    if (!store) return Error{store.error().message + "; another seed makes another campaign"};
-    const auto name = name_of_file(order.file);
     const auto file = order.file;
-    auto flight = std::make_unique<Flight>(name, std::move(order), std::move(*store));
-    flight->thread = std::thread{[flying = flight.get(), this] { flying->fly(dictionary_); }};
-    flight_ = std::move(flight);
-    return state_of(name, file);
+    {
+        const std::scoped_lock lock{mutex_};
+        if (!closed_.empty()) return Error{closed_};
+        if (flying() && flight_->stop) return Error{fmt::format("the campaign {} is being cancelled: try again in a moment", flight_->name)};
+        if (flying()) return Error{fmt::format("the campaign {} flies: cancel it first, or wait for its end", flight_->name)};
+        flight_.reset();
+        auto store = open_store(order, dictionary_);
+        if (!store) return Error{store.error().message + "; another seed makes another campaign"};
+        auto flight = std::make_unique<Flight>(name_of_file(file), std::move(order), std::move(*store));
+        flight->thread = std::thread{[flying = flight.get(), this] { flying->fly(dictionary_); }};
+        flight_ = std::move(flight);
+    }
+    return state_of(file);
 }
 
 Result<v1::CampaignState> CampaignDesk::cancel(const std::string& campaign) {
-    const std::scoped_lock lock{mutex_};
-    if (!flying() || flight_->name != campaign) return Error{fmt::format("the campaign {} does not fly", campaign)};
-    flight_->stop = true;
-    flight_->thread.join(); // within a cycle of each case, and one commit
-    return state_of(campaign, flight_->order.file);
+    std::filesystem::path file;
+    {
+        const std::scoped_lock lock{mutex_};
+        if (!flying() || flight_->name != campaign) return Error{fmt::format("the campaign {} does not fly", campaign)};
+        flight_->stop = true;
+        file = flight_->order.file;
+    }
+    return state_of(file);
 }
 
-v1::CampaignState CampaignDesk::state_of(const std::string& campaign, const std::filesystem::path& file) {
-    v1::CampaignState state;
-    state.set_campaign(campaign);
-    const auto heading = heading_of(file);
-    if (!heading) {
-        state.set_state("unreadable");
-        state.set_fault(heading.error().message);
-        return state;
-    }
-    state.set_scenario(heading->scenario);
-    state.set_seed(heading->seed);
-    state.set_cases(static_cast<std::uint32_t>(heading->cases));
-    state.set_kept(static_cast<std::uint32_t>(heading->kept));
-    state.set_state(heading->kept >= heading->cases ? "complete" : "incomplete");
-    if (!flight_ || flight_->name != campaign) return state;
+v1::CampaignState CampaignDesk::state_of(const std::filesystem::path& file) {
+    auto state = kept_in(file);
+    const std::scoped_lock lock{mutex_};
+    if (!flight_ || flight_->name != state.campaign() || state.state() == "unreadable") return state;
     if (flight_->over) {
         state.set_fault(flight_->fault);
         return state;
     }
-    state.set_state(flight_->begun ? "flying" : "preparing");
+    state.set_state(flight_->stop ? "cancelling" : flight_->begun ? "flying" : "preparing");
     state.set_jobs(flight_->order.jobs);
     const double rate_per_s = flight_->rate_per_s;
     state.set_rate_per_s(rate_per_s);
-    if (rate_per_s > 0.0) state.set_remaining_s(static_cast<double>(heading->cases - heading->kept) / rate_per_s);
+    if (rate_per_s > 0.0 && !flight_->stop) state.set_remaining_s(static_cast<double>(state.cases() - state.kept()) / rate_per_s);
     return state;
 }
 
@@ -213,33 +228,25 @@ v1::CampaignList CampaignDesk::list() {
     v1::CampaignList list;
     list.set_cases_max(cases_max);
     list.set_jobs_max(jobs_max());
-    const std::scoped_lock lock{mutex_};
     for (const auto& file : files_in(folder_))
-        *list.add_campaigns() = state_of(name_of_file(file), file);
+        *list.add_campaigns() = state_of(file);
     return list;
 }
 
-std::filesystem::path CampaignDesk::file_of(const std::string& campaign) const {
+std::optional<std::filesystem::path> CampaignDesk::file_of(const std::string& campaign) const {
     // The name is looked for among the files and never made a path: it comes from a client.
     for (auto& file : files_in(folder_))
-        if (name_of_file(file) == campaign) return file;
-    return {};
+        if (name_of_file(file) == campaign) return std::move(file);
+    return std::nullopt;
 }
 
-bool CampaignDesk::has(const std::string& campaign) const {
-    return !file_of(campaign).empty();
-}
-
-Result<v1::CampaignReport> CampaignDesk::report(const std::string& campaign) {
-    const auto file = file_of(campaign);
+Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& file, std::function<bool()> stop) {
     v1::CampaignReport report;
-    {
-        const std::scoped_lock lock{mutex_};
-        *report.mutable_state() = state_of(campaign, file);
-    }
+    *report.mutable_state() = state_of(file);
     if (report.state().state() == "unreadable") return Error{report.state().fault()};
     auto results = CampaignResults::open(file, report.state().cases());
     if (!results) return results.error();
+    results->stop_when(std::move(stop));
     const auto summary = results->brief();
     if (!summary) return summary.error();
     report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept)); // one instant in one answer
@@ -247,12 +254,13 @@ Result<v1::CampaignReport> CampaignDesk::report(const std::string& campaign) {
     return report;
 }
 
-Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::string& campaign, std::uint64_t place, std::uint64_t limit) {
-    const auto file = file_of(campaign);
+Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::path& file, std::uint64_t place, std::uint64_t limit,
+                                                        std::function<bool()> stop) {
     const auto heading = heading_of(file);
     if (!heading) return heading.error();
     auto results = CampaignResults::open(file, heading->cases);
     if (!results) return results.error();
+    results->stop_when(std::move(stop));
     const auto found = results->arrivals(place, limit);
     if (!found) return found.error();
     v1::CampaignTouchdowns page;

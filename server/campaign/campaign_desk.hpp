@@ -7,6 +7,7 @@
 #include "server/scenario/scenario_library.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -33,15 +34,17 @@ class CampaignDesk {
     Result<Order> order_of(const v1::StartCampaign& request) const;
     /// An Error names why it cannot be flown now: another flies, or the file belongs to another program.
     Result<v1::CampaignState> start(Order order);
-    /// The cases that are kept stay, and the next start goes on with them. An Error: it does not fly.
+    /// It is over within a cycle of each case and one commit, and "cancelling" until then. The cases that are kept stay, and the
+    /// next start goes on with them. An Error: it does not fly.
     Result<v1::CampaignState> cancel(const std::string& campaign);
 
     v1::CampaignList list();
-    bool has(const std::string& campaign) const;
-    /// Errors name a file that cannot be read.
-    Result<v1::CampaignReport> report(const std::string& campaign);
+    /// None: there is no such campaign.
+    std::optional<std::filesystem::path> file_of(const std::string& campaign) const;
+    /// Both end with an Error soon after `stop` says so. Errors name a file that cannot be read.
+    Result<v1::CampaignReport> report(const std::filesystem::path& file, std::function<bool()> stop);
     /// Those that came after `place`, in that order.
-    Result<v1::CampaignTouchdowns> touchdowns(const std::string& campaign, std::uint64_t place, std::uint64_t limit);
+    Result<v1::CampaignTouchdowns> touchdowns(const std::filesystem::path& file, std::uint64_t place, std::uint64_t limit, std::function<bool()> stop);
 
     /// From now on none can be started, because of `reason`.
     void close(std::string reason);
@@ -49,8 +52,7 @@ class CampaignDesk {
 
   private:
     struct Flight;
-    std::filesystem::path file_of(const std::string& campaign) const; ///< empty: there is none
-    v1::CampaignState state_of(const std::string& campaign, const std::filesystem::path& file);
+    v1::CampaignState state_of(const std::filesystem::path& file);
     bool flying() const; ///< under mutex_
 
     const std::filesystem::path folder_;

@@ -90,6 +90,8 @@ class CampaignResults {
   public:
     /// Of the cases 1 … `cases`.
     static Result<CampaignResults> open(const std::filesystem::path& file, std::uint64_t cases);
+    /// From now on what is asked ends with an Error soon after `stop` says so.
+    void stop_when(std::function<bool()> stop) { database_.stop_when(std::move(stop)); }
 
     Result<Summary> summary();
     /// Without events, whose spreads take most of the time.

@@ -1,8 +1,11 @@
+#include "server/access/this_user.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/long_work.hpp"
 #include "server/cli/recorded_words.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/pipeline/derivation.hpp"
+#include "server/rehearsal/wall_clock.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -16,6 +19,24 @@ int failed_at(const char* command, const Error& error) {
 
 std::optional<archive::RunId> asked(const ArchiveOptions& options) {
     return options.run ? std::optional(archive::RunId{*options.run}) : std::nullopt;
+}
+
+/// Says how far it is; ends at the first Ctrl-C.
+pipeline::GoesOn until_interrupted(ProgressLine& line) {
+    stop_at_interrupt();
+    return [&line](const pipeline::Work& work) {
+        line.draw(fmt::format("run {}: {} of {} units", work.run.value, work.units, work.of_units));
+        return !stop_asked();
+    };
+}
+
+/// Of an entry in the audit.
+archive::AuditRecord by_this_user() {
+    archive::AuditRecord by;
+    by.at = wall_clock_text();
+    by.who = this_user();
+    by.from = command_line;
+    return by;
 }
 
 /// Runs to take away, or what is wrong with the question.
@@ -40,9 +61,13 @@ int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
     if (!words) return exit_code;
-    const auto found =
-        pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(), std::filesystem::temp_directory_path());
+    const auto found = [&] {
+        ProgressLine line;
+        return pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(), std::filesystem::temp_directory_path(),
+                                until_interrupted(line));
+    }();
     if (!found) return failed_at("verify", found.error());
+    if (found->stopped) return failed("archive verify: stopped before all was compared");
     for (const auto& fault : found->faults)
         fmt::print("{}\n", fault);
     for (const auto& note : found->notes)
@@ -56,12 +81,16 @@ int archive_rebuild(const ArchiveOptions& options) {
     int exit_code = 0;
     const auto words = recorded_words(options.shared.dictionary, options.xtce, exit_code);
     if (!words) return exit_code;
-    const auto rebuilt = pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get());
+    const auto rebuilt = [&] {
+        ProgressLine line;
+        return pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get(), by_this_user(), until_interrupted(line));
+    }();
     if (!rebuilt) return failed_at("rebuild", rebuilt.error());
     for (const auto& run : rebuilt->runs)
         fmt::print("run {}: made again from its units\n", run.value);
     for (const auto& left : rebuilt->left)
         fmt::print("left as it is: {}\n", left);
+    if (rebuilt->stopped) return failed("archive rebuild: stopped; what is not named above is as it was, and can be rebuilt again");
     return rebuilt->left.empty() ? 0 : 1;
 }
 
@@ -82,7 +111,7 @@ int archive_prune(const PruneOptions& options) {
         fmt::print("{} of {} runs would go; {}\n", runs->size(), all->size(), runs->empty() ? "nothing to do" : "--yes takes them away");
         return 0;
     }
-    if (auto done = archive::prune(*archive, numbers); !done) return failed_at("prune", done.error());
+    if (auto done = archive::prune(*archive, numbers, by_this_user()); !done) return failed_at("prune", done.error());
     fmt::print("{} of {} runs are gone; aeolis archive vacuum gives their room back to the disk\n", runs->size(), all->size());
     return 0;
 }

@@ -2,49 +2,15 @@
 #include "server/campaign/campaign_plots.hpp"
 #include "server/campaign/campaign_report.hpp"
 #include "server/cli/commands.hpp"
+#include "server/cli/long_work.hpp"
 #include "server/cli/shipped_paths.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <fmt/format.h>
 #include <thread>
-#include <unistd.h>
 
 namespace aeolis::server {
 namespace {
-
-std::atomic<bool>& stop_asked() {
-    static std::atomic<bool> asked{false};
-    return asked;
-}
-static_assert(std::atomic<bool>::is_always_lock_free); // a signal sets it
-
-/// Ctrl-C ends the campaign, without the cases that are flying; the second time it ends the program.
-void stop_at_interrupt() {
-    std::signal(SIGINT, [](int) {
-        stop_asked() = true;
-        std::signal(SIGINT, SIG_DFL);
-    });
-    std::signal(SIGTERM, [](int) { stop_asked() = true; });
-}
-
-/// A bar on a terminal, else nothing.
-class ProgressBar {
-  public:
-    ~ProgressBar() {
-        if (drawn_) fmt::print(stderr, "\r\033[K");
-    }
-    void draw(const campaign::Progress& progress) {
-        if (!on_terminal_) return;
-        fmt::print(stderr, "\r{}\033[K", campaign::progress_line(progress));
-        drawn_ = true;
-    }
-
-  private:
-    bool on_terminal_ = isatty(STDERR_FILENO) == 1;
-    bool drawn_ = false;
-};
 
 unsigned jobs_of(const CampaignOptions& options) {
     return options.jobs > 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
@@ -55,9 +21,9 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     auto store = campaign::open_store(order, dictionary);
     if (!store) return store.error();
     stop_at_interrupt();
-    ProgressBar bar;
+    ProgressLine line;
     const auto progress = campaign::fly(*store, order, dictionary, stop_asked(),
-                                        [&](const campaign::Progress& so_far) { bar.draw(so_far); });
+                                        [&](const campaign::Progress& so_far) { line.draw(campaign::progress_line(so_far)); });
     if (!progress) return progress.error();
     return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 // The subcommands of `aeolis`: each takes what was given and returns the exit code: 0 done, 1 failed or found
-// something, 2 bad use.
+// something, 2 bad use, 3 not known whether it was done.
 namespace aeolis::server {
 
 struct SharedOptions {
@@ -42,6 +42,18 @@ int accounts_list(const AccountsOptions& options);
 /// Gives a user a new password, or makes an administrator of that name; prints the password.
 int accounts_reset(const AccountsOptions& options);
 
+struct SendOptions {
+    std::filesystem::path file;                 ///< a command file: a CommandSequence as JSON
+    std::string server = "http://127.0.0.1:8080";
+    std::string token;                          ///< of a server with accounts
+    std::filesystem::path authorities;          ///< PEM; empty: the system's
+    std::string by;                             ///< who asks, where the file does not say it
+    std::optional<std::uint32_t> run;           ///< the one that goes on
+    bool dry_run = false;
+};
+/// Sends a command file to a server; 0 when all was taken, 3 when it is not known whether it was, else nothing was.
+int send(const SendOptions& options);
+
 struct RehearseOptions {
     SharedOptions shared;
     std::string scenario;
@@ -61,7 +73,7 @@ struct ArchiveOptions {
 };
 struct ReportOptions {
     ArchiveOptions of;
-    bool json = false;
+    bool json = false, csv = false;
 };
 /// Prints a run as it was flown.
 int report(const ReportOptions& options);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
@@ -45,6 +46,17 @@ std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& f
                 ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
 }
 
+/// Each option also stands in an environment variable of its name: --log-level in AEOLIS_LOG_LEVEL. Not --config, which is read before.
+void name_environment(CLI::App& command) {
+    for (auto* option : command.get_options()) {
+        const auto& name = option->get_lnames().front();
+        if (name == "help" || name == "config") continue;
+        std::string variable = "AEOLIS_" + name;
+        for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        option->envname(variable);
+    }
+}
+
 std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
     constexpr std::string_view option = "--config";
     for (int i = 2; i < argc; ++i) {
@@ -59,7 +71,9 @@ std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
 aeolis::Result<void> take_settings(CLI::App& command, const std::filesystem::path& file) {
     std::ifstream in{file};
     if (!in) return aeolis::Error{file.string() + " cannot be read"};
-    for (const auto& item : CLI::ConfigINI{}.from_config(in)) {
+    CLI::ConfigINI reader;
+    reader.arrayBounds('\x01', '\x01'); // else it splits a value at commas and blanks: whoever reads the option does, where it has several
+    for (const auto& item : reader.from_config(in)) {
         auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
         if (option == nullptr || item.inputs.size() != 1)
             return aeolis::Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(), item.fullname(), command.get_name())};
@@ -79,7 +93,7 @@ int main(int argc, char** argv) {
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
 
     CLI::App app{"Aeolis lands a spacecraft on Mars and lets you control it from a browser.\n"
-                 "Exit codes: 0 done, 1 failed or found something, 2 bad use."};
+                 "Exit codes: 0 done, 1 failed or found something, 2 bad use, 3 not known whether it was done (send)."};
     app.name("aeolis");
     app.set_version_flag("--version", version);
     app.require_subcommand(1);
@@ -94,28 +108,18 @@ int main(int argc, char** argv) {
                  "What the command line says counts first, then the environment variable named beside an option, then the file.");
     std::filesystem::path settings;
     serve_command->add_option("--config", settings, "the file of options");
-    serve_command->add_option("--listen", serving.listen, "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")
-        ->envname("AEOLIS_LISTEN")
-        ->capture_default_str();
-    serve_command->add_option("--accounts", serving.accounts, "the file of users and tokens, made at the first start; left out: no log-in, on loopback only")
-        ->envname("AEOLIS_ACCOUNTS");
-    serve_command->add_option("--tls-certificate", serving.certificate, "PEM file with the server's certificate and its chain: then https only")
-        ->envname("AEOLIS_TLS_CERTIFICATE");
-    serve_command->add_option("--tls-key", serving.key, "PEM file with its private key")->envname("AEOLIS_TLS_KEY");
-    serve_command->add_option("--host", serving.names, "names by which browsers call this server, with commas between; loopback names always count")
-        ->delimiter(',')
-        ->envname("AEOLIS_HOST");
-    serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
-        ->envname("AEOLIS_ARCHIVE")
-        ->capture_default_str();
-    serve_command->add_option("--web", serving.web, "directory of the built console")->envname("AEOLIS_WEB")->capture_default_str();
+    serve_command->add_option("--listen", serving.listen, "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")->capture_default_str();
+    serve_command->add_option("--accounts", serving.accounts, "the file of users and tokens, made at the first start; left out: no log-in, on loopback only");
+    serve_command->add_option("--tls-certificate", serving.certificate, "PEM file with the server's certificate and its chain: then https only");
+    serve_command->add_option("--tls-key", serving.key, "PEM file with its private key");
+    serve_command->add_option("--host", serving.names, "names by which browsers call this server, with commas between; loopback names always count")->delimiter(',');
+    serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")->capture_default_str();
+    serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
     serve_command->add_option("--log-level", serving.log_level, "what goes to standard error")
         ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
-        ->envname("AEOLIS_LOG_LEVEL")
         ->capture_default_str();
     serve_command->add_option("--log-format", serving.log_format, "text for people, json: an object a line")
         ->check(CLI::IsMember({"text", "json"}))
-        ->envname("AEOLIS_LOG_FORMAT")
         ->capture_default_str();
     auto* scenario_option = serve_command->add_option("--scenario", serving.scenario,
                                                       "start this rehearsal at once: a file, or a name that ships");
@@ -142,6 +146,7 @@ int main(int argc, char** argv) {
                                "PACE"})
         ->capture_default_str();
     add_shared(*serve_command, serving.shared);
+    name_environment(*serve_command);
     serve_command->callback([&] { exit_code = serve(serving); });
 
     RehearseOptions rehearsing;
@@ -309,26 +314,40 @@ int main(int argc, char** argv) {
     const auto add_selection = [&](CLI::App& command, ExportOptions& options) {
         add_archive_words(command, options.of);
         command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());
-        command.add_option("--channels", options.channels, "names or aliases, with commas between; left out: all")->delimiter(',');
+        command.add_option("--channel,--channels", options.channels, "names or aliases, several in a row or with commas between; left out: all")->delimiter(',');
         command.add_option("--from", options.from_s, "first SCLK [s]; left out: all");
         command.add_option("--to", options.to_s, "last SCLK [s]; left out: all");
     };
     auto* export_command = app.add_subcommand("export", "a run's samples in order of SCLK, live and recorded as one series: a row a "
                                                         "sample, in the same memory however many");
     add_selection(*export_command, exporting);
-    export_command->add_option("--format", exporting.format, "csv or jsonl")->check(CLI::IsMember({"csv", "jsonl"}))->capture_default_str();
+    auto* lines = export_command->add_option("--format", exporting.format, "csv or jsonl")->check(CLI::IsMember({"csv", "jsonl"}))->capture_default_str();
+    export_command->add_flag("--csv")->description("as CSV, which is what it is without a word, too")->excludes(lines);
     export_command->add_option("--align", exporting.align, "a line an instant and a column a channel: at the times of this one of the channels, "
                                                            "or at multiples of so many seconds; of each the newest value");
     export_command->add_option("--out", exporting.out, "a new file; left out: standard output");
     export_command->callback([&] { exit_code = export_samples(exporting); });
 
+    SendOptions sending_file;
+    auto* send_command = app.add_subcommand("send", "sends a command file to a server: all of its commands are checked before the first goes, and "
+                                                    "when one is refused none goes; a line a command, 1 when nothing was sent, 3 when no answer says whether it was");
+    send_command->add_option("--file", sending_file.file, "JSON, as POST /api/v1/runs/{run}/sequences takes it")->required();
+    send_command->add_option("--server", sending_file.server, "http://HOST:PORT or https://HOST:PORT")->envname("AEOLIS_SERVER")->capture_default_str();
+    send_command->add_option("--token", sending_file.token, "of a server with accounts, over https or to this machine; others can read a command line, but not AEOLIS_TOKEN")->envname("AEOLIS_TOKEN");
+    send_command->add_option("--authorities", sending_file.authorities, "PEM file of who may have signed the server's certificate; left out: the system's");
+    send_command->add_option("--by", sending_file.by, "who asks, where the file does not say it and the server has no accounts");
+    send_command->add_option("--run", sending_file.run, "only if this one goes on; left out: the one that goes on")->check(whole_number());
+    send_command->add_flag("--dry-run", sending_file.dry_run, "only say what would happen");
+    send_command->callback([&] { exit_code = send(sending_file); });
+
     ReportOptions reporting{exporting.of};
     auto* report_command = app.add_subcommand(
-        "report", "a run as it was flown: when each timepoint came by plan, tone, UHF and recording, what was silent, and the proof");
+        "report", "a run as it was flown: when each timepoint and event came by plan, tone, UHF and recording, what was silent, and the proof");
     add_archive(*report_command, reporting.of.archive);
     report_command->add_option("--dictionary", reporting.of.shared.dictionary, "the mission's words")->capture_default_str();
     report_command->add_option("--run", reporting.of.run, "number of the run")->required()->check(whole_number());
-    report_command->add_flag("--json", reporting.json, "print one JSON object");
+    auto* as_object = report_command->add_flag("--json", reporting.json, "print one JSON object");
+    report_command->add_flag("--csv", reporting.csv, "print its timepoints and events, a row each")->excludes(as_object);
     report_command->callback([&] { exit_code = report(reporting); });
 
     AccountsOptions keeping;

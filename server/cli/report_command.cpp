@@ -1,4 +1,5 @@
 #include "server/api/json.hpp"
+#include "server/api/run_questions.hpp"
 #include "server/archive/reader.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/recorded_words.hpp"
@@ -26,7 +27,15 @@ void print_timepoints(const v1::AsFlownReport& report) {
                    from_entry(row.has_recorded_e_s(), row.recorded_e_s()),
                    row.has_margin_s() ? fmt::format("{:.1f} s", row.margin_s()) : "-", row.verdict());
     fmt::print("Predicted: at entry interface, by the timeline's rule over the anchors that ground had then.\n");
+    if (!report.prediction_note().empty()) fmt::print("Note: {}.\n", report.prediction_note());
     fmt::print("Margin: later than the previous timepoint and the minimum offset from it.\n");
+}
+
+void print_events(const v1::AsFlownReport& report) {
+    fmt::print("\n{:<30}{:>10}{:>10}{:>10}  {}\n", "event", "predicted", "by UHF", "recorded", "as flight reported it");
+    for (const auto& row : report.events())
+        fmt::print("{:<30}{:>10}{:>10}{:>10}  {}\n", row.name(), from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
+                   from_entry(row.has_realtime_e_s(), row.realtime_e_s()), from_entry(row.has_recorded_e_s(), row.recorded_e_s()), row.text());
 }
 
 void print_links(const v1::AsFlownReport& report) {
@@ -83,9 +92,14 @@ int report(const ReportOptions& options) {
         fmt::print("{}\n", to_json(*report));
         return 0;
     }
+    if (options.csv) {
+        fmt::print("{}", as_flown_csv(*report));
+        return 0;
+    }
     const auto& run = report->run();
     fmt::print("Run {}: {}, seed {}, {}; {}\n", run.run(), run.scenario(), run.seed(), run.outcome(), run.started());
     print_timepoints(*report);
+    print_events(*report);
     print_links(*report);
     print_proof(report->proof());
     for (const auto& command : report->commands())

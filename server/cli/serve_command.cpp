@@ -4,11 +4,13 @@
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <csignal>
 #include <fmt/format.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <thread>
 
 namespace aeolis::server {
@@ -62,10 +64,23 @@ std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
                        name_of(scenario->test_venue), waits_for);
 }
 
+constexpr rlim_t files_besides_connections = 256; // ours: the archive from each thread, campaigns, the console's files
+
+/// A process begins with 1024 open files mostly, and may take more by itself: all streams and who asks besides need them.
+void allow_open_files() {
+    constexpr rlim_t wanted = WebServer::streams_max + WebServer::connections_besides + files_besides_connections;
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= wanted) return;
+    files.rlim_cur = std::min(wanted, files.rlim_max);
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    if (files.rlim_cur < wanted) spdlog::warn("this process may have {} files open; all streams, and who asks besides, need {}", files.rlim_cur, wanted);
+}
+
 } // namespace
 
 int serve(const ServeOptions& options) {
     set_log(options);
+    allow_open_files();
     const auto listen = listen_of(options.listen);
     if (!listen)
         return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
@@ -108,13 +123,16 @@ int serve(const ServeOptions& options) {
          .accounts = options.accounts, .archive = options.archive, .scenarios = options.shared.scenarios, .web = options.web, .other = other.get()},
         *dictionary);
     if (!backend) return failed(backend.error().message);
+    // At once: whatever fails from here on, this is the only time that it can be read.
+    if (const auto& password = (*backend)->first_password(); !password.empty()) {
+        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and only lets you choose a "
+                   "password of your own.\n", options.accounts.string(), password);
+        std::fflush(stdout);
+    }
     if (downlink)
         if (auto following = (*backend)->follow(*downlink); !following) return failed("--downlink " + following.error().message);
     if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
 
-    if (const auto& password = (*backend)->first_password(); !password.empty())
-        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and only lets you choose a "
-                   "password of your own.\n", options.accounts.string(), password);
     fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n", (*backend)->secure() ? "https" : "http",
                listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
                (*backend)->port(),

@@ -1,6 +1,7 @@
 #include "server/downlink/downlink_follower.hpp"
 
 #include "server/rehearsal/wall_clock.hpp"
+#include "server/station/silence_classifier.hpp"
 
 #include <algorithm>
 #include <spdlog/spdlog.h>
@@ -176,7 +177,8 @@ void DownlinkFollower::say(bool up, const std::string& reason) {
     else
         spdlog::warn("downlink {}: {}", settings_.address.text(), reason);
     Delivery delivery;
-    delivery.entries.emplace_back(pipeline::DownlinkState{up, reason, now_on_earth()});
+    // What is known of such a mission explains no silence: a way that does not work is ground's.
+    delivery.entries.emplace_back(pipeline::DownlinkState{up, up ? reason : words_of(SilenceClass::ground_fault, reason), now_on_earth()});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
     on_state_(state("running"));
 }

@@ -29,8 +29,7 @@ std::string text_of(const dictionary::Dictionary& dictionary, const dictionary::
     return fmt::format("{} to {} (constraints.csv:{})", moment_text(dictionary, row.from), moment_text(dictionary, row.to), row.line);
 }
 
-Result<std::string> analyse(const dictionary::Dictionary& changed) {
-    const auto analysis = dictionary::analyse_timeline(changed);
+Result<std::string> words_of(const dictionary::Dictionary& changed, const dictionary::TimelineAnalysis& analysis) {
     if (!analysis.contradiction.empty() || !analysis.admits_schedule)
         return Error{"the changed timeline cannot be flown: its offsets contradict what constraints.csv gives (aeolis timeline analyse)"};
     for (const auto& bound : analysis.bounds) {
@@ -45,23 +44,60 @@ Result<std::string> analyse(const dictionary::Dictionary& changed) {
     return fmt::format("all {} bounds of constraints.csv hold on the changed timeline", analysis.bounds.size());
 }
 
+/// The timeline with the changes made so far, and a text that tells it from any other.
+struct ChangedTimeline {
+    dictionary::Dictionary dictionary;
+    std::string key;
+
+    void change(const std::string& command, std::span<const commands::NamedValue> arguments) {
+        commands::apply_offsets(dictionary, command, arguments);
+        key += command + ' ' + commands::arguments_text(arguments) + '\n';
+    }
+    /// Nothing where it is of another dictionary.
+    void change(const v1::CommandHistory& command) {
+        const auto* const known = dictionary.command(command.name());
+        const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, octets_of(command.octets()));
+        if (arguments) change(command.name(), *arguments);
+    }
+};
+
+/// Those that change offsets and have not failed: what left in the order in which it did, then what waits by its number.
+struct Changes {
+    std::vector<const v1::CommandHistory*> left, waiting;
+};
+
+Changes changes_of(const v1::CommandList& list) {
+    Changes changes;
+    std::vector<std::pair<std::uint64_t, const v1::CommandHistory*>> left;
+    for (const auto& command : list.commands()) {
+        if (!commands::changes_offsets(command.name()) || failed(command)) continue;
+        const v1::Item* released = nullptr;
+        for (const auto& stage : command.stages())
+            if (stage.command_stage().stage() == "released") released = &stage;
+        if (released != nullptr && released->command_stage().status() == "ok")
+            left.emplace_back(released->seq(), &command);
+        else
+            changes.waiting.push_back(&command);
+    }
+    std::ranges::sort(left);
+    for (const auto& [seq, command] : left)
+        changes.left.push_back(command);
+    std::ranges::sort(changes.waiting, {}, [](const auto* command) { return command->command(); });
+    return changes;
+}
+
 } // namespace
 
 bool changes_timeline(const v1::CommandRequest& request) {
     return request.action().empty() && commands::changes_offsets(request.command());
 }
 
-Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked) {
-    auto changed = dictionary_;
-    std::string key;
-    for (const auto& command : before.commands()) {
-        if (!commands::changes_offsets(command.name()) || failed(command)) continue;
-        const auto* const known = dictionary_.command(command.name());
-        const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, octets_of(command.octets()));
-        if (!arguments) continue; // of another dictionary
-        commands::apply_offsets(changed, command.name(), *arguments);
-        key += command.octets() + ' ';
-    }
+Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked, bool only_check, const Stop& stop) {
+    ChangedTimeline timeline{dictionary_, ""};
+    const auto changes = changes_of(before);
+    for (const auto& commands : {changes.left, changes.waiting})
+        for (const auto* command : commands)
+            timeline.change(*command);
     for (const auto& request : asked) {
         const auto* const known = dictionary_.command(request.command());
         if (known == nullptr || !changes_timeline(request)) continue;
@@ -72,14 +108,61 @@ Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::spa
         if (!packet) continue; // the gateway refuses it, and says why
         const auto arguments = commands::decode(*known, *packet); // with defaults
         if (!arguments) return arguments.error();
-        commands::apply_offsets(changed, request.command(), *arguments);
-        key += request.command() + commands::arguments_text(*arguments) + ' ';
+        timeline.change(request.command(), *arguments);
     }
+    return analysed(timeline.key, timeline.dictionary, only_check, stop);
+}
+
+TimelineCheck::Look TimelineCheck::look_again(const v1::CommandList& before, const Stop& stop) {
+    Look look;
+    look.undone = static_cast<std::size_t>(std::ranges::count_if(
+        before.commands(), [](const v1::CommandHistory& command) { return commands::changes_offsets(command.name()) && failed(command); }));
+    ChangedTimeline timeline{dictionary_, ""};
+    const auto changes = changes_of(before);
+    for (const auto* command : changes.left)
+        timeline.change(*command);
+    for (const auto* command : changes.waiting) {
+        auto with = timeline;
+        with.change(*command);
+        const auto says = analysed(with.key, with.dictionary, false, stop);
+        if (!says && says.error().internal) {
+            look.not_known = says.error().message;
+            return look;
+        }
+        look.known.push_back({command->command(), !says, says ? *says : says.error().message});
+        if (says) timeline = std::move(with);
+    }
+    return look;
+}
+
+Result<std::string> TimelineCheck::analysed(const std::string& key, const dictionary::Dictionary& changed, bool only_check, const Stop& stop) {
+    const auto known = [&]() -> std::optional<Result<std::string>> {
+        const std::scoped_lock lock{mutex_};
+        const auto found = answers_.find(key);
+        return found == answers_.end() ? std::nullopt : std::optional{found->second};
+    };
+    if (const auto answer = known()) return *answer;
+    const bool under_way = [&] {
+        const std::scoped_lock lock{mutex_};
+        return analysed_now_ == key;
+    }();
+    const std::unique_lock turn{analysing_, only_check && !under_way ? std::chrono::milliseconds{0} : turn_max};
+    if (!turn.owns_lock()) return Error{.message = "the timeline is analysed for another change: send again in a moment", .internal = true};
+    if (const auto answer = known()) return *answer;
+    {
+        const std::scoped_lock lock{mutex_};
+        analysed_now_ = key;
+    }
+    const auto analysis = dictionary::analyse_bounds(changed, stop);
+    if (analysis.stopped)
+        return Error{.message = "the analysis of the changed timeline did not end in its time, so that nobody knows whether its constraints hold: "
+                                "send it again, or change less at once",
+                     .internal = true};
+    const auto answer = words_of(changed, analysis);
     const std::scoped_lock lock{mutex_};
-    if (key == last_key_) return last_;
-    last_ = analyse(changed);
-    last_key_ = key;
-    return last_;
+    if (answers_.size() >= answers_max) answers_.clear();
+    answers_.emplace(key, answer);
+    return answer;
 }
 
 } // namespace aeolis::server

@@ -1,5 +1,6 @@
 #include "server/net/console_backend.hpp"
 
+#include "server/access/this_user.hpp"
 #include "server/api/json.hpp"
 
 #include <algorithm>
@@ -12,6 +13,14 @@ namespace {
 
 constexpr std::size_t body_of_nobody_octets_max = 4'096; // ours: a log-in is shorter
 constexpr unsigned stream_check_ms = 1'000; // ours: so long a client may follow after its log-in has ended
+
+/// Who started the program.
+Operator by_command_line() {
+    Operator who;
+    who.user = this_user();
+    who.from = command_line;
+    return who;
+}
 
 /// What other machines can reach must know who asks, and must not be listened to.
 Result<void> check_reach(const ConsoleBackend::Settings& settings) {
@@ -46,9 +55,6 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     if (!server) return server.error();
     backend->server_ = std::move(*server);
     backend->server_->every(stream_check_ms, [self] { self->hub_->check_clients(); });
-    auto access = Access::open({.file = chosen.accounts});
-    if (!access) return access.error();
-    backend->access_ = std::move(*access);
     const auto post = [self](std::function<void()> action) { self->server_->post(std::move(action)); };
 
     std::error_code ignored;
@@ -73,18 +79,15 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {
             const bool taken = self->queries_->ask([run, done](archive::Reader& reader) { done(reader.cut_off(run)); });
-            if (!taken) done(Error{"too many questions wait: try again"});
+            if (!taken) done(Error{QueryThreads::busy});
         },
-        [self](archive::RunId run, const std::vector<v1::CommandRequest>& requests, const auto& done) {
-            if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
-            const bool taken = self->queries_->ask([self, run, requests, done](archive::Reader& reader) {
-                const auto before = run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run); // 0: none yet
-                done(before ? self->timeline_check_.check(*before, requests) : Result<std::string>{before.error()});
-            });
-            if (!taken) done(Error{"too many questions wait: try again"});
-        },
+        self->timeline_questions(),
         RehearsalDesk::Callbacks{[self](v1::RunState state) { self->hub_->run_state(std::move(state)); },
                                  [self](v1::Clocks clocks) { self->hub_->clocks(std::move(clocks)); }});
+    // Last of what can fail: the first password is told once, and only by a server that comes up.
+    auto access = Access::open({.file = chosen.accounts});
+    if (!access) return access.error();
+    backend->access_ = std::move(*access);
     backend->campaigns_ = std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
     backend->api_ = std::make_unique<Api>(
         Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_, *backend->hub_,
@@ -120,9 +123,9 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
     };
     client.command = [this, credentials, allowed, full](v1::CommandRequest request, const std::function<void(v1::CommandReply)>& reply) {
         const auto who = access_->identify(credentials);
-        if (who.accounts) request.set_controller(who.user);
+        name_asker(who, request);
         auto right = allowed(who, Right::command);
-        if (right) right = may_send(who, dictionary_, request);
+        if (right) right = may_send(who, dictionary_, *desk_, request);
         const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full, reply](const v1::CommandReply& answer) {
             // A dry run is no action: a console asks each second while it shows what would be sent.
             if (!dry_run && !full()) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
@@ -134,8 +137,9 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
         refusal.set_reason(right.error().message);
         noted(refusal);
     };
-    client.control = [this, credentials, allowed](const v1::RehearsalControl& control, const std::function<void(Result<void>)>& done) {
+    client.control = [this, credentials, allowed](v1::RehearsalControl control, const std::function<void(Result<void>)>& done) {
         const auto who = access_->identify(credentials);
+        sign(who, control);
         const auto noted = [this, who, detail = to_json(control), done](const Result<void>& result) {
             pipeline_->audit(audit_record(who, "rehearsal", detail, result ? "done" : "refused: " + result.error().message));
             done(result);
@@ -152,6 +156,8 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
 }
 
 ConsoleBackend::~ConsoleBackend() {
+    // A run that goes on waits until its end is stored, and so for a disk that may never take it.
+    if (pipeline_) pipeline_->closing();
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
     queries_.reset(); // what still waits may add a note, through api and pipeline
     api_.reset();
@@ -163,6 +169,28 @@ ConsoleBackend::~ConsoleBackend() {
     hub_.reset();
 }
 
+/// A second of work each, asked each second by who looks at a dry run; the time of a question at most.
+RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
+    RehearsalDesk::TimelineQuestions questions;
+    questions.check = [this](archive::RunId run, const std::vector<v1::CommandRequest>& requests, bool only_check, const auto& done) {
+        if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
+        const bool taken = queries_->ask([this, run, requests, only_check, done](archive::Reader& reader) {
+            const auto before = run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run); // 0: none yet
+            done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({})) : Result<std::string>{before.error()});
+        }, {}, Haste::soon);
+        if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
+    };
+    questions.look_again = [this](archive::RunId run, const auto& done) {
+        using Look = TimelineCheck::Look;
+        const bool taken = queries_->ask([this, run, done](archive::Reader& reader) {
+            const auto before = reader.commands(run);
+            done(before ? Result<Look>{timeline_check_.look_again(*before, queries_->stop_of_question({}))} : Result<Look>{before.error()});
+        }, {}, Haste::soon);
+        if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
+    };
+    return questions;
+}
+
 StreamHub::Services ConsoleBackend::stream_services() {
     StreamHub::Services services;
     services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
@@ -170,15 +198,15 @@ StreamHub::Services ConsoleBackend::stream_services() {
         const bool taken = queries_->ask([this, run, after, limit, kinds, done](archive::Reader& reader) {
             auto page = reader.items(run, after, limit, kinds);
             server_->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
-        });
-        if (!taken) server_->post([done] { done(Error{"too many questions wait: try again"}); });
+        }, {}, Haste::soon);
+        if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.read_run = [this](std::uint64_t run, const auto& done) {
         const bool taken = queries_->ask([this, run, done](archive::Reader& reader) {
             auto state = reader.run(archive::RunId{static_cast<std::uint32_t>(run)});
             server_->post([done, state = std::move(state)]() mutable { done(std::move(state)); });
-        });
-        if (!taken) server_->post([done] { done(Error{"too many questions wait: try again"}); });
+        }, {}, Haste::soon);
+        if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.want_items = [this](bool wanted) {
         if (pipeline_) pipeline_->want_items(wanted);
@@ -195,7 +223,9 @@ void ConsoleBackend::adopt_newest_run() {
 }
 
 void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, double pace) {
-    desk_->start(std::move(scenario), seed, pace, [](const Result<v1::RunState>& began) {
+    const auto detail = fmt::format("serve --scenario {} --seed {} --pace {}", scenario.name, seed, pace);
+    desk_->start(std::move(scenario), seed, pace, [this, detail](const Result<v1::RunState>& began) {
+        pipeline_->audit(audit_record(by_command_line(), "rehearsal", detail, began ? "done" : "refused: " + began.error().message));
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);
     });
 }
@@ -204,9 +234,11 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     AEOLIS_CHECK(settings_.other != nullptr);
     desk_->close("this server follows the downlink of another mission: rehearsals need one of their own");
     campaigns_->close("this server follows the downlink of another mission: campaigns need one of their own");
+    const auto detail = fmt::format("serve --downlink {} --xtce {}", settings.address.text(), settings.xtce);
     auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
         server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
     });
+    pipeline_->audit(audit_record(by_command_line(), "downlink", detail, follower ? "done" : "refused: " + follower.error().message));
     if (!follower) return follower.error();
     downlink_ = std::move(*follower);
     return {};

@@ -15,7 +15,7 @@ namespace aeolis::server {
 
 /// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
 ///
-/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, two queries, one a rehearsal; a campaign's own
+/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three queries, one a rehearsal; a campaign's own
 class ConsoleBackend {
   public:
     struct Settings {
@@ -43,6 +43,7 @@ class ConsoleBackend {
   private:
     ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary);
     StreamHub::Services stream_services();
+    RehearsalDesk::TimelineQuestions timeline_questions();
     WebServer::Handlers web_handlers();
     StreamSession::Client stream_client(const Credentials& credentials);
     void adopt_newest_run();

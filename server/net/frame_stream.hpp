@@ -1,7 +1,6 @@
 #pragma once
 
 #include "server/net/sockets.hpp"
-#include "server/net/stream_hub.hpp"
 
 #include <array>
 #include <boost/asio/co_spawn.hpp>
@@ -13,18 +12,28 @@
 #include <boost/beast/websocket/teardown.hpp>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
+#include <string_view>
 #include <sys/socket.h>
 #include <type_traits>
 #include <utility>
 
 namespace aeolis::server::net {
 
+/// A message as one frame of data, of octets or of text: RFC 6455, 5.2, unmasked.
+inline void append_frame(std::string& frames, std::string_view message, bool binary) {
+    const auto octets = message.size();
+    const std::size_t wide = octets < 126 ? 0 : octets <= 0xFFFF ? 2 : 8;
+    std::array<char, 10> header{binary ? '\x82' : '\x81', static_cast<char>(wide == 0 ? octets : wide == 2 ? 126 : 127)};
+    for (std::size_t i = 0; i < wide; ++i)
+        header[2 + i] = static_cast<char>(octets >> (8 * (wide - 1 - i)));
+    frames.append(header.data(), 2 + wide).append(message);
+}
+
 /// Lies between a WebSocket and its socket: our frames of data go past the WebSocket in one system call for as long as the kernel
 /// takes them, and never into the midst of another frame, the WebSocket's own pings, pongs and closes among them.
 ///
-/// In       messages by send(); whole control frames by async_write_some()
+/// In       frames of data by send(); whole control frames by async_write_some()
 /// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not for calling
 /// Order    frames leave in the order in which they were given
 /// Fault    a socket that fails is closed: who reads from it is told
@@ -36,7 +45,6 @@ class FrameStream {
   public:
     using executor_type = Executor;
     using next_layer_type = Next;
-    static constexpr std::size_t messages_max = 16; ///< in one send()
 
     explicit FrameStream(Next next) : state_(std::make_shared<State>(std::move(next))) {}
 
@@ -47,8 +55,8 @@ class FrameStream {
     /// Called each time when all that was kept is gone.
     void when_drained(std::function<void()> tell) { state_->tell = std::move(tell); }
     bool busy() const { return state_->flushing || state_->closing; }
-    /// At most messages_max of them, each a frame of its own, of octets or of text.
-    void send(std::span<const Encoded> messages, bool binary);
+    /// Whole frames, one after the other: append_frame() makes them.
+    void send(std::string_view frames);
 
     template <typename Buffers, typename Token>
     auto async_read_some(const Buffers& buffers, Token&& token) {
@@ -70,39 +78,19 @@ class FrameStream {
         std::function<void()> tell;
         error_code failure;
     };
-    using Header = std::array<std::uint8_t, 10>;
-    static std::size_t write_header(std::size_t octets, bool binary, Header& header);
     /// How much of them the kernel took.
-    static std::size_t give(State& state, std::span<iovec> parts);
+    static std::size_t give(State& state, std::string_view frames);
     static void flush(const std::shared_ptr<State>& state);
     static Task<> flush_all(std::shared_ptr<State> state);
 
     std::shared_ptr<State> state_;
 };
 
-/// RFC 6455, 5.2, unmasked.
 template <typename Next>
-std::size_t FrameStream<Next>::write_header(std::size_t octets, bool binary, Header& header) {
-    header[0] = binary ? 0x82 : 0x81;
-    if (octets < 126) {
-        header[1] = static_cast<std::uint8_t>(octets);
-        return 2;
-    }
-    const std::size_t wide = octets <= 0xFFFF ? 2 : 8;
-    header[1] = wide == 2 ? 126 : 127;
-    for (std::size_t i = 0; i < wide; ++i)
-        header[2 + i] = static_cast<std::uint8_t>(octets >> (8 * (wide - 1 - i)));
-    return 2 + wide;
-}
-
-template <typename Next>
-std::size_t FrameStream<Next>::give(State& state, std::span<iovec> parts) {
+std::size_t FrameStream<Next>::give(State& state, std::string_view frames) {
     if constexpr (std::is_same_v<Next, Stream>) {
-        msghdr message{};
-        message.msg_iov = parts.data();
-        message.msg_iovlen = parts.size();
         // Asked for each time: a closed socket's number may be another client's by now.
-        const auto given = ::sendmsg(state.next.socket().native_handle(), &message, MSG_DONTWAIT | MSG_NOSIGNAL);
+        const auto given = ::send(state.next.socket().native_handle(), frames.data(), frames.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
         return given > 0 ? static_cast<std::size_t>(given) : 0; // what is wrong with the socket, flush() finds
     } else {
         return 0; // TLS makes its own of what is written
@@ -110,22 +98,11 @@ std::size_t FrameStream<Next>::give(State& state, std::span<iovec> parts) {
 }
 
 template <typename Next>
-void FrameStream<Next>::send(std::span<const Encoded> messages, bool binary) {
-    std::array<Header, messages_max> headers;
-    std::array<iovec, 2 * messages_max> parts;
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < messages.size(); ++i) {
-        auto& text = const_cast<std::string&>(*messages[i]); // iovec knows no const; nobody writes
-        parts[count++] = {headers[i].data(), write_header(text.size(), binary, headers[i])};
-        parts[count++] = {text.data(), text.size()};
-    }
-    const std::span all{parts.data(), count};
-    auto given = give(*state_, all);
-    for (const auto& part : all) {
-        if (given < part.iov_len) state_->kept.append(static_cast<const char*>(part.iov_base) + given, part.iov_len - given);
-        given -= std::min(given, part.iov_len);
-    }
-    if (!state_->kept.empty()) flush(state_);
+void FrameStream<Next>::send(std::string_view frames) {
+    const auto given = give(*state_, frames);
+    if (given == frames.size()) return;
+    state_->kept += frames.substr(given);
+    flush(state_);
 }
 
 template <typename Next>

@@ -27,6 +27,7 @@ struct HttpResponse {
     std::string cache_control = "no-store";
     std::string body;
     std::string set_cookie{}; ///< empty: none
+    std::string next_after{}; ///< of a page: the header Aeolis-Next-After; empty: none
     /// Null: the body is all. Else it is the first part, and this is called for each further one, when the one before it has been
     /// taken by the client; the answer may come from any thread. An Error breaks the connection off: the client sees that it has not all.
     std::function<void(std::function<void(BodyPart)>)> more{};

@@ -2,7 +2,6 @@
 
 #include "server/net/frame_stream.hpp"
 
-#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
@@ -17,43 +16,48 @@ namespace {
 
 namespace websocket = beast::websocket;
 
+constexpr const char* server_ends = "the server ends";
 constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
 
 /// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
 template <typename AnyStream>
-class Connection final : public WriteTurn::Writer, public std::enable_shared_from_this<Connection<AnyStream>> {
+class Connection final : public WriteTurn::Writer, public OpenStreams::Member, public std::enable_shared_from_this<Connection<AnyStream>> {
   public:
-    Connection(AnyStream stream, StreamService service) : frames_(std::move(stream)), socket_(frames_), service_(std::move(service)) {}
+    Connection(AnyStream stream, StreamService service)
+        : frames_(std::move(stream)), socket_(frames_), service_(std::move(service)), place_(service_.streams, *this), replay_(frames_.get_executor()) {}
 
     Task<> serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol);
     void write() override;
+    void end() override;
 
   private:
     Task<bool> accept(UpgradeRequest request, std::string_view subprotocol);
     Task<> read();
     Task<> close(websocket::close_reason reason);
-    bool gather(std::span<Encoded> messages, std::size_t& count);
+    void due();
+    void wait_for_due();
+    bool gather(std::string& frames);
 
     bool open_ = true; ///< for messages of ours
     FrameStream<AnyStream> frames_;
     std::shared_ptr<StreamSession> session_;
     websocket::stream<FrameStream<AnyStream>> socket_; ///< over frames_
     StreamService service_;
+    OpenStreams::Place place_;
+    Timer replay_; ///< runs out when the session has something by itself
 };
 
 template <typename AnyStream>
 Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol) {
     const auto self = this->shared_from_this();
     if (!co_await accept(std::move(request), subprotocol)) co_return;
-    const auto wake = [weak = this->weak_from_this()] {
-        if (auto alive = weak.lock()) {
-            auto& turn = alive->service_.turn;
-            turn.add(std::move(alive));
-        }
-    };
-    session_ = service_.open(format, wake);
-    frames_.when_drained(wake);
-    wake();
+    // The session is its own and calls it no longer than it lives; the frames may outlive it.
+    session_ = service_.open(format, [this] { due(); });
+    frames_.when_drained([weak = this->weak_from_this()] {
+        if (const auto alive = weak.lock()) alive->due();
+    });
+    due();
+    if (service_.streams.ending()) end(); // since it was let in
     co_await read();
     open_ = false;
     error_code ignored;
@@ -64,7 +68,7 @@ template <typename AnyStream>
 Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_view subprotocol) {
     beast::get_lowest_layer(socket_).expires_never(); // the WebSocket has time-outs of its own
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
-    timeout.idle_timeout = std::chrono::seconds{service_.silence_seconds_max};
+    timeout.idle_timeout = service_.silence_max;
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
@@ -106,34 +110,71 @@ Task<> Connection<AnyStream>::close(websocket::close_reason reason) {
     co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored)); // then read() ends, too
 }
 
+template <typename AnyStream>
+void Connection<AnyStream>::end() {
+    if (session_ && open_) asio::co_spawn(socket_.get_executor(), close({websocket::close_code::going_away, server_ends}), asio::detached);
+}
+
+template <typename AnyStream>
+void Connection<AnyStream>::due() {
+    if (auto alive = this->weak_from_this().lock()) service_.turn.add(std::move(alive));
+}
+
+template <typename AnyStream>
+void Connection<AnyStream>::wait_for_due() {
+    const auto at = session_->due();
+    if (!at) return;
+    replay_.expires_at(*at); // whatever it waited for before
+    replay_.async_wait([weak = this->weak_from_this()](error_code error) {
+        const auto alive = weak.lock();
+        if (alive && !error) alive->due();
+    });
+}
+
 /// Whether there may be more than what fits into one turn.
 template <typename AnyStream>
-bool Connection<AnyStream>::gather(std::span<Encoded> messages, std::size_t& count) {
-    std::size_t octets = 0;
-    while (count < messages.size() && octets < turn_octets_max) {
-        auto message = session_->next_message();
+bool Connection<AnyStream>::gather(std::string& frames) {
+    const bool binary = session_->format() == StreamFormat::protobuf;
+    while (frames.size() < turn_octets_max) {
+        const auto message = session_->next_message();
         if (!message) return false;
-        octets += message->size();
-        messages[count++] = std::move(message);
+        append_frame(frames, *message, binary);
     }
     return true;
 }
 
 template <typename AnyStream>
 void Connection<AnyStream>::write() {
-    std::array<Encoded, FrameStream<AnyStream>::messages_max> messages;
-    std::size_t count = 0;
-    const bool more = open_ && !frames_.busy() && gather(messages, count);
+    auto& frames = service_.turn.frames();
+    const bool more = open_ && !frames_.busy() && gather(frames);
     if (auto why = session_->closing(); open_ && !why.empty()) {
         asio::co_spawn(socket_.get_executor(), close({websocket::close_code::policy_error, why}), asio::detached);
         return;
     }
-    if (count == 0) return;
-    frames_.send(std::span{messages}.first(count), session_->format() == StreamFormat::protobuf);
-    if (more) service_.turn.add(this->shared_from_this());
+    if (!frames.empty()) frames_.send(frames);
+    if (more) return service_.turn.add(this->shared_from_this());
+    if (open_ && !frames_.busy()) wait_for_due();
 }
 
 } // namespace
+
+OpenStreams::Place::~Place() {
+    all_.members_.erase(place_);
+    if (all_.members_.empty() && all_.gone_) std::exchange(all_.gone_, nullptr)();
+}
+
+std::string OpenStreams::refusal() const {
+    if (ending_) return server_ends;
+    return members_.size() < max_ ? "" : fmt::format("{} streams are open already", max_);
+}
+
+void OpenStreams::end(std::function<void()> gone) {
+    ending_ = true;
+    if (members_.empty()) return gone();
+    gone_ = std::move(gone);
+    for (auto* member : members_)
+        member->end();
+}
 
 void WriteTurn::add(std::shared_ptr<Writer> writer) {
     if (std::exchange(writer->due_, true)) return;

@@ -5,6 +5,7 @@
 #include "server/pipeline/pipeline.hpp"
 
 #include <array>
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -73,6 +74,8 @@ class StreamHub {
             read_items;
         std::function<void(std::uint64_t run, std::function<void(Result<v1::RunState>)>)> read_run;
         std::function<void(bool wanted)> want_items;
+        /// By which a run that is over is sent again at a pace.
+        std::function<std::chrono::steady_clock::time_point()> now = std::chrono::steady_clock::now;
     };
     StreamHub(std::uint16_t dictionary_id, Services services);
 

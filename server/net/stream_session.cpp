@@ -8,6 +8,13 @@
 #include <fmt/format.h>
 
 namespace aeolis::server {
+namespace {
+
+bool is_over(const v1::RunState& run) {
+    return run.state() == "finished" || run.state() == "interrupted";
+}
+
+} // namespace
 
 StreamSession::Client StreamSession::follower() {
     Client client;
@@ -38,6 +45,12 @@ std::string StreamSession::closing() const {
 }
 
 void StreamSession::check() {
+    look_at_rights();
+    if (!refusal_.empty()) return;
+    if (const auto again = std::exchange(again_, nullptr)) again();
+}
+
+void StreamSession::look_at_rights() {
     if (!refusal_.empty()) return;
     refusal_ = client_.refusal();
     if (!refusal_.empty()) wake_();
@@ -50,7 +63,7 @@ void StreamSession::on_message(std::string_view payload) {
     } else if (!message.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
         return refuse(fmt::format("these {} octets are not a ClientMessage of aeolis.v1", payload.size()));
     }
-    check();
+    look_at_rights();
     if (!refusal_.empty()) return;
     const auto self = weak_from_this();
     switch (message.message_case()) {
@@ -91,25 +104,49 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     if (!std::isfinite(subscribe.max_rate_hz()) || subscribe.max_rate_hz() < 0.0)
         return refuse(fmt::format("max_rate_hz: {} is not a rate", subscribe.max_rate_hz()));
     if (subscribe.run() > UINT32_MAX) return refuse(fmt::format("run {}: there is none", subscribe.run()));
+    const std::uint64_t run = subscribe.run() == 0 ? hub_.current_run() : subscribe.run();
+    if (auto refusal = refusal_of_pace(subscribe.pace(), run); !refusal.empty()) return refuse(std::move(refusal));
     ++subscription_;
+    again_ = nullptr;
+    waiting_for_run_ = stall_told_ = false;
+    due_.reset();
     shape_.all_channels = subscribe.all_channels();
     shape_.channels.assign(subscribe.channels().begin(), subscribe.channels().end());
     std::ranges::sort(shape_.channels);
     shape_.max_rate_hz = subscribe.max_rate_hz();
     shape_.units = !subscribe.without_units();
-    newest_run_ = subscribe.run() == 0;
-    const std::uint64_t run = newest_run_ ? hub_.current_run() : subscribe.run();
+    pace_ = subscribe.pace();
+    newest_run_ = subscribe.run() == 0 && pace_ == 0.0; // what is sent again goes on to its end, also when another run begins
     if (run == 0 || run == hub_.current_run()) {
+        if (pace_ > 0.0) {
+            older_run_ = hub_.state();
+            older_run_.set_last_seq(hub_.last_seq());
+        }
         subscribed_ = true;
         follow(run, subscribe.after_seq());
         wake_();
         return;
     }
     waiting_for_run_ = true;
-    hub_.services().read_run(run, [self = weak_from_this(), run, after = subscribe.after_seq(),
-                                   subscription = subscription_](Result<v1::RunState> state) {
+    read_run(run, subscribe.after_seq());
+}
+
+std::string StreamSession::refusal_of_pace(double pace, std::uint64_t run) const {
+    if (!std::isfinite(pace) || pace < 0.0 || pace > ReplayPace::pace_max)
+        return fmt::format("pace: {} is none: above 0 and up to {} is wanted, or 0 for as fast as it goes", pace, ReplayPace::pace_max);
+    if (pace == 0.0) return {};
+    if (run == 0) return "pace: it is for a run that is over, and there is none yet";
+    if (run == hub_.current_run() && !is_over(hub_.state()))
+        return fmt::format("pace: it is for a run that is over, and run {} goes on: name another, or follow this one without a pace", run);
+    return {};
+}
+
+void StreamSession::read_run(std::uint64_t run, archive::Sequence after) {
+    hub_.services().read_run(run, [self = weak_from_this(), run, after, subscription = subscription_](Result<v1::RunState> state) {
         const auto session = self.lock();
         if (!session || session->subscription_ != subscription) return;
+        if (!state && state.error().internal)
+            return session->stall(state.error().message, [session = session.get(), run, after] { session->read_run(run, after); });
         session->waiting_for_run_ = false;
         if (!state) return session->refuse(state.error().message);
         session->subscribed_ = true;
@@ -119,14 +156,23 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     });
 }
 
+void StreamSession::stall(const std::string& why, std::function<void()> again) {
+    again_ = std::move(again);
+    if (!std::exchange(stall_told_, true)) refuse("the archive could not be read, it is tried again: " + why);
+}
+
 void StreamSession::follow(std::uint64_t run, archive::Sequence after) {
     run_ = run;
+    replay_ = pace_ > 0.0 ? std::optional{ReplayPace{pace_}} : std::nullopt;
+    due_.reset();
+    next_batch_ = {};
     // Beyond the end lies nothing yet: a client that asks for more has another run in mind.
-    const auto last = run == hub_.current_run() ? hub_.last_seq() : older_run_.last_seq();
+    const auto last = replay_ || run != hub_.current_run() ? older_run_.last_seq() : hub_.last_seq();
     cursor_ = sent_through_ = std::min(after, last);
     page_.reset();
     page_spacing_ = {};
-    reading_ = exhausted_ = was_live_ = stalled_ = false;
+    reading_ = exhausted_ = was_live_ = stall_told_ = false;
+    again_ = nullptr;
     welcome_due_ = true;
 }
 
@@ -149,6 +195,7 @@ Encoded StreamSession::welcome() {
 }
 
 bool StreamSession::behind() const {
+    if (replay_) return !replies_.empty() || (due_ && *due_ <= hub_.services().now());
     return !replies_.empty() || (subscribed_ && run_ != 0 && (follows_current() ? cursor_ < hub_.last_seq() : !exhausted_));
 }
 
@@ -177,10 +224,13 @@ Encoded StreamSession::next_due() {
     if (run_ == 0) return nullptr;
     if (follows_current() && state_sent_ != hub_.state_version()) {
         state_sent_ = hub_.state_version();
+        tell_through_ = true;
         return hub_.encoded_state(shape_.format);
     }
     if (auto message = next_items()) return message;
-    if (follows_current() && clocks_sent_ != hub_.clocks_version() && !reading_) {
+    if (!follows_current() || reading_ || again_) return nullptr;
+    const bool through_due = std::exchange(tell_through_, false) && sent_through_ < cursor_;
+    if (through_due || clocks_sent_ != hub_.clocks_version()) {
         clocks_sent_ = hub_.clocks_version();
         v1::ServerMessage message;
         auto& batch = *message.mutable_batch();
@@ -198,9 +248,10 @@ Encoded StreamSession::next_items() {
     for (;;) {
         if (page_) {
             if (auto message = from_page()) return message;
+            if (due_) return nullptr;
             continue;
         }
-        if (reading_ || stalled_) return nullptr;
+        if (reading_ || again_) return nullptr;
         if (!follows_current()) {
             if (!exhausted_) ask_archive();
             return nullptr;
@@ -222,9 +273,30 @@ Encoded StreamSession::next_items() {
     }
 }
 
+std::optional<archive::ItemPage> StreamSession::take_page() {
+    due_.reset();
+    if (!replay_) return std::exchange(page_, std::nullopt);
+    const auto now = hub_.services().now();
+    if (next_batch_ > now) due_ = next_batch_;
+    archive::ItemPage part;
+    auto& items = page_->items;
+    while (!due_ && page_taken_ < items.size()) {
+        if (const auto due = replay_->due(items[page_taken_], now); due > now)
+            due_ = due;
+        else
+            part.items.push_back(std::move(items[page_taken_++]));
+    }
+    if (part.items.empty() && due_) return std::nullopt;
+    part.complete_through = due_ ? part.items.back().seq() : page_->complete_through;
+    part.more = due_ || page_->more;
+    if (!due_) page_.reset();
+    return part;
+}
+
 Encoded StreamSession::from_page() {
-    const auto page = std::move(*page_);
-    page_.reset();
+    const auto taken = take_page();
+    if (!taken) return nullptr;
+    const auto& page = *taken;
     std::vector<ItemBefore> items;
     items.reserve(page.items.size());
     for (const auto& item : page.items)
@@ -245,6 +317,7 @@ Encoded StreamSession::from_page() {
     batch.set_complete_through(cursor_);
     if (follows_current()) *batch.mutable_clocks() = hub_.latest_clocks();
     sent_through_ = cursor_;
+    if (replay_) next_batch_ = hub_.services().now() + replay_interval;
     return encode(message, shape_.format);
 }
 
@@ -253,23 +326,20 @@ void StreamSession::ask_archive() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
-    kinds.units = shape_.units;
+    kinds.units = shape_.units || replay_; // they say when what was in them reached Earth
     hub_.services().read_items(
         archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
         [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
             const auto session = self.lock();
             if (!session || session->subscription_ != subscription) return;
             session->reading_ = false;
-            if (!page) {
-                session->stalled_ = true;
-                return session->refuse("the archive could not be read, subscribe again: " + page.error().message);
-            }
-            if (page->complete_through <= session->cursor_ && session->follows_current()) {
-                session->stalled_ = true;
-                return session->refuse(
-                    fmt::format("the archive holds nothing after {}, subscribe again", session->cursor_));
-            }
+            const auto again = [session = session.get()] { session->ask_archive(); };
+            if (!page) return session->stall(page.error().message, again);
+            if (page->complete_through <= session->cursor_ && session->follows_current())
+                return session->stall(fmt::format("it holds nothing after {}", session->cursor_), again);
+            session->stall_told_ = false;
             session->page_ = std::move(*page);
+            session->page_taken_ = 0;
             session->wake_();
         });
 }

@@ -1,6 +1,7 @@
 #include "server/net/web_server.hpp"
 
 #include "aeolis/v1/run.pb.h"
+#include "server/access/network.hpp"
 #include "server/api/json.hpp"
 #include "server/net/connection_count.hpp"
 #include "server/net/sockets.hpp"
@@ -13,7 +14,6 @@
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/ssl/context.hpp>
-#include <boost/asio/ip/network_v6.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
@@ -36,7 +36,7 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr const char* stream_path = "/api/v1/stream";
-constexpr std::size_t slice_octets = 64 << 10;    // ours: of a long body, written at once
+constexpr std::size_t slice_octets = 64 << 10;    // ours: of a long body in parts, written at once
 constexpr unsigned peers_looked_at_ms = 250; // ours: a question goes on for so long after its client has left
 struct Subprotocol {
     std::string_view name;
@@ -123,16 +123,29 @@ class WaitingPeers {
     std::list<Peer> waiting_;
 };
 
+/// Bodies that lie in memory until their clients have taken them.
+struct OctetsUnderWay {
+    std::size_t max = 0, now = 0;
+
+    /// One of them, for as long as this lives.
+    class Taken {
+      public:
+        Taken(OctetsUnderWay& all, std::size_t octets) : all_(all), octets_(octets) { all_.now += octets_; }
+        ~Taken() { all_.now -= octets_; }
+        Taken(const Taken&) = delete;
+        Taken& operator=(const Taken&) = delete;
+
+      private:
+        OctetsUnderWay& all_;
+        std::size_t octets_;
+    };
+    bool has_room(std::size_t octets) const { return octets <= slice_octets || now == 0 || now + octets <= max; }
+};
+
 /// An address of version 4 as such, also when the socket is one of version 6.
 asio::ip::address plain_address(const asio::ip::address& address) {
     if (!address.is_v6() || !address.to_v6().is_v4_mapped()) return address;
     return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6());
-}
-
-/// What one subscriber is given: an address of version 4, or the /64 of version 6.
-std::string network_of(const asio::ip::address& address) {
-    if (!address.is_v6()) return address.to_string();
-    return asio::ip::make_network_v6(address.to_v6(), 64).canonical().to_string();
 }
 
 /// Of certificate and key, or what is wrong with them; none: no TLS.
@@ -154,17 +167,27 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
 } // namespace
 
 struct WebServer::State {
+    explicit State(const Settings& settings)
+        : connections(settings.streams + connections_besides, connections_each_max), streams(settings.streams), names(settings.names),
+          request_max(settings.request_max), silence_max(settings.silence_max) {
+        answers.max = settings.answers_octets_max;
+    }
     // What the coroutines of connections know of; they end with io.
-    ConnectionCount connections{connections_max, connections_each_max};
+    ConnectionCount connections;
+    OpenStreams streams;
     WaitingPeers waiting;
+    OctetsUnderWay answers;
     asio::io_context io{1};
     WriteTurn turn{io.get_executor()};
     Acceptor acceptor{io.get_executor()};
     std::optional<asio::ssl::context> tls;
     std::vector<std::string> names;
+    std::chrono::milliseconds request_max{}, silence_max{};
     Handlers handlers;
     std::deque<Timer> timers; ///< of every()
+    Timer farewell{io.get_executor()};
 
+    void end();
     Task<> accept();
     Task<> repeat(Timer& timer, std::chrono::milliseconds interval, std::function<void()> action);
     Task<> serve(Socket socket);
@@ -218,11 +241,11 @@ Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decl
     head.chunked(chunked);
     http::response_serializer<http::empty_body> serializer{head};
     error_code error;
-    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    lowest.expires_after(request_max);
     co_await http::async_write_header(stream, serializer, asio::redirect_error(awaiting, error));
     while (!error && part && *part) {
         for (std::string_view rest = **part; !error && !rest.empty(); rest.remove_prefix(std::min(rest.size(), slice_octets))) {
-            lowest.expires_after(std::chrono::seconds{request_seconds_max}); // a slow client needs only to go on
+            lowest.expires_after(request_max); // a slow client needs only to go on
             const auto octets = asio::buffer(rest.data(), std::min(rest.size(), slice_octets));
             if (chunked) {
                 const auto chunk = http::make_chunk(octets);
@@ -241,7 +264,7 @@ Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decl
         co_return false;
     }
     if (!chunked) co_return false;
-    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    lowest.expires_after(request_max);
     const auto end = http::make_chunk_last();
     co_await asio::async_write(stream, end, asio::redirect_error(awaiting, error));
     co_return keep && !error;
@@ -256,7 +279,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         http::request_parser<http::string_body> parser;
         parser.body_limit(body_octets_max);
         parser.header_limit(header_octets_max);
-        lowest.expires_after(std::chrono::seconds{request_seconds_max});
+        lowest.expires_after(request_max);
         co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(awaiting, error));
         // Before anything is read of who has not said who they are: a thousand such bodies are no burden.
         const auto field = [&](http::field name) { return std::string{plain(parser.get()[name])}; };
@@ -285,6 +308,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         auto request = parser.release();
         Response response;
         std::optional<WaitingPeers::Waiting> waiting_here;
+        std::optional<OctetsUnderWay::Taken> taken;
         decltype(HttpResponse::more) more;
         const auto target =
             boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
@@ -295,8 +319,9 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         } else if (websocket::is_upgrade(request) && target->path() == stream_path) {
             auto admitted = handlers.admit_stream(credentials);
             const auto* subprotocol = chosen_subprotocol(request);
-            if (admitted.status == 200 && subprotocol != nullptr) {
-                StreamService service{turn, message_octets_max, silence_seconds_max,
+            const auto no_place = streams.refusal();
+            if (admitted.status == 200 && subprotocol != nullptr && no_place.empty()) {
+                StreamService service{turn, streams, message_octets_max, silence_max,
                                       [this, credentials](StreamFormat format, std::function<void()> wake) {
                                           return handlers.open_stream(credentials, format, std::move(wake));
                                       }};
@@ -307,9 +332,12 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
                 response = Response{static_cast<http::status>(admitted.status), request.version()};
                 response.set(http::field::content_type, admitted.content_type);
                 response.body() = std::move(admitted.body);
-            } else
+            } else if (subprotocol == nullptr) {
                 response = error_reply(request, http::status::bad_request,
                             "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
+            } else {
+                response = error_reply(request, http::status::service_unavailable, no_place);
+            }
         } else {
             lowest.expires_never();
             waiting_here.emplace(waiting, lowest.socket().native_handle());
@@ -318,10 +346,19 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
                               std::move(request.body()), std::move(credentials), waiting_here->gone()};
             const auto ask = [this, &asked](const Respond& respond) { handlers.request(std::move(asked), respond); };
             auto answered = co_await told<HttpResponse>(ask);
+            if (!answers.has_room(answered.body.size())) {
+                answered = {};
+                answered.status = 503;
+                v1::ErrorReply reply;
+                reply.set_error("too many long answers are under way: try again, or ask for less at once");
+                answered.body = to_json(reply);
+            }
+            taken.emplace(answers, answered.body.size());
             response = Response{static_cast<http::status>(answered.status), request.version()};
             response.set(http::field::content_type, answered.content_type);
             response.set(http::field::cache_control, answered.cache_control);
             if (!answered.set_cookie.empty()) response.set(http::field::set_cookie, answered.set_cookie);
+            if (!answered.next_after.empty()) response.set("Aeolis-Next-After", answered.next_after);
             response.body() = std::move(answered.body);
             more = std::move(answered.more);
         }
@@ -339,8 +376,11 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         response.prepare_payload();
         if (request.method() == http::verb::head) response.body().clear();
         if (more) response.erase(http::field::content_length); // nobody knows it
-        lowest.expires_after(std::chrono::seconds{request_seconds_max});
-        co_await http::async_write(stream, response, asio::redirect_error(awaiting, error));
+        http::response_serializer<http::string_body> serializer{response};
+        while (!error && !serializer.is_done()) {
+            lowest.expires_after(request_max); // a slow client needs only to go on
+            co_await http::async_write_some(stream, serializer, asio::redirect_error(awaiting, error));
+        }
         if (error || !response.keep_alive()) co_return;
     }
 }
@@ -349,7 +389,7 @@ Task<> WebServer::State::serve(Socket socket) {
     error_code ignored;
     const auto peer = plain_address(socket.remote_endpoint(ignored).address());
     const std::string from = ignored ? "unknown" : peer.to_string();
-    const std::string share = network_of(peer);
+    const std::string share = network_of(from);
     const std::string refused = connections.enter(share, peer.is_loopback());
     const std::shared_ptr<void> counted{nullptr, [this, &share, entered = refused.empty()](void*) {
                                             if (entered) connections.leave(share);
@@ -370,7 +410,7 @@ Task<> WebServer::State::serve(Socket socket) {
     }
     TlsStream secure{std::move(stream), *tls};
     auto& lowest = beast::get_lowest_layer(secure);
-    lowest.expires_after(std::chrono::seconds{request_seconds_max});
+    lowest.expires_after(request_max);
     error_code error;
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
     if (error) co_return; // it speaks no TLS, or does not trust us
@@ -378,6 +418,17 @@ Task<> WebServer::State::serve(Socket socket) {
     if (!lowest.socket().is_open()) co_return;
     lowest.expires_after(std::chrono::seconds{1});
     co_await secure.async_shutdown(asio::redirect_error(awaiting, error));
+}
+
+void WebServer::State::end() {
+    error_code ignored;
+    acceptor.close(ignored);
+    farewell.expires_after(farewell_max);
+    farewell.async_wait([this](error_code) {
+        streams.forget(); // who does not answer goes with io
+        io.stop();
+    });
+    streams.end([this] { io.stop(); });
 }
 
 Task<> WebServer::State::accept() {
@@ -419,9 +470,8 @@ Result<std::unique_ptr<WebServer>> WebServer::open(const Settings& settings, Han
     if (error) return Error{fmt::format("--listen {}: not an IP address", address)};
     auto tls = tls_of(settings);
     if (!tls) return tls.error();
-    auto state = std::make_unique<State>();
+    auto state = std::make_unique<State>(settings);
     state->tls = std::move(*tls);
-    state->names = settings.names;
     state->handlers = std::move(handlers);
     const tcp::endpoint endpoint{ip, port};
     auto& acceptor = state->acceptor;
@@ -455,7 +505,7 @@ void WebServer::run() {
     state_->io.run();
 }
 void WebServer::stop() {
-    state_->io.stop();
+    asio::post(state_->io, [state = state_.get()] { state->end(); });
 }
 void WebServer::post(std::function<void()> action) {
     asio::post(state_->io, std::move(action));

@@ -4,6 +4,7 @@
 #include "server/net/http_message.hpp"
 #include "server/net/stream_session.hpp"
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -27,11 +28,9 @@ class WebServer {
     static constexpr std::size_t body_octets_max = 1 << 20;     ///< ours: a scenario with every field is under 2 KiB
     static constexpr std::size_t header_octets_max = 16 << 10;  ///< ours
     static constexpr std::size_t message_octets_max = 64 << 10; ///< ours: a command with every argument is under 2 KiB
-    static constexpr std::size_t connections_max = 1000;        ///< ours: below the usual 1024 open files
+    static constexpr std::size_t streams_max = 1000;            ///< ours: what bench/load_bench shows
+    static constexpr std::size_t connections_besides = 64;      ///< ours: for who asks something while all streams are taken
     static constexpr std::size_t connections_each_max = 100;    ///< ours: of one address that is not this machine's own
-    static constexpr unsigned request_seconds_max = 30;         ///< ours: for the next request to arrive whole
-    static constexpr unsigned silence_seconds_max =
-        20; ///< ours: a WebSocket peer that answers no ping for so long is dead
 
     struct Handlers {
         std::function<void(HttpRequest, Respond)> request;
@@ -42,12 +41,19 @@ class WebServer {
         /// It was let in. `wake` tells the connection that next_message() has something.
         std::function<std::shared_ptr<StreamSession>(const Credentials&, StreamFormat, std::function<void()> wake)> open_stream;
     };
+    static constexpr std::chrono::milliseconds farewell_max{1'000}; ///< ours: for streams to be closed when the server ends
     struct Settings {
         std::string address = "127.0.0.1";
         std::uint16_t port = 0;              ///< 0: a free one
         std::vector<std::string> names;      ///< by which browsers call this server, besides those of loopback
         std::filesystem::path certificate;   ///< PEM, the whole chain; empty: no TLS
         std::filesystem::path key;           ///< PEM
+        std::chrono::milliseconds request_max{30'000}; ///< ours: for the next request to arrive whole, and for an answer to go on
+        std::chrono::milliseconds silence_max{20'000}; ///< ours: a WebSocket peer that answers no ping for so long is dead
+        /// Ours: of bodies that lie in memory until their clients have taken them. What would go beyond is answered with 503, but
+        /// not what fits into one write, nor what is alone: a series of 2 000 000 samples has some 120 MB.
+        std::size_t answers_octets_max = 256 << 20;
+        std::size_t streams = streams_max; ///< open at once; one more gets 503
     };
 
     /// Binds and listens. Fails with one line that names the address or the file.
@@ -58,7 +64,7 @@ class WebServer {
 
     std::uint16_t port() const;
     void run();                                                      ///< until stop()
-    void stop();                                                     ///< from any thread
+    void stop();                                                     ///< from any thread; streams are closed with 1001 before
     void post(std::function<void()> action);                         ///< run it on the network thread; from any thread
     void every(unsigned milliseconds, std::function<void()> action); ///< on the network thread, before run()
     std::size_t connections() const;                                 ///< on the network thread

@@ -95,9 +95,11 @@ std::string other_words(const RunToDerive& run, const dictionary::Dictionary& di
            ", this program has " + std::to_string(dictionary.id);
 }
 
-/// Derived rows of a run, from "archive" into "main". @return its units
-Result<std::size_t> derive(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
-                           const telemetry::OtherMission* other) {
+/// Derived rows of a run, from "archive" into "main". @return its units; none: it was stopped
+Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
+                                          const telemetry::OtherMission* other, const GoesOn& goes_on) {
+    const auto of_units = database.integer_of(("SELECT count(*) FROM archive.units WHERE run = " + std::to_string(run.run.value)).c_str());
+    if (!of_units) return of_units.error();
     auto writer = archive::RowWriter::open(database);
     if (!writer) return writer.error();
     std::string units_sql = archive::row::unit_rows;
@@ -109,6 +111,8 @@ Result<std::size_t> derive(sqlite::Database& database, const RunToDerive& run, c
     PacketIntake intake(dictionary, columns, other);
     archive::Batch batch;
     std::size_t count = 0;
+    const auto stopped = [&] { return goes_on && !goes_on({run.run, count, static_cast<std::size_t>(*of_units)}); };
+    if (stopped()) return std::optional<std::size_t>{};
     for (;;) {
         auto found = units->step();
         if (!found) return found.error();
@@ -123,6 +127,7 @@ Result<std::size_t> derive(sqlite::Database& database, const RunToDerive& run, c
                         numbering, batch, {});
         ++count;
         if (batch.units.size() < batch_units) continue;
+        if (stopped()) return std::optional<std::size_t>{};
         if (auto done = writer->write(run.run, batch); !done) return done.error();
         batch.clear();
     }
@@ -132,7 +137,7 @@ Result<std::size_t> derive(sqlite::Database& database, const RunToDerive& run, c
         batch.totals->progress = run.progress;
     }
     if (auto done = writer->write(run.run, batch); !done) return done.error();
-    return count;
+    return std::optional{count};
 }
 
 /// What is wrong with one of a run's tables, found by comparing "archive" with "main".
@@ -259,7 +264,7 @@ Result<void> compare(sqlite::Database& database, const RunToDerive& run, const d
 } // namespace
 
 Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
-                            const telemetry::OtherMission* other, const std::filesystem::path& scratch_folder) {
+                            const telemetry::OtherMission* other, const std::filesystem::path& scratch_folder, const GoesOn& goes_on) {
     Verification found;
     int schema = 0;
     {
@@ -302,9 +307,11 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
             found.notes.push_back(other_words(run, dictionary) + ": its derived rows were not compared");
             continue;
         }
-        auto units = derive(database, run, dictionary, other);
+        auto units = derive(database, run, dictionary, other, goes_on);
         if (!units) return Error{"run " + std::to_string(run.run.value) + ": its units cannot be told again: " + units.error().message};
-        found.units += *units;
+        found.stopped = !*units;
+        if (found.stopped) return found;
+        found.units += **units;
         if (auto done = compare(database, run, dictionary, found); !done) return done.error();
         for (const archive::RunTable& table : archive::run_tables)
             if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done) return done.error();
@@ -313,7 +320,9 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
 }
 
 Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
-                        const telemetry::OtherMission* other) {
+                        const telemetry::OtherMission* other, archive::AuditRecord by, const GoesOn& goes_on) {
+    by.action = "rebuild";
+    by.outcome = "done";
     auto archive = archive::Maintenance::open(file);
     if (!archive) return archive.error();
     auto scratch_file = file;
@@ -339,10 +348,13 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         {
             auto transaction = sqlite::Transaction::begin_write(scratch->database());
             if (!transaction) return transaction.error();
-            if (auto units = derive(scratch->database(), run, dictionary, other); !units) {
+            const auto units = derive(scratch->database(), run, dictionary, other, goes_on);
+            if (!units) {
                 rebuilt.left.push_back(of_run + ": its units cannot be told again: " + units.error().message);
                 continue;
             }
+            rebuilt.stopped = !*units;
+            if (rebuilt.stopped) break;
             if (auto done = transaction->commit(); !done) return done.error();
         }
         if (auto done = scratch->database().execute("DETACH archive"); !done) return done.error();
@@ -361,6 +373,8 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
             }
             auto faults = archive::sequence_faults(database, run.run, "main.", 1);
             if (!faults || !faults->empty()) return faults;
+            by.detail = of_run;
+            if (auto noted = archive::append_audit(database, {&by, 1}); !noted) return noted.error();
             if (auto done = transaction->commit(); !done) return done.error();
             return faults;
         }();

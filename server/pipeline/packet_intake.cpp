@@ -20,6 +20,21 @@ PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archi
     : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other), alarms_(dictionary),
       segments_(columns), latest_(dictionary.channels.size()) {
     if (other_ == nullptr) decommutator_.emplace(dictionary);
+    const auto* phase = dictionary.channel("edl_phase"); // none: not of this mission
+    const auto tells_phase = [&](const dictionary::Field& field) {
+        return phase != nullptr && (field.channel == phase->id || (!phase->type.name.empty() && field.type.name == phase->type.name));
+    };
+    for (const auto& packet : dictionary.packets) {
+        const auto field = std::ranges::find_if(packet.fields, tells_phase);
+        phase_field_.push_back(field == packet.fields.end() ? std::nullopt : std::optional(static_cast<std::size_t>(field - packet.fields.begin())));
+    }
+}
+
+void PacketIntake::note_phase(const UnitRecord& unit) {
+    const auto field = phase_field_[*unit.packet];
+    if (!field || unit.source != Source::realtime || unit.sclk < phase_sclk_ || !decoded_.value[*field]) return;
+    phase_ = telemetry::value_text(dictionary_.packets[*unit.packet].fields[*field].type, decoded_.value[*field]);
+    phase_sclk_ = unit.sclk;
 }
 
 std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const dictionary::Dictionary& dictionary) {
@@ -62,6 +77,7 @@ void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& num
     unit.sampled = fresh && !columns_.channels(decoded_.packet).empty();
     batch.units.push_back(unit);
     if (unit.standing == Standing::again) return;
+    note_phase(unit);
     if (unit.sampled) sample(unit, numbering, batch);
     interpret(unit, numbering, batch);
     if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
@@ -90,6 +106,7 @@ void PacketIntake::take(const DownlinkPacket& packet, Numbering& numbering, Batc
     unit.sclk = decoded_.header.time;
     unit.sampled = !columns_.channels(decoded_.packet).empty();
     batch.units.push_back(unit);
+    note_phase(unit);
     if (unit.sampled) sample(unit, numbering, batch);
 }
 

@@ -60,6 +60,9 @@ class PacketIntake {
 
     archive::RecordingTotals totals() const;
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
+    /// The label of the vehicle's phase, as it was last told in real time by the channel of the phase or by the event of its
+    /// change, whichever is the newer on board: the channel comes every two seconds, when none is lost. Empty: not told.
+    const std::string& phase() const { return phase_; }
 
   private:
     /// Of the packet "TimepointFired", by which ground knows that a timepoint fired.
@@ -73,9 +76,14 @@ class PacketIntake {
     void judge(const archive::UnitRecord& unit, std::span<const double> values, Numbering& numbering,
                archive::Batch& batch);
 
+    void note_phase(const archive::UnitRecord& unit);
+
     const dictionary::Dictionary& dictionary_;
     const archive::PacketColumns& columns_;
     std::optional<FiringFields> firing_;
+    std::vector<std::optional<std::size_t>> phase_field_; ///< by packet
+    std::string phase_;
+    Sclk phase_sclk_{};
     const telemetry::OtherMission* other_; ///< none: our own
     std::optional<telemetry::Decommutator> decommutator_;
     telemetry::Decoded decoded_;

@@ -4,7 +4,6 @@
 #include "server/archive/packet_columns.hpp"
 #include "server/pipeline/packet_intake.hpp"
 #include "telemetry/staleness.hpp"
-#include "telemetry/text.hpp"
 
 #include <algorithm>
 
@@ -12,7 +11,7 @@ namespace aeolis::pipeline {
 
 struct Pipeline::State {
     State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
-        : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in), phase(dictionary_in.channel("edl_phase")) {}
+        : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in) {}
 
     /// All that belongs to the run that goes on.
     struct Run {
@@ -40,6 +39,7 @@ struct Pipeline::State {
     };
 
     Result<void> room();
+    std::size_t pending_octets() const;
     void take(const simulation::ReceivedPacket& packet);
     /// The newest unit of the batch was heard.
     void heard();
@@ -59,7 +59,6 @@ struct Pipeline::State {
     bool items_wanted = true;
     std::optional<Run> run;
     std::chrono::steady_clock::time_point last_commit{};
-    const dictionary::Channel* phase = nullptr; ///< of EDL; none: not of this mission
 };
 
 Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other)
@@ -85,8 +84,9 @@ Sequence Pipeline::last_durable() const {
     return state_->run ? state_->run->last_durable : 0;
 }
 std::size_t Pipeline::pending_items() const {
-    if (!state_->run || state_->run->pending.last_seq == 0) return 0;
-    return static_cast<std::size_t>(state_->run->pending.last_seq - state_->run->pending.first_seq + 1);
+    if (!state_->run) return 0;
+    const auto& pending = state_->run->pending;
+    return pending.requests.size() + (pending.last_seq == 0 ? 0 : static_cast<std::size_t>(pending.last_seq - pending.first_seq + 1));
 }
 
 Result<RunId> Pipeline::begin(const archive::RunStart& start) {
@@ -141,10 +141,18 @@ void Pipeline::abandon() {
     state_->run.reset();
 }
 
+std::size_t Pipeline::State::pending_octets() const {
+    return run ? run->pending.octets.size() + run->pending.values.size() * sizeof(double) : 0;
+}
+
+std::size_t Pipeline::pending_octets() const {
+    return state_->pending_octets();
+}
+
 Result<void> Pipeline::State::room() {
     AEOLIS_CHECK(run.has_value());
     if (auto done = go_on_where_it_was_cut_off(); !done) return done;
-    const std::size_t octets = run->pending.octets.size() + run->pending.values.size() * sizeof(double);
+    const std::size_t octets = pending_octets();
     if (octets < pending_octets_max) return {};
     return Error{archive.file().string() + ": " + std::to_string(octets >> 20U) +
                  " MB wait to be stored; the run is held until they are"};
@@ -192,9 +200,10 @@ Result<void> Pipeline::accept(const DownlinkPacket& packet) {
 Result<void> Pipeline::accept(const DownlinkState& state) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
-    run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert});
+    run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert, !state.up});
     std::vector<telemetry::StalenessChange> changes;
-    run.staleness.link("downlink", state.up, state.reason, state.ert, changes);
+    // Nothing is predicted of another mission: that its packets cannot come is a fault on the ground.
+    run.staleness.link("downlink", state.up ? telemetry::LinkIs::up : telemetry::LinkIs::lost, state.reason, state.ert, changes);
     state_->add(changes, state.ert);
     return {};
 }
@@ -250,9 +259,7 @@ void Pipeline::State::heard() {
     const Ert ert = unit.ert;
     std::vector<telemetry::StalenessChange> changes;
     run->staleness.heard(*unit.packet, ert, changes);
-    if (phase != nullptr)
-        if (const auto& latest = run->intake.latest()[phase->id.value]; latest && latest->value)
-            run->staleness.phase(telemetry::value_text(phase->type, latest->value), ert, changes);
+    if (!run->intake.phase().empty()) run->staleness.phase(run->intake.phase(), ert, changes);
     add(changes, ert);
 }
 
@@ -263,10 +270,11 @@ void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, E
 }
 
 void Pipeline::State::take(const simulation::LinkState& link) {
-    run->pending.links.push_back({run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert});
+    run->pending.links.push_back({run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert, link.lost});
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
-    run->staleness.link(link.link.name, link.up, link.reason, link.ert, changes);
+    using telemetry::LinkIs;
+    run->staleness.link(link.link.name, link.up ? LinkIs::up : link.lost ? LinkIs::lost : LinkIs::down, link.reason, link.ert, changes);
     add(changes, link.ert);
 }
 

@@ -132,7 +132,8 @@ class Pipeline {
 
     std::optional<RunId> run() const;
     Sequence last_durable() const;
-    std::size_t pending_items() const;
+    std::size_t pending_items() const; ///< and requests, which may come while nothing else does
+    std::size_t pending_octets() const; ///< of packets and samples that wait for a commit
     archive::RecordingTotals totals() const;
     /// In real time only, by ChannelId; none: never received.
     const std::vector<std::optional<LatestValue>>& latest() const;

@@ -2,8 +2,11 @@
 
 #include "server/archive/reader.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <spdlog/spdlog.h>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -11,7 +14,7 @@ namespace {
 constexpr std::chrono::milliseconds retry_interval{500}; // ours: a full disk does not empty faster
 constexpr std::size_t words_of_difference = 200;         // of an item: enough to see which it is
 constexpr std::uint64_t cycles_a_second = 64;
-constexpr int retries_when_closing = 4;                  // then the last commit is given up, and said so
+constexpr int retries_when_closing = 4;                  // then what waits is given up, and said so
 
 /// Whether a run's items that came again are those that the archive has; an Error names the first that is not.
 Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch& again) {
@@ -62,6 +65,7 @@ PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dicti
 }
 
 PipelineThread::~PipelineThread() {
+    closing();
     jobs_.close();
     thread_.join();
 }
@@ -103,14 +107,37 @@ void PipelineThread::abandon() {
     perform([&] { pipeline_.abandon(); });
 }
 
-void PipelineThread::audit(archive::AuditRecord record) {
+void PipelineThread::audit(archive::AuditRecord record, std::function<void()> kept) {
+    const bool refuses = !fault().empty();
     {
         const std::scoped_lock lock{audit_mutex_};
         // What was let in while there was room still has some.
-        if (audit_.size() >= 2 * audit_waiting_max) return spdlog::error("audit: too much waits for the disk, an entry is lost: {} {}", record.who, record.action);
-        audit_.push_back(std::move(record));
+        if (audit_.size() < 2 * audit_waiting_max) {
+            audit_.push_back(std::move(record));
+            audit_kept_.push_back(refuses ? nullptr : std::exchange(kept, nullptr));
+        } else {
+            spdlog::error("audit: too much waits for the disk, an entry is lost: {} {}", record.who, record.action);
+        }
     }
     jobs_.try_push(Action{[] {}}); // wakes it; a full queue keeps it awake
+    if (kept) kept();
+}
+
+void PipelineThread::tell_audit_kept(std::optional<std::size_t> written) {
+    std::vector<std::function<void()>> all;
+    {
+        const std::scoped_lock lock{audit_mutex_};
+        const auto end = static_cast<std::ptrdiff_t>(written.value_or(audit_.size()));
+        all.assign(std::make_move_iterator(audit_kept_.begin()), std::make_move_iterator(audit_kept_.begin() + end));
+        if (written) {
+            audit_.erase(audit_.begin(), audit_.begin() + end);
+            audit_kept_.erase(audit_kept_.begin(), audit_kept_.begin() + end);
+        } else {
+            std::ranges::fill(audit_kept_, nullptr);
+        }
+    }
+    for (const auto& kept : all)
+        if (kept) kept();
 }
 
 bool PipelineThread::audit_has_room() const {
@@ -132,8 +159,7 @@ Result<void> PipelineThread::write_audit() {
     }
     if (records.empty()) return {};
     if (auto written = archive_.append_audit(records); !written) return written;
-    const std::scoped_lock lock{audit_mutex_};
-    audit_.erase(audit_.begin(), audit_.begin() + static_cast<std::ptrdiff_t>(records.size()));
+    tell_audit_kept(records.size());
     return {};
 }
 
@@ -199,6 +225,7 @@ PipelineThread::Figures PipelineThread::figures() const {
     figures.published_batches = batches_;
     figures.published_items = items_;
     figures.waiting = jobs_.size();
+    figures.pending_octets = pending_octets_;
     {
         const std::scoped_lock lock{audit_mutex_};
         figures.audit_waiting = audit_.size();
@@ -231,6 +258,7 @@ void PipelineThread::run() {
                 finish(std::get<Finish>(*job));
         }
         commit_what_is_due();
+        pending_octets_ = pipeline_.pending_octets();
     }
 }
 
@@ -261,6 +289,7 @@ void PipelineThread::commit_what_is_due() {
     if (!noted(commit(when_durable_.empty() ? std::optional{now} : std::nullopt))) {
         next_attempt_ = now + retry_interval;
         given_up_ = faults_ == Faults::give_up;
+        tell_audit_kept({});
         return;
     }
     for (const auto& tell : std::exchange(when_durable_, {}))
@@ -284,14 +313,15 @@ bool PipelineThread::noted(const Result<void>& result) {
 }
 
 bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
-    for (int tries = 0; !given_up_; ++tries) {
+    for (int tries_when_closing = 0; !given_up_;) {
         const auto result = attempt();
         if (result) return noted(result);
         if (fault().empty()) noted(result); // else the disk's own words are known
-        if (faults_ == Faults::give_up || (jobs_.closed() && tries >= retries_when_closing)) {
+        if (faults_ == Faults::give_up || (closing_ && ++tries_when_closing > retries_when_closing)) {
             given_up_ = true;
             break;
         }
+        pending_octets_ = pipeline_.pending_octets();
         std::this_thread::sleep_for(retry_interval);
         const auto committed = pipeline_.commit(); // what waits goes first: accept() can then succeed
         (void)committed;

@@ -39,7 +39,8 @@ struct Delivery {
 /// Out      what the pipeline publishes, on this thread
 /// Faults   a failed commit is told once, and tried again every half second; the run goes on meanwhile, until
 ///          pipeline::pending_octets_max wait: then it waits too. Nothing is lost. With `Faults::give_up` (one landing
-///          without a console) the first failure ends it.
+///          without a console) the first failure ends it. Once closing() was said a failing disk has some seconds left, for
+///          nobody waits any longer for one that is never mended
 class PipelineThread {
   public:
     static constexpr std::size_t audit_waiting_max = 1'000; ///< ours: some 200 kB
@@ -63,9 +64,13 @@ class PipelineThread {
     bool deliver(Delivery delivery);
     /// Waits until everything delivered is durable and the run is marked finished.
     Result<void> finish(const archive::RunEnd& end);
+    /// All will end soon: while the disk takes it, everything is still stored; when it fails, whoever waits here gets the error
+    /// after some tries, and the run stays as one that was cut off. From any thread.
+    void closing() { closing_ = true; }
 
-    /// Stored as soon as the disk takes it; never waits. From any thread.
-    void audit(archive::AuditRecord record);
+    /// Stored as soon as the disk takes it; never waits. From any thread. `kept` is told when it is durable, on this object's thread; while
+    /// the disk refuses at once, for what was done must still be answered.
+    void audit(archive::AuditRecord record, std::function<void()> kept = {});
     /// False while so much of the audit waits for a failing disk that nothing more may be done that belongs into it.
     bool audit_has_room() const;
     /// Adds to any run what a person says; `done` comes on this thread when it is durable. False, and nothing done, when too
@@ -84,6 +89,7 @@ class PipelineThread {
     struct Figures {
         std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
         std::size_t waiting = 0, audit_waiting = 0;
+        std::size_t pending_octets = 0; ///< held until the disk takes them
         std::uint64_t commits = 0; ///< that had something to make durable
         double commit_s = 0.0, longest_commit_s = 0.0; ///< of all of them; of one
         std::map<std::string, Received> links; ///< by name: packets and tones that reached Earth
@@ -116,6 +122,8 @@ class PipelineThread {
     bool noted(const Result<void>& result);
     bool waits() const;
     Result<void> write_audit();
+    /// Of all that waits, or of the first so many, which leave.
+    void tell_audit_kept(std::optional<std::size_t> written);
     void note_received(const Delivery& delivery);
     void note_commit(std::chrono::steady_clock::duration took);
     /// Of the run and of the audit; the run's when it is due, or at once.
@@ -126,14 +134,16 @@ class PipelineThread {
     pipeline::Pipeline pipeline_;
     Faults faults_;
     BoundedQueue<Job> jobs_{deliveries_max};
-    std::atomic<bool> items_wanted_{true}, given_up_{false};
+    std::atomic<bool> items_wanted_{true}, given_up_{false}, closing_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
+    std::atomic<std::size_t> pending_octets_{0};
     mutable std::mutex figures_mutex_;
     std::map<std::string, Received> links_;
     std::uint64_t commits_ = 0;
     double commit_s_ = 0.0, longest_commit_s_ = 0.0;
     mutable std::mutex audit_mutex_;
     std::vector<archive::AuditRecord> audit_;
+    std::vector<std::function<void()>> audit_kept_; ///< one a record; empty: told, or nobody wants to know
     std::vector<std::function<void()>> when_durable_; ///< of what waits
     std::chrono::steady_clock::time_point next_attempt_{};
     std::function<void(const std::string&)> on_fault_;

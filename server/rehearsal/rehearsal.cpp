@@ -10,15 +10,23 @@
 namespace aeolis::server {
 namespace {
 
+constexpr std::uint64_t cycles_between_silences = 64; // a second: who watches a silence waits no longer
 constexpr const char* product_packet_name = "DataProduct";
+
+/// When what leaves the vehicle at the entry that ground predicts is heard on Earth.
+Ert heard_at_entry(const simulation::Scenario& scenario, const simulation::Landing& landing) {
+    return {landing.correlation().scet_of(scenario.entry_sclk).microseconds + static_cast<std::int64_t>(landing.light_time_s() * 1e6)};
+}
 
 } // namespace
 
 Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                     const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner)
+                     const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner,
+                     const std::optional<ClockCorrelation>& clock)
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
-      flight_(scenario, seed, case_number, dictionary), product_packet_(dictionary.packet(product_packet_name)),
-      decommutator_(dictionary), firings_(dictionary) {
+      flight_(scenario, seed, case_number, dictionary, clock), product_packet_(dictionary.packet(product_packet_name)),
+      decommutator_(dictionary), firings_(dictionary),
+      silences_(predict_silences(scenario, dictionary), landing().ert_now(), heard_at_entry(scenario, landing())) {
     if (runner == nullptr && scenario.test_venue == simulation::TestVenue::performance) {
         ThreadedExecutive::Options options;
         options.measure = true;
@@ -33,7 +41,7 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
 const simulation::CycleReport& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
     try {
-        const auto& report = hear_tones(flight_.step());
+        const auto& report = explain_silences(hear_tones(flight_.step()));
         ++cycles_;
         take(report);
         return report;
@@ -48,6 +56,25 @@ const simulation::CycleReport& Rehearsal::hear_tones(const simulation::CycleRepo
     heard_ = landed;
     tones_from_samples_->receive(landed, heard_.tones);
     return heard_;
+}
+
+const simulation::CycleReport& Rehearsal::explain_silences(const simulation::CycleReport& heard) {
+    if (heard.links.empty() && cycles_ % cycles_between_silences != 0) return heard;
+    SilenceClassifier::Station at_station{recording_progress(), {}, heard.station_out ? "nothing comes from the station" : ""};
+    for (const auto& link : station().links())
+        at_station.heard.emplace_back(link.link.name, link.heard_at);
+    auto links = silences_.tell(heard.links, landing().ert_now(), at_station);
+    if (links.empty() && heard.links.empty()) return heard; // else what the simulation says of them would be told
+    if (&heard != &heard_) heard_ = heard;
+    heard_.links = std::move(links);
+    return heard_;
+}
+
+Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
+    const auto fault = fault_from_message(injection, scenario_);
+    if (!fault) return fault.error();
+    flight_.inject(*fault);
+    return {};
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
@@ -150,6 +177,10 @@ v1::Clocks Rehearsal::clocks() const {
     clocks.set_ert(day_of_year_text(landing().ert_now()));
     clocks.set_light_time_s(landing().light_time_s());
     clocks.set_seen_sclk(landing().sclk().seconds - landing().light_time_s());
+    if (const auto deadline = flight_.gateway().deadlines().next(landing().ert_now())) {
+        clocks.set_latest_useful(day_of_year_text(deadline->latest));
+        clocks.set_useful_before(deadline->timepoint);
+    }
     return clocks;
 }
 

@@ -6,6 +6,7 @@
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/recorded_firings.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
+#include "server/station/silence_classifier.hpp"
 #include "server/station/tone_station.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
@@ -31,14 +32,19 @@ struct ToneScore {
 /// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
 class Rehearsal {
   public:
-    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive.
+    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive; a `clock` is that of a run
+    /// which was begun before.
     Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-              const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {});
+              const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {},
+              const std::optional<ClockCorrelation>& clock = {});
 
     /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
     const simulation::CycleReport& step();
 
     v1::CommandReply submit(const v1::CommandRequest& request);
+
+    /// It begins with the next cycle. An Error names what of it cannot be.
+    Result<void> inject(const v1::FaultInjection& injection);
 
     /// Stages since the last call; their `seq` is not given yet.
     std::vector<archive::StageRecord> take_stages() { return flight_.take_stages(); }
@@ -79,6 +85,8 @@ class Rehearsal {
   private:
     /// The same with the tones that were decoded from its samples.
     const simulation::CycleReport& hear_tones(const simulation::CycleReport& landed);
+    /// The same with ground's own reasons for what links do not bring.
+    const simulation::CycleReport& explain_silences(const simulation::CycleReport& heard);
     void take(const simulation::CycleReport& report);
     /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
@@ -102,6 +110,7 @@ class Rehearsal {
     telemetry::UnitRegister units_;
     telemetry::ProductAssembler products_;
     std::optional<ToneStation> tones_from_samples_; ///< where the scenario has them so
+    SilenceClassifier silences_;
     simulation::CycleReport heard_, nothing_;
 };
 

@@ -1,6 +1,7 @@
 #include "server/rehearsal/rehearsal_desk.hpp"
 
-#include "server/gateway/timeline_check.hpp"
+#include "server/api/annotations.hpp"
+#include "server/gateway/command_gateway.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <spdlog/spdlog.h>
 
 namespace aeolis::server {
 namespace {
@@ -39,10 +41,10 @@ std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& sce
 } // namespace
 
 RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
-                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, CheckTimeline check_timeline,
+                             PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, TimelineQuestions timeline,
                              Callbacks callbacks)
     : scenarios_(scenarios), dictionary_(dictionary), pipeline_(pipeline), post_(std::move(post)),
-      read_cut_off_(std::move(read_cut_off)), check_timeline_(std::move(check_timeline)), callbacks_(std::move(callbacks)) {}
+      read_cut_off_(std::move(read_cut_off)), timeline_(std::move(timeline)), callbacks_(std::move(callbacks)) {}
 
 RehearsalDesk::~RehearsalDesk() = default;
 
@@ -82,7 +84,7 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     const auto changes = timeline_changes(scenario);
     if (changes.empty()) return fly(std::move(scenario), seed, pace, std::move(began));
-    check_timeline_(archive::RunId{}, changes, [this, scenario = std::move(scenario), seed, pace, began = std::move(began), changes](Result<std::string> timeline) {
+    timeline_.check(archive::RunId{}, changes, false, [this, scenario = std::move(scenario), seed, pace, began = std::move(began), changes](Result<std::string> timeline) {
         post_([this, scenario, seed, pace, began, changes, timeline = std::move(timeline)] {
             if (timeline) return fly(scenario, seed, pace, began);
             std::string names;
@@ -119,6 +121,7 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
                 begun_ = true;
                 state_ = *state;
                 callbacks_.on_state(state_);
+                look_again(); // a crash may have come in between
             }
             began(state);
         });
@@ -127,12 +130,52 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
         post_([this, state = std::move(state)]() mutable {
             state_ = state;
             callbacks_.on_state(std::move(state));
+            if (std::exchange(not_known_, false)) look_again();
         });
     };
     callbacks.on_clocks = [this](v1::Clocks clocks) {
         post_([this, clocks = std::move(clocks)]() mutable { callbacks_.on_clocks(std::move(clocks)); });
     };
+    callbacks.on_timeline_moved = [this] {
+        post_([this] {
+            ++moves_;
+            look_again();
+        });
+    };
     return callbacks;
+}
+
+void RehearsalDesk::look_again() {
+    if (!going_on() || !begun_) return;
+    if (std::exchange(looking_again_, true)) {
+        once_more_ = true;
+        return;
+    }
+    const auto run = state_.run();
+    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)}, [this, run](Result<TimelineCheck::Look> look) {
+        post_([this, run, look = std::move(look)] {
+            looking_again_ = false;
+            const bool goes_on = going_on() && begun_ && state_.run() == run;
+            // Else what was found is of what waited before.
+            if (std::exchange(once_more_, false)) return look_again();
+            if (!goes_on) return;
+            const std::string not_known = look ? look->not_known : look.error().message;
+            not_known_ = !not_known.empty();
+            if (not_known_) spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
+            if (look) tell_looks(*look);
+        });
+    });
+}
+
+void RehearsalDesk::tell_looks(const TimelineCheck::Look& look) {
+    for (const auto& each : look.known) {
+        v1::CommandRequest said;
+        said.set_action(each.refuted ? timeline_refuted_action : timeline_holds_action);
+        said.set_number(each.number);
+        said.set_request(look.undone);
+        said.set_analysis(each.words);
+        runner_->submit(said, [](const v1::CommandReply&) {}); // of one that nobody doubts it is refused, and that is all it would say
+    }
 }
 
 Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {
@@ -155,8 +198,13 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
         if (!control.stop()) return Error{"stop: false asks for nothing"};
         runner_->stop();
         return {};
+    case v1::RehearsalControl::kInject:
+        return runner_->inject(control.inject());
+    case v1::RehearsalControl::kNote:
+        if (auto checked = check_note(control.note().text(), control.note().by()); !checked) return checked;
+        return runner_->note(control.note());
     default:
-        return Error{"the control says nothing: start, pause, pace or stop is wanted"};
+        return Error{"the control says nothing: start, pause, pace, stop, inject or note is wanted"};
     }
 }
 
@@ -180,13 +228,23 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
     const auto refuse = [&](const std::string& reason) { refuse_by(requests, replies, reason); };
     if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
     for (const auto& request : requests)
+        if (request.action() == timeline_holds_action || request.action() == timeline_refuted_action)
+            return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
+    for (const auto& request : requests)
         if (request.run() != 0 && request.run() != state_.run())
             return refuse(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
-    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused.
-    if (changing_ && !only_check)
+    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused. Not who stops
+    // something: that changes no timeline, and nothing may leave while it waits.
+    const bool stops = std::ranges::all_of(requests, [](const v1::CommandRequest& request) { return request.action() == "hold"; });
+    if (changing_ && !only_check && !stops && later_.size() >= RehearsalRunner::requests_max)
+        return refuse(fmt::format("{} commands wait already, until a change of the timeline is decided", later_.size()));
+    if (changing_ && !only_check && !stops) {
+        for (auto& request : requests) // their numbers and rights are of this run, not of one that begins meanwhile
+            request.set_run(state_.run());
         return later_.push_back([this, requests = std::move(requests), replies = std::move(replies)]() mutable {
             sequence(std::move(requests), false, std::move(replies));
         });
+    }
     const auto run = state_.run();
     if (!only_check && std::ranges::any_of(requests, changes_timeline)) {
         changing_ = true;
@@ -197,10 +255,12 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
                 order();
         };
     }
-    check_timeline_(archive::RunId{static_cast<std::uint32_t>(run)}, requests, [this, run, requests, only_check, replies, refuse_by](Result<std::string> timeline) {
-        post_([this, run, requests, only_check, replies, refuse_by, timeline = std::move(timeline)] {
+    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check, [this, run, requests, only_check, replies, refuse_by, moves = moves_](Result<std::string> timeline) {
+        post_([this, run, requests, only_check, replies, refuse_by, moves, timeline = std::move(timeline)] {
             if (!timeline) return refuse_by(requests, replies, timeline.error().message);
             if (!going_on() || !begun_ || state_.run() != run) return refuse_by(requests, replies, "no run goes on: nothing listens");
+            if (!only_check && !timeline->empty() && moves != moves_)
+                return refuse_by(requests, replies, "what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
             runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
                 for (auto& answer : answers)
                     answer.set_timeline(says);

@@ -1,12 +1,14 @@
 #include "server/rehearsal/rehearsal_runner.hpp"
 
+#include "commands/timeline_change.hpp"
 #include "server/archive/items.hpp"
+#include "server/archive/kept_request.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/rehearsal/wall_clock.hpp"
+#include "server/scenario/scenario_text.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <google/protobuf/text_format.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server {
@@ -82,6 +84,30 @@ void RehearsalRunner::stop() {
     changed_.notify_one();
 }
 
+Result<void> RehearsalRunner::inject(v1::FaultInjection injection) {
+    if (const auto fault = fault_from_message(injection, scenario_); !fault) return fault.error();
+    v1::Intervention intervention;
+    *intervention.mutable_fault() = std::move(injection);
+    return intervene(std::move(intervention), faults_taken_, faults_max, "faults have been injected into");
+}
+
+Result<void> RehearsalRunner::note(v1::InstructorNote note) {
+    v1::Intervention intervention;
+    *intervention.mutable_note() = std::move(note);
+    return intervene(std::move(intervention), notes_taken_, notes_max, "notes have been written about");
+}
+
+Result<void> RehearsalRunner::intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most, std::string_view what) {
+    const std::scoped_lock lock{mutex_};
+    if (over_ || control_.stop) return Error{over_reason};
+    if (taken == most) return Error{fmt::format("{} {} this run: no more", most, what)};
+    ++taken;
+    control_.interventions.push_back(std::move(intervention));
+    control_.changed = true;
+    changed_.notify_one();
+    return {};
+}
+
 void RehearsalRunner::submit(v1::CommandRequest request, Reply reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
@@ -113,8 +139,19 @@ bool RehearsalRunner::over() const {
     return over_;
 }
 
+std::size_t RehearsalRunner::waiting() const {
+    const std::scoped_lock lock{mutex_};
+    return control_.orders.size();
+}
+
+std::optional<std::string> RehearsalRunner::name_of_command(std::uint64_t number) const {
+    const std::scoped_lock lock{mutex_};
+    const auto found = names_.find(number);
+    return found == names_.end() ? std::nullopt : std::optional{found->second};
+}
+
 void RehearsalRunner::run() {
-    Rehearsal rehearsal{scenario_, seed_, 0, dictionary_};
+    Rehearsal rehearsal{scenario_, seed_, 0, dictionary_, {}, cut_ ? std::optional{cut_->clock} : std::nullopt};
     start_ = rehearsal.run_start(pace_);
     if (const auto begun = begin(rehearsal)) {
         callbacks_.on_begun(state(rehearsal));
@@ -150,6 +187,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
     run_id_ = cut_->run;
     start_.started = cut_->started;
     spdlog::info("run {} is flown again up to item {}", run_id_.value, cut_->last_seq);
+    if (!cut_->clock_kept) spdlog::info("run {} has no clock of its own in the archive: it is of before clocks drifted, and goes on without drift", run_id_.value);
     if (auto resumed = pipeline_.resume(*cut_, start_); !resumed) return resumed;
     const auto given_up = [&](const std::string& why) {
         pipeline_.abandon();
@@ -159,11 +197,9 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
     for (;;) {
         if (stop_wanted()) return given_up("it was stopped");
         for (; request != cut_->requests.end() && request->cycle == rehearsal.cycles(); ++request) {
-            v1::CommandRequest again;
-            if (!google::protobuf::TextFormat::ParseFromString(request->request, &again) || !rehearsal.submit(again).accepted())
-                return given_up("a command that was taken at cycle " + std::to_string(request->cycle) + " is refused now");
-            for (auto& stage : rehearsal.take_stages())
-                delivery_.entries.emplace_back(std::move(stage));
+            if (!repeat(rehearsal, request->request))
+                return given_up("what was taken at cycle " + std::to_string(request->cycle) + " is refused now");
+            take_stages(rehearsal);
         }
         if (rehearsal.cycles() % cycles_between_looks == 0) {
             if (!deliver(rehearsal, Clock::now())) return given_up("the archive gave up");
@@ -204,6 +240,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
             control.pace = control_.pace;
             control.changed = std::exchange(control_.changed, false);
             control.orders.swap(control_.orders);
+            control.interventions.swap(control_.interventions);
         }
         now = Clock::now();
         if (control.changed) {
@@ -211,6 +248,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
             paused_ = control.paused;
             pace_ = control.pace;
             stopped_ = control.stop;
+            bring_about(rehearsal, control.interventions);
             carry_out(rehearsal, std::move(control.orders));
             if (different) {
                 anchor = now;
@@ -248,10 +286,16 @@ std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, con
     std::vector<v1::CommandReply> replies;
     if (!order.only_check && order.requests.size() == 1) return replies; // the one look at it comes when it is taken
     bool all = true;
+    std::size_t more = 0; // each of a file needs its place
     for (auto request : order.requests) {
         request.set_dry_run(true);
-        replies.push_back(rehearsal.submit(request));
-        all = all && replies.back().accepted();
+        auto& reply = replies.emplace_back(rehearsal.submit(request));
+        more += request.action().empty() ? 1 : 0;
+        if (const auto room = rehearsal.gateway().takes(more); reply.accepted() && request.action().empty() && !room) {
+            reply.set_accepted(false);
+            reply.set_reason(room.error().message);
+        }
+        all = all && reply.accepted();
     }
     if (all && !order.only_check) replies.clear();
     return replies;
@@ -272,11 +316,8 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
                          answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
             if (answer.accepted()) {
                 any = true;
-                std::string text;
-                google::protobuf::TextFormat::PrintToString(request, &text);
-                delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), std::move(text)});
-                for (auto& stage : rehearsal.take_stages())
-                    delivery_.entries.emplace_back(std::move(stage));
+                delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
+                take_stages(rehearsal);
             }
             replies.push_back(std::move(answer));
         }
@@ -288,21 +329,55 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
     if (!delivery_.when_durable.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
 }
 
+void RehearsalRunner::bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions) {
+    for (const auto& intervention : interventions) {
+        if (intervention.has_fault()) {
+            if (const auto injected = rehearsal.inject(intervention.fault()); !injected) { // inject() has looked at it already
+                spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
+                continue;
+            }
+            spdlog::info("run {}: fault injected: {}", run_id_.value, intervention.fault().ShortDebugString());
+        }
+        delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(intervention)});
+    }
+}
+
+bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
+    const auto kept = archive::kept_request(request);
+    if (const auto* command = std::get_if<v1::CommandRequest>(&kept)) return rehearsal.submit(*command).accepted();
+    const auto* intervention = std::get_if<v1::Intervention>(&kept);
+    return intervention != nullptr && (!intervention->has_fault() || rehearsal.inject(intervention->fault()).ok());
+}
+
 void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
     delivery_.add(report);
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
-    for (auto& stage : rehearsal.take_stages())
+    take_stages(rehearsal);
+}
+
+void RehearsalRunner::take_stages(Rehearsal& rehearsal) {
+    for (auto& stage : rehearsal.take_stages()) {
+        const bool ended = stage.status == commands::name_of(commands::Status::failed);
+        timeline_moved_ = timeline_moved_ || (ended && commands::changes_offsets(stage.name));
+        if (stage.stage == commands::name_of(commands::Stage::queued)) {
+            const std::scoped_lock lock{mutex_};
+            names_.emplace(stage.command, stage.name);
+        }
         delivery_.entries.emplace_back(std::move(stage));
+    }
 }
 
 bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now) {
     delivered_ = now;
+    queued_ = rehearsal.gateway().queued();
+    at_uplink_ = rehearsal.gateway().at_uplink();
     if (delivery_.entries.empty() && delivery_.when_durable.empty()) return true;
     delivery_.relay_progress = rehearsal.recording_progress();
     if (now - links_told_ >= links_interval || rehearsal.finished()) {
         links_told_ = now;
         delivery_.links = rehearsal.link_totals();
     }
+    if (std::exchange(timeline_moved_, false) && callbacks_.on_timeline_moved) delivery_.when_durable.push_back(callbacks_.on_timeline_moved);
     return pipeline_.deliver(std::exchange(delivery_, {}));
 }
 

@@ -1,15 +1,22 @@
 #pragma once
 
 #include "aeolis/v1/run.pb.h"
+#include "aeolis/v1/scenario.pb.h"
+#include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "server/rehearsal/pipeline_thread.hpp"
 #include "simulation/scenario.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -19,14 +26,14 @@ class Rehearsal;
 
 /// Flies one rehearsal in its own thread, at the pace asked for, and hands what reaches Earth to the archive.
 ///
-/// In       pause, pace, stop, commands: from any thread, done between two cycles
+/// In       pause, pace, stop, commands, faults, an instructor's notes: from any thread, done between two cycles
 /// Out      deliveries to the pipeline; state on every change and once a second, clocks ten times a second
 /// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
 ///          slower, nothing is skipped, and `attained_pace` says so.
 /// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else drawn
 ///          from the symbol error: the pace asked for at the start decides, for the whole run, so that none is lost or
 ///          doubled when the pace changes (decision 0019)
-/// Cut off  a run that a crash ended is flown again with the same seed and the same requests at the same cycles, as fast as it
+/// Cut off  a run that a crash ended is flown again with the same seed, clock and requests at the same cycles, as fast as it
 ///          goes; each item is held against the archive, and after the last that is stored the run goes on as if nothing
 ///          had been. When one is not what it was, the run stays interrupted and on_begun gets the error (decision 0021)
 /// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error
@@ -36,12 +43,17 @@ class RehearsalRunner {
     /// A quarter of what a shared core was measured to sustain, headless (docs/tones.md). Ours
     static constexpr double signal_pace_max = 50.0;
     static constexpr std::size_t requests_max = 64; ///< commands waiting for the next cycle; ours
+    static constexpr std::size_t faults_max = 100;  ///< injected into one run; ours
+    static constexpr std::size_t notes_max = 1'000; ///< of instructors in one run; ours
 
     /// Called on the rehearsal's thread.
     struct Callbacks {
         std::function<void(Result<v1::RunState>)> on_begun; ///< once; after an error nothing else comes
         std::function<void(v1::RunState)> on_state;
         std::function<void(v1::Clocks)> on_clocks;
+        /// A command that changes the timeline has come to nothing, and that is durable: what still waits was analysed with it. On the
+        /// pipeline's thread
+        std::function<void()> on_timeline_moved;
     };
     using Reply = std::function<void(v1::CommandReply)>;
 
@@ -61,6 +73,10 @@ class RehearsalRunner {
     void pause(bool paused);
     void set_pace(double pace);
     void stop();
+    /// What an Error names cannot be injected into this run.
+    Result<void> inject(v1::FaultInjection injection);
+    /// Kept with the cycle at which it came; nothing on board or on the ground hears of it.
+    Result<void> note(v1::InstructorNote note);
     /// The reply comes on the pipeline's thread once the command's stages are durable; a refusal at once.
     void submit(v1::CommandRequest request, Reply reply);
     /// A command file: all are checked before the first is taken, and when one is refused none is. Replies as of submit(); with
@@ -68,6 +84,12 @@ class RehearsalRunner {
     using Replies = std::function<void(std::vector<v1::CommandReply>)>;
     void submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies);
     bool over() const; ///< the thread has nothing more to do
+    std::size_t waiting() const; ///< commands, and command files, for the next cycle
+    /// Of those that were taken: what has not left the queue, and what the uplink has and has not radiated. As of the last delivery.
+    std::size_t queued() const { return queued_; }
+    std::size_t at_uplink() const { return at_uplink_; }
+    /// Of the command with this number; none: there is none yet.
+    std::optional<std::string> name_of_command(std::uint64_t number) const;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -80,6 +102,7 @@ class RehearsalRunner {
         bool paused = false, stop = false, changed = false;
         double pace = 1.0;
         std::vector<Order> orders;
+        std::vector<v1::Intervention> interventions; ///< for the next cycle
     };
 
     void run();
@@ -89,9 +112,14 @@ class RehearsalRunner {
     bool stop_wanted() const;
     void fly(Rehearsal& rehearsal);
     void carry_out(Rehearsal& rehearsal, std::vector<Order> orders);
+    Result<void> intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most, std::string_view what);
+    void bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions);
+    /// What was once asked of this run, asked again.
+    static bool repeat(Rehearsal& rehearsal, const std::string& request);
     /// @return the replies of those that were refused, or of all in a dry run; empty: each may be taken
     static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const Order& order);
     void collect(Rehearsal& rehearsal, const simulation::CycleReport& report);
+    void take_stages(Rehearsal& rehearsal);
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);
     v1::RunState state(const Rehearsal& rehearsal) const;
@@ -109,11 +137,16 @@ class RehearsalRunner {
     std::condition_variable changed_;
     Control control_; ///< under mutex_
     bool over_ = false;
+    std::size_t faults_taken_ = 0, notes_taken_ = 0; ///< under mutex_; in this sitting
+    std::map<std::uint64_t, std::string> names_;     ///< under mutex_; of the run's commands, by number
+
+    std::atomic<std::size_t> queued_{0}, at_uplink_{0};
 
     // Of the rehearsal's thread only.
     archive::RunId run_id_;
     archive::RunStart start_;
     Delivery delivery_;
+    bool timeline_moved_ = false; ///< by what is in delivery_
     bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
     std::string digest_;

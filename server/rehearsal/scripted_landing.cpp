@@ -44,9 +44,10 @@ commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
 } // namespace
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                                 const dictionary::Dictionary& dictionary)
-    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary), clock_of(scenario, dictionary)), station_(landing_.light_time_s()),
-      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person, stations_of(scenario)),
+                                 const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
+    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)), station_(landing_.light_time_s()),
+      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person, stations_of(scenario),
+               landing_.correlation().scet_of(scenario.entry_sclk)),
       script_(scenario.commands), dispersed_(landing_.dispersed()) {}
 
 const simulation::CycleReport& ScriptedLanding::step() {
@@ -87,8 +88,11 @@ void ScriptedLanding::send_script() {
         // Who wrote the command into the scenario has armed and named it.
         request.set_armed(true);
         request.set_confirmation(command.command);
-        const auto reply = submit(request);
-        if (!reply.accepted()) script_refusals_.push_back(reply.reason());
+        const auto reply = gateway_.submit(request, landing_.ert_now(), stages_, CommandGateway::Asker::script);
+        radiate();
+        if (reply.accepted()) continue;
+        script_refusals_.push_back(reply.reason());
+        gateway_.note_refused(request, reply.reason(), landing_.ert_now(), stages_);
     }
 }
 

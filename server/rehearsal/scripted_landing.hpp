@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ namespace aeolis::server {
 /// A value: copy it and the landing is forked, with what ground knows of it.
 class ScriptedLanding {
   public:
-    /// The dictionary must outlive this and its copies.
+    /// The dictionary must outlive this and its copies. `clock`: of a run that was begun before; else that of the dictionary, where it is
+    /// the scenario's.
     ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
-                    const dictionary::Dictionary& dictionary);
+                    const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock = {});
 
     void run_prime_by(std::shared_ptr<flight::CycleRunner> runner) { landing_.run_prime_by(std::move(runner)); }
     /// See Landing::take_case.
@@ -37,6 +39,8 @@ class ScriptedLanding {
     void hear(const simulation::CycleReport& report);
 
     v1::CommandReply submit(const v1::CommandRequest& request);
+
+    void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 
     bool script_sent() const { return script_.empty(); }
     /// Stages since the last call; their `seq` is not given yet.

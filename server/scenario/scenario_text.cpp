@@ -134,6 +134,10 @@ const Bindings<simulation::SystemFault> fault_fields = {
     AEOLIS_BIND(SystemFault, begin_before_entry_s),
     AEOLIS_BIND(SystemFault, duration_s),
 };
+const Bindings<simulation::StationOutage> outage_fields = {
+    AEOLIS_BIND(StationOutage, begin_before_entry_s),
+    AEOLIS_BIND(StationOutage, duration_s),
+};
 const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, begin_before_entry_s),
     AEOLIS_BIND(DeviceFault, duration_s),
@@ -250,6 +254,35 @@ Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault&
     fault.kind = *kind;
     read(row, device_fault_fields, fault);
     return fault;
+}
+
+Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
+    switch (message.fault_case()) {
+    case v1::FaultInjection::kDeviceFault: {
+        if (message.device_fault().begin_before_entry_s() != 0.0) return Error{"device_fault.begin_before_entry_s: it begins now"};
+        auto fault = device_fault_from_message(message.device_fault(), "device_fault");
+        if (!fault) return fault.error();
+        return simulation::Fault{*fault};
+    }
+    case v1::FaultInjection::kSystemFault: {
+        if (message.system_fault().begin_before_entry_s() != 0.0) return Error{"system_fault.begin_before_entry_s: it begins now"};
+        simulation::SystemFault fault;
+        read(message.system_fault(), fault_fields, fault);
+        return simulation::Fault{fault};
+    }
+    case v1::FaultInjection::kComputerReset:
+        if (!message.computer_reset()) return Error{"computer_reset: false asks for nothing"};
+        return simulation::Fault{simulation::ComputerReset{}};
+    case v1::FaultInjection::kStationOutage: {
+        if (message.station_outage().begin_before_entry_s() != 0.0) return Error{"station_outage.begin_before_entry_s: it begins now"};
+        simulation::StationOutage outage;
+        read(message.station_outage(), outage_fields, outage);
+        return simulation::Fault{outage};
+    }
+    case v1::FaultInjection::FAULT_NOT_SET:
+        break;
+    }
+    return Error{"the injection says nothing: device_fault, system_fault, computer_reset or station_outage is wanted"};
 }
 
 void write_device_fault(const simulation::DeviceFault& fault, v1::DeviceFault& row) {
@@ -374,9 +407,27 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     }
     for (const auto& row : message.computer_resets())
         read(row, reset_fields, scenario.computer_resets.emplace_back());
+    for (const auto& row : message.station_outages())
+        read(row, outage_fields, scenario.station_outages.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
+}
+
+Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, const simulation::Scenario& scenario) {
+    auto fault = read_fault(message);
+    if (!fault) return fault;
+    auto with_it_alone = scenario;
+    with_it_alone.system_faults.clear();
+    with_it_alone.device_faults.clear();
+    with_it_alone.computer_resets.clear();
+    with_it_alone.station_outages.clear();
+    if (const auto* device = std::get_if<simulation::DeviceFault>(&*fault)) with_it_alone.device_faults = {*device};
+    if (const auto* system = std::get_if<simulation::SystemFault>(&*fault)) with_it_alone.system_faults = {*system};
+    if (const auto* reset = std::get_if<simulation::ComputerReset>(&*fault)) with_it_alone.computer_resets = {*reset};
+    if (const auto* outage = std::get_if<simulation::StationOutage>(&*fault)) with_it_alone.station_outages = {*outage};
+    if (const auto found = simulation::impossible_values(with_it_alone); !found.empty()) return Error{found.front()};
+    return fault;
 }
 
 v1::Scenario scenario_to_message(const Scenario& scenario) {
@@ -420,6 +471,8 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
         write_device_fault(fault, *message.add_device_faults());
     for (const auto& reset : scenario.computer_resets)
         write(reset, reset_fields, *message.add_computer_resets());
+    for (const auto& outage : scenario.station_outages)
+        write(outage, outage_fields, *message.add_station_outages());
     return message;
 }
 

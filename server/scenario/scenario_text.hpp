@@ -26,6 +26,9 @@ Result<simulation::Scenario> scenario_from_message(const v1::Scenario& message);
 v1::Scenario scenario_to_message(const simulation::Scenario& scenario);
 std::string scenario_to_text(const simulation::Scenario& scenario);
 
+/// What is to break, in a landing of this scenario. An error names what of it cannot be.
+Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, const simulation::Scenario& scenario);
+
 /// UTC "2012-08-06T05:10:47.4" or by day of year "2012-219T05:10:47.4"; up to microseconds.
 Result<Scet> scet_from_text(std::string_view text);
 

@@ -1,5 +1,7 @@
 #include "server/scenario/script_check.hpp"
 
+#include "commands/encoder.hpp"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -18,6 +20,13 @@ Result<void> check_script(const simulation::Scenario& scenario, const dictionary
         for (const auto& [name, value] : scripted.arguments)
             if (std::ranges::none_of(command->arguments, [&](const auto& known) { return known.name == name; }))
                 return Error{fmt::format("commands[{}].arguments: {} has no argument '{}'", i, scripted.command, name)};
+        if (scripted.from_solution) continue; // what is not given here comes from a solution that flight's start decides
+        std::vector<commands::NamedValue> arguments;
+        arguments.reserve(scripted.arguments.size());
+        for (const auto& [name, value] : scripted.arguments)
+            arguments.push_back({name, value});
+        if (const auto encoded = commands::encode(*command, arguments, 0); !encoded)
+            return Error{fmt::format("commands[{}]: {}", i, encoded.error().message)};
     }
     return {};
 }

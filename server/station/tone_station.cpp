@@ -10,8 +10,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double rate_hz = 16384.0; // ours: holds the tones and half of it the predict's error
-constexpr int cycle_samples = static_cast<int>(rate_hz * seconds_per_tick);
+constexpr double listening_rate_hz = 16384.0; // ours: holds the tones and half of it the predict's error
+constexpr int cycle_samples = static_cast<int>(listening_rate_hz * seconds_per_tick);
 constexpr std::size_t push_samples = 16384;
 constexpr double same_symbol_s = 5.0;   // ours: a decision and a symbol that begin nearer are of one another
 constexpr double waits_after_end_s = 30.0; // ours: the receiver decides within 20 s
@@ -25,7 +25,7 @@ std::int64_t microseconds(double seconds) {
 ToneStation::ToneStation(const MfskWaveform& waveform, const simulation::Radio& radio, TimeTable predict_hz,
                          std::uint64_t seed, std::uint64_t case_number)
     : waveform_(waveform), total_c_n0_dbhz_(radio.x_band_c_n0_dbhz), predict_hz_(std::move(predict_hz)),
-      sampler_(waveform, rate_hz, seed, case_number) {}
+      sampler_(waveform, listening_rate_hz, seed, case_number) {}
 
 void ToneStation::receive(const simulation::CycleReport& landed, std::vector<simulation::ReceivedTone>& tones) {
     undecided_.insert(undecided_.end(), landed.symbols.begin(), landed.symbols.end());
@@ -47,7 +47,7 @@ void ToneStation::receive(const simulation::CycleReport& landed, std::vector<sim
 
 void ToneStation::sample(const simulation::XBandField& field) {
     if (!receiver_) {
-        auto made = telemetry::ToneReceiver::make(waveform_, rate_hz, predict_hz_, field.e_s);
+        auto made = telemetry::ToneReceiver::make(waveform_, listening_rate_hz, predict_hz_, field.e_s);
         AEOLIS_CHECK(made.ok());
         receiver_.emplace(std::move(*made));
         last_doppler_hz_ = field.doppler_hz;

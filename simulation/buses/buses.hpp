@@ -52,6 +52,11 @@ class Buses {
     bool imu_sample_arrives();
     flight::Unit unit(flight::Device device) const { return addressed_[device]; }
     const DeviceFaults& faults() const { return faults_; }
+    /// It counts from `now` on, not only from the next frame.
+    void inject(const DeviceFault& fault, Sclk now) {
+        faults_.add(fault);
+        faults_.at(now);
+    }
 
     const Bus::Counters& counters_64_hz() const { return bus_64_hz_.counters(); }
     const Bus::Counters& counters_8_hz() const { return bus_8_hz_.counters(); }

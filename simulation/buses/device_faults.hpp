@@ -18,6 +18,7 @@ class DeviceFaults {
   public:
     DeviceFaults(std::vector<DeviceFault> faults, Sclk entry) : faults_(std::move(faults)), entry_(entry) {}
 
+    void add(const DeviceFault& fault) { faults_.push_back(fault); }
     /// To be told each tick before it is asked.
     void at(Sclk now);
 

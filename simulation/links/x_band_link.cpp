@@ -23,13 +23,13 @@ double XBandLink::tone_power_db() {
     return 10.0 * std::log10(first_sidebands) + 20.0 * std::log10(std::sin(modulation_index_rad));
 }
 
-bool XBandLink::strong(double gain) const {
-    return radio_.x_band_c_n0_dbhz + carrier_power_db() + 10.0 * std::log10(gain) >= carrier_lock_dbhz;
+bool XBandLink::can_lock(double c_n0_dbhz) {
+    return c_n0_dbhz + carrier_power_db() >= carrier_lock_dbhz;
 }
 
 std::optional<ReceivedTone> XBandLink::cycle(std::optional<ToneId> tone, const Surroundings& at) {
     earth_up_ = at.gain && (radio_.earth_set_after_entry_s ? at.e_s < *radio_.earth_set_after_entry_s : at.earth_up);
-    up_ = earth_up_ && strong(*at.gain);
+    up_ = earth_up_ && can_lock(radio_.x_band_c_n0_dbhz + 10.0 * std::log10(*at.gain));
     reason_ = !at.gain ? "not switched on" : earth_up_ ? "carrier too weak" : "Earth set";
 
     std::optional<ReceivedTone> ended;

@@ -47,10 +47,11 @@ class XBandLink {
 
     static double tone_power_db(); ///< of the tone, relative to the total
     static double carrier_power_db();
+    /// Whether a carrier can be locked, by total power to noise density.
+    static bool can_lock(double c_n0_dbhz);
 
   private:
     ReceivedTone decide(bool broken, const Surroundings& at);
-    bool strong(double gain) const;
 
     Radio radio_;
     Random random_;

@@ -15,6 +15,34 @@ async function ask(address, method, route, body, cookie) {
     return { status: answer.status, cookie: answer.headers.get('set-cookie')?.split(';')[0], answer: text === '' ? undefined : JSON.parse(text) };
 }
 
+/** Presses all that can be pressed, in every panel and by key, and submits every form. Gives what it made the page ask for besides looking. */
+async function whatObserverDoes(page) {
+    const asked = [];
+    page.on('request', (request) => request.method() !== 'GET' && asked.push(`${request.method()} ${new URL(request.url()).pathname}`));
+    page.on('websocket', (socket) => socket.on('framesent', ({ payload }) => payload[0] !== 0x0a && asked.push(`message ${payload[0]} over the socket`))); // 0x0a: subscribe
+    await page.reload();
+    await waitFor(() => page.getByTestId('stream-state').innerText(), /connected/);
+    const tabs = await page.getByRole('tab').evaluateAll((all) => all.map((tab) => tab.dataset.testid));
+    let pressed = 0;
+    for (const tab of tabs) {
+        await page.getByTestId(tab).click();
+        await page.waitForTimeout(300);
+        pressed += await page.evaluate(() => {
+            const pressable = () => [...document.querySelectorAll('button:enabled:not([data-testid="log-out"]):not([role="tab"])')];
+            const all = pressable();
+            for (const button of all) if (button.isConnected) button.click();
+            for (const form of document.querySelectorAll('form')) form.requestSubmit();
+            return all.length;
+        });
+        for (const key of ['p', '+', '-', '/', 'Escape', 'Escape']) await page.keyboard.press(key);
+    }
+    await page.waitForTimeout(300);
+    assert.ok(tabs.length >= 10 && pressed > tabs.length, `${pressed} controls in ${tabs.length} panels`);
+    page.removeAllListeners('request');
+    page.removeAllListeners('websocket');
+    return asked;
+}
+
 test('with accounts: a log-in in place, an end of the session in the middle that loses and doubles nothing, and what each role may do', { timeout: 120_000 }, async (t) => {
     const { folder, remove } = await temporaryFolder();
     t.after(remove);
@@ -25,7 +53,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     const administer = (method, route, body) => ask(server.address, method, route, body, cookie);
     assert.equal((await administer('GET', '/users')).status, 403, 'the first password opens nothing');
     assert.equal((await administer('PATCH', '/users/administrator', { current_password: first, password: 'an own long password' })).status, 200);
-    for (const [user, role] of [['ann', 'controller'], ['eve', 'observer']])
+    for (const [user, role] of [['ann', 'director'], ['eve', 'observer']])
         assert.equal((await administer('POST', '/users', { user, role, password: 'given by another' })).status, 201);
 
     const { page, problems, text, shows } = await open(server.address);
@@ -53,7 +81,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     await shows('choose-problem', /12 to 128/);
     await choose('given by another', 'a password of ann');
     await shows('badge', /REHEARSAL/);
-    await shows('who', /ann[^]*controller/);
+    await shows('who', /ann[^]*director/);
     await shows('waiting', /set edl parameters/);
     await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of 71/);
 
@@ -62,6 +90,33 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     await page.keyboard.type('<b>the radar</b> is late');
     await page.keyboard.press('Enter');
     await shows('note-list', /ann[^]*<b>the radar<\/b> is late/);
+
+    // The rights end while a command is armed, its name half typed.
+    await page.keyboard.press('Escape');
+    await page.keyboard.press('/');
+    await page.keyboard.type('select_prime computer=b');
+    await page.keyboard.press('Enter');
+    await shows('dry-run', /✓ It would be sent once it is armed/);
+    await page.keyboard.press('Enter');
+    await shows('command-armed', /ARMED/);
+    const name = /ARMED: (\w+)/.exec(await text('command-armed'))[1];
+    await page.keyboard.type(name.slice(0, 4));
+    assert.equal((await administer('PATCH', '/users/ann', { role: 'observer' })).status, 200);
+    await shows('dry-run', /✖ It would be refused: ann is observer/);
+    await page.keyboard.type(name.slice(4));
+    await page.keyboard.press('Enter');
+    await shows('command-message', /SELECT_PRIME refused: ann is observer[^]*nothing was sent/);
+    await shows('who', /ann[^]*observer, only looks/);
+    await waitFor(() => page.getByTestId('command-line').isDisabled(), (disabled) => disabled);
+    assert.deepEqual((await administer('GET', '/runs/latest/commands')).answer.commands ?? [], [], 'nothing was sent');
+    assert.equal((await administer('PATCH', '/users/ann', { role: 'director' })).status, 200);
+    await page.reload();
+    await shows('who', /ann[^]*director/);
+    await waitFor(() => page.getByTestId('timepoints-fired').innerText(), /of 71/);
+    await shows('stream-state', /connected/);
+    await page.keyboard.press('Escape');
+    await page.getByTestId('tab-notes').click();
+    await page.getByTestId('note-text').focus();
 
     // The session ends while a second note is being written.
     await page.keyboard.type('second');
@@ -91,6 +146,8 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     await choose('given by another', 'a password of eve');
     await shows('who', /eve[^]*observer, only looks/);
     await waitFor(() => page.getByTestId('command-line').isDisabled(), (disabled) => disabled);
+    assert.deepEqual(await whatObserverDoes(page), []);
+    await page.goto(server.address);
     await page.getByTestId('log-out').click();
 
     await logIn('administrator', 'an own long password');
@@ -108,7 +165,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
     await page.keyboard.press('Enter');
     await shows('new-token', /plotter[^]*[A-Za-z0-9_-]{43}/);
     assert.deepEqual(await findings(page, 'dark'), []);
-    assert.match(await text('audit'), /ann[^]*note[^]*dina/);
+    assert.match(await text('audit'), /dina[^]*ann[^]*note/, 'the newest stands first');
     assert.doesNotMatch(await text('audit'), /given|password of|long enough/);
     assert.deepEqual(problems.filter((problem) => !/status of (401|403|409)/.test(problem)), [], 'the policy forbids nothing that the page does');
     await page.close();

@@ -37,6 +37,7 @@ test('a campaign is started by keyboard, its dots come one after the other, it i
 
     await page.getByTestId('campaign-cancel').focus();
     await page.keyboard.press('Enter');
+    await page.keyboard.press('Enter'); // impatient: it is asked for once
     await shows('campaign-message', /cancelled: \d+ cases of gnc_alone-1 are kept/);
     await shows('campaign-state', /not complete; starting it again goes on/);
     const left = await kept();

@@ -40,6 +40,16 @@ test('the ground says before it is sent what would become of a command, and refu
     assert.match(await text('send-by'), /leave by 2012-\d{3}T[\d:.]+ ERT to be there before .*to spare/);
     assert.ok((await text('dry-run')).replaceAll(/\s/g, '').includes(told.octets.slice(0, 8)), 'its octets are shown');
     assert.equal(await count(server), 0, 'a dry run takes no number');
+    await page.setViewportSize({ width: 1366, height: 768 });
+    await shows('send-by', /leave by/);
+    const places = await page.evaluate(() => {
+        const panel = document.querySelector('[data-testid="panel-commands"]').getBoundingClientRect();
+        const top = (query) => document.querySelector(query).getBoundingClientRect().bottom - panel.top;
+        return { panel: panel.height, order: ['.verdict', '[data-testid="effect"]', '[data-testid="send-by"]', '[data-testid="arrives"]'].map(top) };
+    });
+    assert.deepEqual(places.order, [...places.order].sort((one, other) => one - other), 'verdict, effect, the latest time to leave and arrival stand in this order');
+    assert.ok(places.order[2] < places.panel, `the latest time to leave lies at ${places.order[2]} of ${places.panel} px`);
+    await page.setViewportSize({ width: 1920, height: 1080 });
 
     await tabTo(page, 'release-at');
     await page.keyboard.type('noon');
@@ -69,13 +79,122 @@ test('what a changed offset would move is named and drawn before it is sent, and
     await shows('effect', /moves no timepoint/);
     const before = await picture();
     await review(page, `edl_set_timepoint_offset timepoint=${shield} desired_offset_s=12 minimum_offset_s=0`);
-    await shows('effect', /It would move \d+ timepoints, by at most 12\.0 s[^]*heatshield separation\s+E\+04:37\.4 → E\+04:49\.4, \+12\.0 s/);
+    await shows('effect', /^◌ It would move \d+ timepoints, by at most 12\.0 s$/);
+    await page.getByTestId('effect').locator('summary').press('Enter');
+    await shows('effect', /heatshield separation\s+E\+04:37\.4 → E\+04:49\.4, \+12\.0 s/);
     await waitFor(async () => !before.equals(await picture()), (differs) => differs);
     assert.equal(await count(server), 0, 'nothing was sent');
     await page.keyboard.press('Escape');
     await waitFor(() => page.getByTestId('effect').count(), (shown) => shown === 0);
     assert.match(await text('timepoints-fired'), /^0 of/);
     assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('a held Enter chooses and goes no further, and nothing leaves before the ground has answered the review', { timeout: 60_000 }, async (t) => {
+    const server = await serve(t, 'held', ['--scenario', 'nominal']);
+    const { page, problems, shows } = await open(server.address);
+    await shows('waiting', /set edl parameters/);
+    await shows('stream-state', /connected/);
+    await page.keyboard.press('/');
+    await page.keyboard.type('no op');
+    for (let repeats = 0; repeats < 40; ++repeats) {
+        await page.keyboard.down('Enter'); // each after the first is a repeat
+        await page.waitForTimeout(25);
+    }
+    await page.keyboard.up('Enter');
+    await shows('dry-run', /✓ It would be sent as it stands here/);
+    assert.equal(await count(server), 0, 'a held key sent it');
+    await page.keyboard.press('Enter');
+    await shows('command-message', /NO_OP is #1/);
+    for (let repeats = 0; repeats < 10; ++repeats) await page.keyboard.down('Enter');
+    await page.keyboard.up('Enter');
+    assert.equal(await count(server), 1);
+    assert.deepEqual(problems, []);
+    await page.close();
+});
+
+test('a failure of something else is a notice, and the command’s own answer is its answer', { timeout: 60_000 }, async (t) => {
+    const server = await serve(t, 'refusals', ['--scenario', 'nominal']);
+    const { page, shows } = await open(server.address);
+    await shows('waiting', /set edl parameters/);
+    await shows('stream-state', /connected/);
+    await review(page, 'no op');
+    await shows('dry-run', /✓ It would be sent as it stands here/);
+    await page.evaluate(() => { // a pace that nobody can have, and at once the command
+        const select = document.querySelector('[data-testid="pace"]');
+        select.add(new Option('-3', '-3'));
+        select.value = '-3';
+        select.dispatchEvent(new Event('change', { bubbles: true }));
+    });
+    await page.keyboard.press('Enter');
+    await shows('command-message', /✓ NO_OP is #1/);
+    await shows('notices', /pace/);
+    assert.equal(await count(server), 1);
+    await page.close();
+});
+
+test('a command that needs a second person is asked for in one browser and approved in another, by somebody else', { timeout: 60_000 }, async (t) => {
+    const server = await serve(t, 'two_persons', ['--scenario', 'two_persons']);
+    const [ann, bob] = [await open(server.address), await open(server.address)];
+    await ann.shows('waiting', /set edl parameters/);
+    await review(ann.page, 'set edl parameters');
+    await tabTo(ann.page, 'controller');
+    await ann.page.keyboard.type('ann');
+    await ann.shows('dry-run', /✓ It would wait for the approval of a second controller/);
+    await ann.page.keyboard.press('Enter');
+    await ann.shows('command-message', /EDL_SET_PARAMETERS is #1/);
+    await ann.shows('command-queue', /One command waits/);
+    await tabTo(ann.page, 'approve'); // her name is known to her own page
+    await ann.page.keyboard.press('Enter');
+    await ann.shows('command-message', /✖[^]*ann/);
+    await ann.page.getByTestId('approver').fill('bob'); // nor under another name in her own browser
+    await ann.page.getByTestId('approve').click();
+    await ann.shows('command-message', /✖[^]*a second person approves it in a browser of their own/);
+    assert.equal(await stageLook(ann.page, 'EDL_SET_PARAMETERS', 'radiated'), 'none', 'who asked cannot approve');
+
+    await bob.shows('command-queue', /EDL_SET_PARAMETERS #1/);
+    assert.ok(await bob.page.getByTestId('approve').isDisabled(), 'nobody approves without a name');
+    await tabTo(bob.page, 'approver');
+    assert.equal(await bob.page.getByTestId('approver').getAttribute('placeholder'), 'not ann');
+    await bob.page.keyboard.type('bob');
+    await bob.page.keyboard.press('Tab');
+    await bob.page.keyboard.press('Enter');
+    await bob.shows('command-message', /#1 approved/);
+    for (const { page } of [ann, bob]) await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/, 30_000);
+    await ann.page.getByRole('button', { name: 'EDL_SET_PARAMETERS #1' }).click();
+    await ann.shows('command-details', /authorised[^]*bob/);
+    assert.deepEqual([...ann.problems, ...bob.problems], []);
+    await Promise.all([ann.page.close(), bob.page.close()]);
+});
+
+test('a command file is chosen, each of its commands looked at by the ground, and sent whole after one arming', { timeout: 90_000 }, async (t) => {
+    const server = await serve(t, 'file', ['--scenario', 'nominal']);
+    const { page, problems, shows } = await open(server.address);
+    await shows('waiting', /set edl parameters/);
+    await page.getByTestId('command-file').locator('summary').click();
+    const file = (commands) => ({ name: 'landing.json', mimeType: 'application/json', buffer: Buffer.from(JSON.stringify({ commands })) });
+    await page.getByTestId('file-chosen').setInputFiles(file([{ command: 'NO_OP' }, { command: 'NO_OP', service: 'CD' }]));
+    await shows('file-lines', /✖ None would go: commands\[1\]: unknown service[^]*1 NO_OP[^]*octets, at Mars 2012-[^]*to come before[^]*2 NO_OP[^]*✖ unknown service/);
+    assert.ok(await page.getByTestId('file-forward').isDisabled());
+
+    await page.getByTestId('file-chosen').setInputFiles(file([{ command: 'EDL_SET_PARAMETERS', from_solution: true }, { command: 'EDL_DO_EDL', hold: true }]));
+    await shows('file-lines', /✓ All would be taken[^]*solution_id=[^]*▲ EDL_DO_EDL/);
+    assert.equal(await count(server), 0, 'a dry run takes no number');
+    await page.getByTestId('file-forward').click();
+    await shows('file-armed', /ARMED: 2 commands[^]*Type EDL_DO_EDL/);
+    await page.keyboard.type('do it');
+    await page.keyboard.press('Enter');
+    await shows('file-message', /type EDL_DO_EDL to confirm; nothing was sent/);
+    await page.keyboard.press('Control+A');
+    await page.keyboard.type('edl_do_edl');
+    await page.keyboard.press('Enter');
+    await shows('file-message', /✓ all 2 taken: #1 to #2/);
+    await shows('command-queue', /EDL_DO_EDL #2[^]*held until a controller releases it/);
+    await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/, 30_000);
+    assert.equal(await page.getByTestId('file-text').inputValue(), '', 'another Enter sends nothing');
+    // What the ground refuses has a status that a browser logs by itself.
+    assert.deepEqual(problems.filter((each) => !each.includes('409 (Conflict)')), []);
     await page.close();
 });
 
@@ -96,7 +215,7 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
     await shows('dry-run', /✓ It would be sent/);
     await tabTo(page, 'hold');
     await page.keyboard.press('Space');
-    await shows('dry-run', /held until you release it/);
+    await shows('dry-run', /✓[^]*held until you release it/);
     await page.keyboard.press('Enter');
     await shows('command-message', /EDL_SET_PARAMETERS is #1.*held/);
     await shows('command-queue', /One command waits[^]*EDL_SET_PARAMETERS #1[^]*held until a controller releases it/);
@@ -108,11 +227,13 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
     await page.keyboard.type('E-17:00');
     await tabTo(page, 'priority');
     await page.keyboard.type('3');
+    await shows('dry-run', /✓ It would be sent[^]*leaves\s+2012-/);
     await page.keyboard.press('Enter');
     await shows('command-queue', /2 commands wait[^]*NO_OP #2[^]*leaves at 2012-\d{3}T[\d:.]+, priority 3/);
     await review(page, 'no op');
     await tabTo(page, 'hold');
     await page.keyboard.press('Space');
+    await shows('dry-run', /✓[^]*held until you release it/);
     await page.keyboard.press('Enter');
     await shows('command-queue', /3 commands wait/);
     await page.locator('[data-waiting="3"]').getByRole('button', { name: 'cancel' }).focus();

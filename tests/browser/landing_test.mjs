@@ -16,6 +16,7 @@ test('two commands by keyboard land it; a reload has all of it; a range can be a
     await page.keyboard.type('set edl parameters');
     await page.keyboard.press('Enter');
     await shows('command-review', /filled from ground/);
+    await shows('dry-run', /✓ It would be sent as it stands here/);
     await page.keyboard.press('Enter');
     await shows('command-message', /EDL_SET_PARAMETERS is #1/);
     await waitFor(() => stage(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
@@ -116,12 +117,9 @@ test('whoever only does what the guide says lands it, and once put away the guid
     const server = await serve(t, 'guide', ['--scenario', 'nominal']);
     const { page, problems, text, shows } = await open(server.address);
     await shows('guide', /Tell the vehicle where it is/);
-    for (const title of [/Tell the vehicle where it is/, /read it/]) {
+    for (const title of [/Tell the vehicle where it is/, /read it/, /Let it begin/, /read it/, /EDL_DO_EDL/]) {
         await shows('guide', title);
-        await obey(page);
-    }
-    for (const title of [/Let it begin/, /read it/, /EDL_DO_EDL/]) {
-        await shows('guide', title);
+        if (title.source === 'read it') await shows('dry-run', /✓ It would be sent/); // there is nothing to be read before
         await obey(page);
     }
     await shows('guide', /Nothing to do until entry/);
@@ -135,7 +133,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
     await shows('guide', /Entry[^]*see it happen/, 150_000);
     await obey(page);
     await shows('guide', /You have landed it/, 90_000);
-    assert.match(await text('badge'), /touchdown/);
+    await shows('badge', /touchdown/); // each panel takes its turn
 
     await page.keyboard.press('g');
     await waitFor(() => page.getByTestId('guide').count(), (count) => count === 0);
@@ -146,10 +144,15 @@ test('whoever only does what the guide says lands it, and once put away the guid
     await page.close();
 });
 
-test('after kill -9 in mid-landing the run is there, interrupted, up to the last number that was shown, and can be continued', { timeout: 60_000 }, async (t) => {
+/** What each plot draws: how many holes its trace has, and its newest sample. */
+const traces = (page) => page.locator('.plot').evaluateAll((plots) => plots.map(({ dataset }) => `${dataset.holes} holes to ${dataset.newest}`));
+
+test('after kill -9 in mid-entry the run is there, interrupted, up to the last number that was shown, without a seam, and can be continued', { timeout: 180_000 }, async (t) => {
     const first = await serve(t, 'killed', ['--scenario', 'nominal_auto', '--pace', '100']);
     const { page, text, shows } = await open(first.address);
-    await shows('timepoints-fired', /^([5-9]|\d\d) of/, 30_000);
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 120, 90_000);
+    await pace(page, 20);
+    await shows('phase-now', /Entry/);
     await shows('stream-state', /connected/);
     await first.kill();
     await shows('stream-state', /NO CONNECTION/);
@@ -166,6 +169,12 @@ test('after kill -9 in mid-landing the run is there, interrupted, up to the last
     assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
     const [run] = (await second.get('/runs')).runs;
     assert.equal(run.state, 'interrupted');
+    // The trace that lived through it is that of a page which asks for all of it now: no hole but the blackout, no seam.
+    const other = await open(second.address);
+    await other.shows('badge', /INTERRUPTED RUN/);
+    await waitFor(async () => [await traces(page), await traces(other.page)], ([mine, theirs]) => mine.length === 4 && /^\d+ holes to \d/.test(mine[0]) && mine.join() === theirs.join());
+    for (const trace of await traces(page)) assert.match(trace, /^[12] holes/, 'nothing is drawn through the blackout, and nothing else is left out');
+    await other.page.close();
     assert.ok(Number(run.last_seq) >= shown, `${run.last_seq} stored, ${shown} shown`);
 
     await page.reload();
@@ -179,6 +188,25 @@ test('after kill -9 in mid-landing the run is there, interrupted, up to the last
     await waitFor(() => text('complete-through'), (value) => Number(value.replace(/\D/g, '')) > Number(run.last_seq) + 50);
     assert.ok(Number.parseInt(await text('timepoints-fired'), 10) >= fired);
     await page.close();
+});
+
+test('the latest run is the one that goes on for every route, also when it is an older one that is continued', { timeout: 120_000 }, async (t) => {
+    const first = await serve(t, 'latest', ['--scenario', 'nominal_auto', '--pace', '100']);
+    const runs = async (server) => (await server.get('/runs')).runs;
+    await waitFor(() => runs(first), ([run]) => Number(run?.last_seq) > 500, 60_000);
+    await first.kill();
+    const second = await serve(t, 'latest', []);
+    const send = async (route, body) => (await fetch(`${second.address}/api/v1${route}`, { method: 'POST', body: JSON.stringify(body) })).status;
+    assert.equal(await send('/rehearsals', { scenario: 'nominal', pace: 1 }), 201);
+    assert.equal(await send('/rehearsals/current', { stop: true }), 202);
+    await waitFor(() => runs(second), ([newest]) => newest.run === '2' && newest.state === 'finished');
+    assert.equal((await second.get('/runs/latest')).run, '2');
+    assert.equal(await send('/rehearsals', { continue_run: 1 }), 201);
+    await waitFor(() => second.get('/runs/latest'), ({ run, state }) => run === '1' && state === 'running');
+    assert.equal(await send('/runs/latest/notes', { text: 'for the run that goes on', by: 'Ada' }), 201);
+    const notes = async (run) => ((await second.get(`/runs/${run}/notes`)).notes ?? []).length;
+    assert.deepEqual([await notes(1), await notes(2), await notes('latest')], [1, 0, 1]);
+    assert.deepEqual(await second.get('/runs/latest/commands'), await second.get('/runs/1/commands'));
 });
 
 test('cut off in mid-entry the page says so, says what it missed once it is back, and has all of it', { timeout: 180_000 }, async (t) => {

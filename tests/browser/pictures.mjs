@@ -7,9 +7,21 @@ const { folder, remove } = await temporaryFolder();
 const chrome = await browser();
 const server = await serve({ archive: path.join(folder, 'pictures.db'), more: ['--scenario', 'nominal'] });
 
+/** Once it is whole: connected, with what there is, a phase by its name, and no question under way. */
+const settled = async (shown) => {
+    const words = (id) => shown.getByTestId(id).innerText();
+    await waitFor(() => words('stream-state'), /connected[^]*complete through [1-9]/, 60_000);
+    await waitFor(() => words('phases'), /▶/, 60_000);
+    await waitFor(() => shown.locator('body').innerText(), (all) => !/asking…|has not answered|connecting/.test(all), 60_000);
+    await shown.waitForTimeout(500); // history, and a draw after it
+};
+
 try {
     const { page, text, shows } = await open(chrome, server.address, { width: 1600, height: 900 });
-    const take = (name, what = page) => what.screenshot({ path: path.join(pictures, name), animations: 'disabled' });
+    const take = async (name, what = page) => {
+        await settled(page);
+        await what.screenshot({ path: path.join(pictures, name), animations: 'disabled' });
+    };
     const panel = (name) => page.getByTestId(name);
 
     await shows('guide', /Tell the vehicle where it is/);
@@ -17,12 +29,16 @@ try {
     await shows('phases', /▶\s*Cruise/);
     await take('tour_begin.png');
 
+    await page.setViewportSize({ width: 1600, height: 1440 }); // all of a review fits
     await page.keyboard.press('/');
     await page.keyboard.type('set edl parameters');
     await page.keyboard.press('Enter');
     await shows('dry-run', /✓ It would be sent/);
     await take('tour_dry_run.png', panel('panel-commands'));
-    await page.keyboard.press('Enter');
+    await page.setViewportSize({ width: 1600, height: 1160 });
+    await page.getByTestId('controller').fill('Ada'); // what nobody signed is not judged in the review
+    await shows('dry-run', /✓ It would be sent/);
+    await page.getByTestId('controller').press('Enter');
     await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 30_000);
     await shows('guide', /Let it begin/);
     await waitFor(() => focused(page), /command-line/);
@@ -37,6 +53,7 @@ try {
     await page.keyboard.press('Enter');
     await shows('command-message', /EDL_DO_EDL is #2/);
     await page.keyboard.press('Escape');
+    await page.setViewportSize({ width: 1600, height: 900 });
 
     await setPace(page, 100);
     await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 130, 180_000);
@@ -48,13 +65,27 @@ try {
     await page.waitForTimeout(500);
     await take('console_mid_entry.png');
     await page.setViewportSize({ width: 1600, height: 900 });
+    const post = (path, body) => fetch(`${server.address}/api/v1${path}`, { method: 'POST', body: JSON.stringify(body) });
+    await post('/rehearsals/current', { inject: { device_fault: { device: 'DEVICE_RADAR', unit: 'REDUNDANT_UNIT_B', kind: 'DEVICE_FAULT_KIND_SILENT', duration_s: 20 } } });
+    await post('/rehearsals/current', { note: { by: 'Ida', text: 'The spare radar is silent. Who sees it first?' } });
     await page.keyboard.press('p');
+    await waitFor(() => text('clock-entry'), (value) => secondsFromEntry(value) > 290, 180_000);
+    await post('/runs/latest/notes', { by: 'Bob', text: 'Radar B does not answer; A is in use.' });
+    await post('/rehearsals/current', { note: { by: 'Ida', text: 'Bob, in his own table; nobody said it aloud.' } });
     await setPace(page, 100);
     await waitFor(() => page.locator('[data-event="TOUCHDOWN"]').count(), (count) => count === 1, 180_000);
     await shows('waiting', /Landed/, 180_000);
     await page.keyboard.press('v');
     await shows('verdict-sentence', /bit for bit/, 30_000);
+    await shows('verdict-count', /^none$/);
     await take('tour_landed.png');
+
+    await page.goto(`${server.address}/?panel=rehearsal`);
+    await waitFor(() => page.getByTestId('review').count(), (reviews) => reviews === 1, 180_000);
+    await page.locator('[data-testid="review"] > summary').click();
+    await shows('review-score', /of 100/, 60_000);
+    await shows('review-facts', /km from the target/, 60_000);
+    await take('review.png', page.locator('main > .panel'));
 
     await page.goto(`${server.address}/?panel=packets`);
     await shows('phases', /▶\s*Landed/, 60_000);
@@ -69,7 +100,7 @@ try {
     await page.getByTestId('campaign-cases').fill('100');
     await page.getByTestId('campaign-cases').press('Enter');
     await waitFor(async () => Number(/(\d+) of 100/.exec(await text('campaign-state'))?.[1]), (kept) => kept >= 60, 400_000);
-    await take('tour_campaign.png', page.locator('main'));
+    await take('tour_campaign.png', page.locator('main > .panel'));
     await page.close();
 
     const others = await serve({ archive: path.join(folder, 'users.db'), more: ['--scenario', 'nominal', '--accounts', path.join(folder, 'accounts.json')] });
@@ -94,7 +125,7 @@ try {
         await admin.setViewportSize({ width: 1600, height: 720 });
         await admin.reload();
         await waitFor(() => admin.getByTestId('audit').innerText(), /eve/);
-        await waitFor(() => admin.getByTestId('stream-state').innerText(), /connected/);
+        await settled(admin);
         await admin.screenshot({ path: path.join(pictures, 'users.png'), animations: 'disabled' });
     } finally {
         await others.stop();

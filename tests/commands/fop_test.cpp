@@ -206,3 +206,17 @@ TEST_CASE("what does not fit a frame, or is one too many, is refused in words", 
     for (std::size_t i = 0; i < Fop::frames_max; ++i) REQUIRE(fop.send(i, data_of(i), Service::sequence_controlled));
     CHECK_FALSE(fop.send(1, data_of(1), Service::sequence_controlled));
 }
+
+TEST_CASE("what was never radiated can be taken back; what was stays until it is acknowledged or given up", "[commands]") {
+    Fop fop{{76, 1, 1, 2}};
+    for (std::uint64_t tag = 0; tag < 3; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
+    CHECK(fop.next()->tag == 0U);
+    CHECK_FALSE(fop.next()); // the window is full
+    REQUIRE(fop.send(3, data_of(3), Service::expedited));
+    CHECK(fop.take_back() == std::vector<std::uint64_t>{3, 1, 2});
+    CHECK(fop.waiting() == 0);
+    CHECK(fop.unacknowledged() == std::vector<std::uint64_t>{0});
+    fop.on({.virtual_channel = 1, .expected = 1});
+    CHECK(fop.unacknowledged().empty());
+    CHECK_FALSE(fop.next());
+}

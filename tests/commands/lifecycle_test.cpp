@@ -202,3 +202,28 @@ TEST_CASE("every command of the shipped dictionary is shown by events, from acce
         CHECK(answered({"COMMAND_ACCEPTED", "COMMAND_REFUSED"}).status(Stage::executed) == Status::failed);
     }
 }
+
+TEST_CASE("what the uplink gives back before it was radiated waits again, and can still be released or fail", "[lifecycle][R44]") {
+    Uplink uplink{"NO_OP"};
+    CommandLifecycle lifecycle{uplink.lifecycle.command(), 1, 0.0, false};
+    std::vector<StageChange> changes;
+    lifecycle.ground_stage(Stage::released, Status::ok, "to the uplink", Ert{0}, changes);
+    lifecycle.taken_back("the pass has ended", Ert{1}, changes);
+    CHECK(lifecycle.status(Stage::released) == Status::pending);
+    CHECK(changes.back().evidence == "the pass has ended");
+    SECTION("released") {
+        lifecycle.ground_stage(Stage::released, Status::ok, "to the uplink again", Ert{2}, changes);
+        CHECK(changes.back().evidence == "to the uplink again");
+    }
+    SECTION("failed") {
+        lifecycle.ground_stage(Stage::released, Status::failed, "must not be sent", Ert{2}, changes);
+        CHECK(lifecycle.status(Stage::executed) == Status::failed);
+    }
+}
+
+TEST_CASE("a frame that is not radiated again says why, and stays radiated", "[lifecycle]") {
+    Uplink uplink{"NO_OP"};
+    uplink.lifecycle.not_radiated_again("it must not", Ert{second}, uplink.changes);
+    CHECK(uplink.evidence(Stage::radiated) == "it must not");
+    CHECK(uplink.lifecycle.status(Stage::radiated) == Status::ok);
+}

@@ -19,6 +19,18 @@ TEST_CASE("a command that changes an offset changes that row of the timeline alo
     CHECK(changed.anchors[2].offset_s == -7200.0);
 }
 
+TEST_CASE("what a command moves is the timepoint that it names, or all that hang on the anchor that it names", "[commands][R19]") {
+    const auto& words = tests::shipped_dictionary();
+    CHECK(commands::moved_timepoints(words, "EDL_SET_TIMEPOINT_OFFSET", std::vector<commands::NamedValue>{{"timepoint", 3.0}}) == std::vector<std::size_t>{3});
+    const auto& anchor = words.timeline[3].anchor;
+    REQUIRE(anchor);
+    const auto moved = commands::moved_timepoints(words, "EDL_SET_ANCHOR_OFFSET", std::vector<commands::NamedValue>{{"anchor", static_cast<double>(anchor->value)}});
+    REQUIRE(moved.size() > 1);
+    for (const auto index : moved)
+        CHECK(words.timeline[index].anchor == anchor);
+    CHECK(commands::moved_timepoints(words, "NO_OP", std::vector<commands::NamedValue>{{"timepoint", 3.0}, {"anchor", 0.0}}).empty());
+}
+
 TEST_CASE("a row that is not there, and any other command, change nothing", "[commands][R19]") {
     auto changed = tests::shipped_dictionary();
     const auto before = changed.timeline[0].desired_offset_s;

@@ -48,3 +48,12 @@ TEST_CASE("without a table some station always sees the vehicle, and none is nam
     CHECK(none.sees(at_minute(-1000)));
     CHECK(none.pass_at(at_minute(0)) == nullptr);
 }
+
+TEST_CASE("after the last pass nobody sees the vehicle any more, in a gap somebody will", "[commands][tracking]") {
+    const auto schedule = three_passes();
+    CHECK_FALSE(schedule.over(at_minute(60)));
+    CHECK_FALSE(schedule.over(at_minute(160)));
+    CHECK_FALSE(schedule.over(Ert{at_minute(200).microseconds - 1}));
+    CHECK(schedule.over(at_minute(200)));
+    CHECK_FALSE(TrackingSchedule{}.over(at_minute(1000)));
+}

@@ -2,6 +2,7 @@
 
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -238,6 +239,21 @@ TEST_CASE("a timepoint with an undefined offset may fire at any time after its p
                                      {constraint(required, fired(0), triggered(2), 1.0, 100.0)}));
     CHECK(analysis.bounds[0].proof == Proof::proven);
     CHECK(analysis.bounds[1].proof == Proof::refuted);
+}
+
+TEST_CASE("an analysis ends when it is asked to, says so, and proves nothing that it has not looked at", "[timeline][R19]") {
+    unsigned asked = 0;
+    const auto whole = analyse_timeline(tests::shipped_dictionary(), [&asked] { return ++asked == 0; });
+    CHECK_FALSE(whole.stopped);
+    const auto bounds = analyse_bounds(tests::shipped_dictionary());
+    CHECK(bounds.all_proven());
+    CHECK(bounds.bounds.size() == whole.bounds.size());
+    CHECK(bounds.margins.empty());
+    CHECK(whole.all_proven());
+    CHECK(asked > whole.bounds.size());
+    const auto cut = analyse_timeline(tests::shipped_dictionary(), [] { return true; });
+    CHECK(cut.stopped);
+    CHECK_FALSE(cut.all_proven());
 }
 
 TEST_CASE("given rows that contradict the timeline prove nothing", "[timeline][R19]") {

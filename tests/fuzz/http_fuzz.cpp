@@ -44,7 +44,8 @@ struct Server {
     StreamHub hub{recorded.dictionary.id, no_services()};
     RehearsalDesk desk{scenarios, recorded.dictionary, pipeline, [](const auto& action) { action(); },
                        [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
-                       [](archive::RunId, const auto&, const auto& done) { done(std::string{}); },
+                       {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
+                        [](archive::RunId, const auto& done) { done(TimelineCheck::Look{}); }},
                        {[](const auto&) {}, [](const auto&) {}}};
     campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();

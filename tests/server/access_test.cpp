@@ -1,9 +1,13 @@
 #include "server/access/access.hpp"
 #include "server/access/account_file.hpp"
+#include "server/access/network.hpp"
 #include "server/access/secrets.hpp"
+#include "server/net/console_backend.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 
+#include <fmt/format.h>
 #include <fstream>
 #include <sys/stat.h>
 
@@ -68,6 +72,32 @@ TEST_CASE("the first start makes one way in, which only lets its owner choose a 
     CHECK_FALSE(accounts.who(in->secret).role);
 }
 
+TEST_CASE("a server that does not come up makes no account: the one that does tells the first password", "[access]") {
+    test::TemporaryFolder folder;
+    ConsoleBackend::Settings settings;
+    settings.accounts = folder / "accounts.json";
+    settings.archive = folder / "no_archive";
+    settings.web = settings.scenarios = folder / "";
+    std::ofstream{settings.archive} << "not an archive";
+    CHECK_FALSE(ConsoleBackend::open(settings, tests::shipped_dictionary()));
+    CHECK_FALSE(std::filesystem::exists(settings.accounts));
+    settings.archive = folder / "a.db";
+    const auto backend = ConsoleBackend::open(settings, tests::shipped_dictionary());
+    REQUIRE(backend);
+    CHECK_FALSE((*backend)->first_password().empty());
+}
+
+TEST_CASE("without accounts browsers are told apart, and all programs without a cookie are one", "[access]") {
+    auto access = Access::open({});
+    REQUIRE(access);
+    const auto browser = [&](const std::string& cookie) { return (*access)->identify({cookie, "", "127.0.0.1"}).browser; };
+    CHECK(browser("aeolis_browser=one") != browser("aeolis_browser=two"));
+    CHECK(browser("theme=dark; aeolis_browser=one") == browser("aeolis_browser=one"));
+    CHECK_THAT(browser("aeolis_browser=one"), !Catch::Contains("one")); // what the audit and the archive keep lets nobody in its place
+    CHECK(browser("") == no_browser);
+    CHECK(browser("aeolis_session=one") == no_browser);
+}
+
 TEST_CASE("no password and no secret stands in the file of accounts", "[access]") {
     Accounts accounts;
     v1::NewToken wanted;
@@ -92,6 +122,19 @@ TEST_CASE("who guesses waits, longer each time, and the right password does not 
     CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 60 s"));
     accounts.now += std::chrono::seconds{61};
     CHECK(accounts.log_in("administrator", Accounts::password));
+}
+
+TEST_CASE("who guesses from another address of the same /64 waits as well", "[access]") {
+    CHECK(network_of("2001:db8:1:2:3:4:5:6") == "2001:db8:1:2::/64");
+    CHECK(network_of("2001:db8:1:2::7") == "2001:db8:1:2::/64");
+    CHECK(network_of("fe80::1%eth0") == "fe80::/64");
+    CHECK(network_of("192.0.2.7") == "192.0.2.7");
+    CHECK(network_of("unknown") == "unknown");
+    Accounts accounts;
+    for (unsigned i = 0; i < Access::tries_of_user; ++i)
+        CHECK(accounts.log_in("administrator", "a wrong password", fmt::format("2001:db8:1:2::{:x}", i + 1)).error().message == "user or password is wrong");
+    CHECK_THAT(accounts.log_in("administrator", Accounts::password, "2001:db8:1:2:ffff::1").error().message, Catch::Contains("wait 30 s"));
+    CHECK(accounts.log_in("administrator", Accounts::password, "2001:db8:1:3::1"));
 }
 
 TEST_CASE("wrong passwords of long ago are forgotten, and one user's many log-ins end no other's", "[access]") {
@@ -161,6 +204,43 @@ TEST_CASE("nobody raises their own role, changes another's account, or takes the
     change.set_current_password("a wrong password");
     CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message, Catch::StartsWith("current_password"));
     CHECK_THAT(accounts.access->remove_user("nobody").error().message, Catch::Contains("'nobody'"));
+}
+
+TEST_CASE("an administrator says which commands an account or a program may send, and nobody says it of themselves", "[access]") {
+    Accounts accounts;
+    accounts.add("dina", "director");
+    const auto administrator = accounts.log_in("administrator", Accounts::password)->who;
+    const auto dina = accounts.log_in("dina", "given by another");
+    REQUIRE(dina);
+    v1::UserChange change;
+    change.add_commands("NO_OP");
+    const auto changed = accounts.access->change_user(administrator, "dina", change);
+    REQUIRE(changed);
+    CHECK(changed->commands_size() == 1);
+    CHECK(changed->role() == "director"); // as it was
+    CHECK(accounts.who(dina->secret).commands == std::vector<std::string>{"NO_OP"}); // at once, and the log-in goes on
+    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message, Catch::StartsWith("commands: nobody changes their own"));
+    v1::UserChange other_role;
+    other_role.set_role("controller");
+    REQUIRE(accounts.access->change_user(administrator, "dina", other_role));
+    CHECK(accounts.who(dina->secret).commands.size() == 1);
+    change.set_all_commands(true);
+    CHECK_THAT(accounts.access->change_user(administrator, "dina", change).error().message, Catch::Contains("one of them, not both"));
+    change.clear_commands();
+    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message, Catch::StartsWith("commands: nobody changes their own"));
+    REQUIRE(accounts.access->change_user(administrator, "dina", change));
+    CHECK(accounts.who(dina->secret).commands.empty());
+
+    v1::NewToken wanted;
+    wanted.set_name("ping");
+    wanted.set_role("controller");
+    wanted.add_commands("NO_OP");
+    const auto token = accounts.access->add_token(wanted);
+    REQUIRE(token);
+    CHECK(token->commands_size() == 1);
+    CHECK(accounts.access->identify({"", "Bearer " + token->token(), "127.0.0.1"}).commands == std::vector<std::string>{"NO_OP"});
+    accounts.open(); // as the file has it
+    CHECK(accounts.access->tokens().tokens(0).commands(0) == "NO_OP");
 }
 
 TEST_CASE("a token lets a program in with its role, until it expires or is taken away", "[access]") {

@@ -127,6 +127,65 @@ TEST_CASE("a packet that does not come is an alarm under its own name, stored, a
     CHECK(ground.states(9) == "Navigation returned none by ; ");
 }
 
+TEST_CASE("a link whose silence nothing explains is an alarm under its own name, with the reason; a silence that was predicted is none", "[alarms][silence][archive]") {
+    Ground ground;
+    ground.begin();
+    const auto tell = [&](std::int64_t at_s, bool up, const char* reason, bool lost = false) {
+        REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::x_band_link, Ert{at_s * 1'000'000}, up, reason, lost}).ok());
+        REQUIRE(ground.pipeline->commit().ok());
+    };
+    tell(0, true, "nominal");
+    tell(10, false, "carrier too weak: the link's budget has it below what a lock needs");
+    CHECK(ground.states(10).empty());
+    CHECK(ground.reader().alarms(first_run, 0, 10)->changes_size() == 0);
+    tell(20, false, "unexplained: nothing is predicted to silence it now", true);
+    CHECK(ground.states(20) == "x_band unacknowledged distress by ; ");
+    const auto list = ground.reader().alarm_states(first_run, {});
+    REQUIRE(list.ok());
+    CHECK(list->alarms(0).kind() == "link");
+    CHECK(list->alarms(0).reason() == "unexplained: nothing is predicted to silence it now");
+    CHECK(ground.reader().links().value() == std::vector<std::string>{"uhf_live", "relay", "x_band"});
+    ground.add(action("x_band", "acknowledge", 21));
+    tell(30, true, "nominal");
+    CHECK(ground.states(30).empty()); // seen, and over
+    CHECK(ground.reader().alarms(first_run, 0, 10)->changes_size() == 5); // all of a link that was lost, and the act
+    std::string published;
+    for (const auto& item : ground.published)
+        published += item.ShortDebugString() + "\n";
+    CHECK(published == ground.stored());
+}
+
+TEST_CASE("a link that is lost leaves its packets' alarms standing and names itself in them; one that is down takes them away", "[alarms][staleness]") {
+    Ground ground;
+    ground.begin();
+    const auto lose = [&](std::int64_t at_s, bool lost) {
+        const std::string reason = lost ? "unexplained: nothing is predicted to silence it now" : "Earth set: predicted";
+        REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{at_s * 1'000'000}, false, reason, lost}).ok());
+        REQUIRE(ground.pipeline->commit().ok());
+    };
+    REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    ground.fly(0, 3, 100.0F);
+    lose(3, true);
+    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
+    REQUIRE(ground.pipeline->commit().ok());
+    CHECK(ground.states(8) == "uhf_live unacknowledged distress by ; Navigation unacknowledged warning by ; ");
+    CHECK(ground.published.back().staleness().reason() == "the link is lost: unexplained: nothing is predicted to silence it now");
+    lose(9, false);
+    CHECK(ground.states(9) == "Navigation returned none by ; uhf_live returned none by ; ");
+}
+
+TEST_CASE("another mission's packets that cannot come are missed: its link does not go down for a reason", "[alarms][staleness][downlink]") {
+    Ground ground;
+    ground.begin();
+    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{true, "connected", Ert{0}}).ok());
+    ground.fly(0, 3, 100.0F);
+    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{false, "ground fault: connection refused", Ert{3'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
+    REQUIRE(ground.pipeline->commit().ok());
+    CHECK(ground.states(8) == "downlink unacknowledged distress by ; Navigation unacknowledged warning by ; ");
+    CHECK(ground.published.back().staleness().reason() == "the link is lost: ground fault: connection refused");
+}
+
 TEST_CASE("states, notes and words survive a restart and a rebuild, and verify finds no fault", "[alarms][notes][rebuild]") {
     Ground ground;
     ground.begin();
@@ -146,7 +205,7 @@ TEST_CASE("states, notes and words survive a restart and a rebuild, and verify f
         auto database = archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_write_create);
         REQUIRE(database->execute("UPDATE events SET text = 'nothing'; DELETE FROM alarms").ok());
     }
-    const auto rebuilt = pipeline::rebuild(ground.file, {}, ground.dictionary, nullptr);
+    const auto rebuilt = pipeline::rebuild(ground.file, {}, ground.dictionary, nullptr, {});
     REQUIRE(rebuilt.ok());
     CHECK(rebuilt->left.empty());
     CHECK(ground.stored() == before);
@@ -245,8 +304,8 @@ TEST_CASE("plain words find events, explanations, commands and notes, whatever s
     CHECK(reader.notes(first_run, {"load 5.3", 0, 10})->notes_size() == 1);
     CHECK(reader.notes(first_run, {"ada", 0, 10})->notes_size() == 1);
     CHECK(reader.notes(first_run, {"mortar", 0, 10})->notes_size() == 0);
-    CHECK(reader.commands(first_run, "set station")->commands_size() == 1);
-    CHECK(reader.commands(first_run, "abort")->commands_size() == 0);
+    CHECK(reader.commands(first_run, {{}, "set station"})->commands_size() == 1);
+    CHECK(reader.commands(first_run, {{}, "abort"})->commands_size() == 0);
     archive::ExplanationQuery why;
     why.text = "mortar";
     CHECK(reader.explanations(first_run, why)->explanations_size() == 0);

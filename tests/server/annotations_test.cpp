@@ -8,6 +8,8 @@ using namespace aeolis::server;
 
 namespace {
 
+const std::vector<std::string> links{"uhf_live", "x_band"};
+
 v1::AlarmRequest request(const char* channel, const char* action, double shelve_s = 0.0) {
     v1::AlarmRequest asked;
     asked.set_channel(channel);
@@ -17,7 +19,7 @@ v1::AlarmRequest request(const char* channel, const char* action, double shelve_
 }
 
 std::string refusal(const v1::AlarmRequest& asked, const std::string& by = "Ada") {
-    const auto record = alarm_action_of(asked, test::small_dictionary(), by, Ert{});
+    const auto record = alarm_action_of(asked, test::small_dictionary(), links, by, Ert{});
     return record ? "" : record.error().message;
 }
 
@@ -30,18 +32,19 @@ std::string refusal_of_note(const std::string& text, const std::string& by = "Ad
 
 } // namespace
 
-TEST_CASE("an act on an alarm is kept under the channel's own name, a stale packet's under the packet's", "[alarms][http]") {
+TEST_CASE("an act on an alarm is kept under the channel's own name, a stale packet's under the packet's, a lost link's under the link's", "[alarms][http]") {
     const auto dictionary = test::small_dictionary();
-    const auto by_alias = alarm_action_of(request("GNC-0002", "shelve", 60.0), dictionary, "Ada", Ert{5'000'000});
+    const auto by_alias = alarm_action_of(request("GNC-0002", "shelve", 60.0), dictionary, links, "Ada", Ert{5'000'000});
     REQUIRE(by_alias);
     CHECK(by_alias->alarm == "speed_mps");
     CHECK(by_alias->by == "Ada");
     CHECK(by_alias->until == Ert{65'000'000});
-    CHECK(alarm_action_of(request("Navigation", "acknowledge"), dictionary, "Ada", Ert{})->alarm == "Navigation");
+    CHECK(alarm_action_of(request("Navigation", "acknowledge"), dictionary, links, "Ada", Ert{})->alarm == "Navigation");
+    CHECK(alarm_action_of(request("x_band", "acknowledge"), dictionary, links, "Ada", Ert{})->alarm == "x_band");
 }
 
 TEST_CASE("an act that names nothing, nobody or no time is refused by its field", "[alarms][http]") {
-    CHECK(refusal(request("moon", "acknowledge")) == "channel: there is no channel or packet 'moon'");
+    CHECK(refusal(request("moon", "acknowledge")) == "channel: there is no channel, packet or link 'moon'");
     CHECK_THAT(refusal(request("speed_mps", "forget")), Catch::StartsWith("action: 'forget'"));
     CHECK_THAT(refusal(request("speed_mps", "shelve")), Catch::StartsWith("shelve_s: 0"));
     CHECK_THAT(refusal(request("speed_mps", "shelve", 86'401.0)), Catch::StartsWith("shelve_s: 86401"));

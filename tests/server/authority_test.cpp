@@ -1,3 +1,5 @@
+#include "aeolis/v1/stream.pb.h"
+#include "server/api/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
@@ -130,23 +132,58 @@ TEST_CASE("each role gets what its rights give on every route, and nothing more"
     }
 }
 
+namespace {
+
+struct Message {
+    const char* json;
+    const char* least;
+    const char* says; ///< what the rest of the server answers once the right is there
+};
+const Message messages[] = {
+    {R"({"command":{"command":"NO_OP","request":7}})", "controller", "no run goes on"},
+    {R"({"command":{"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"}})", "director", "no run goes on"},
+    {R"({"subscribe":{}})", "observer", "welcome"},
+    {R"({"control":{"start":{"scenario":"none of ours"}}})", "director", "none of ours"},
+    {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"pace":2}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"stop":true}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"inject":{"computer_reset":true}}})", "director", "no rehearsal goes on"},
+    {R"({"control":{"note":{"text":"seen"}}})", "director", "no rehearsal goes on"},
+    {R"({"command":{"action":"hold","number":1}})", "controller", "no run goes on"},
+    {R"({"command":{"action":"cancel","number":1}})", "controller", "no run goes on"},
+    {R"({"command":{"action":"release","number":1}})", "director", "no run goes on"},
+    {R"({"command":{"action":"approve","number":1}})", "director", "no run goes on"},
+};
+
+/// "command", or of what a rehearsal is told "control.pause".
+std::string kind_of(const v1::ClientMessage& message) {
+    const auto* descriptor = v1::ClientMessage::descriptor();
+    std::string kind = descriptor->FindFieldByNumber(message.message_case())->name();
+    if (message.has_control()) kind += '.' + v1::RehearsalControl::descriptor()->FindFieldByNumber(message.control().action_case())->name();
+    return kind;
+}
+
+} // namespace
+
+TEST_CASE("everything that a client of the stream can say has its row in the table of authority", "[access][stream]") {
+    std::set<std::string> sayable, tabled;
+    const auto* client = v1::ClientMessage::descriptor();
+    for (int i = 0; i < client->field_count(); ++i)
+        if (const std::string name = client->field(i)->name(); name != "control") sayable.insert(name);
+    const auto* control = v1::RehearsalControl::descriptor();
+    for (int i = 0; i < control->field_count(); ++i)
+        sayable.insert("control." + control->field(i)->name());
+    for (const auto& message : messages) {
+        v1::ClientMessage parsed;
+        REQUIRE(server::from_json(message.json, parsed));
+        tabled.insert(kind_of(parsed));
+    }
+    CHECK(sayable == tabled);
+}
+
 TEST_CASE("each role may send over the stream what it may send by HTTP", "[access][stream]") {
     Guarded guarded;
     CHECK(StreamClient{guarded.server.port(), "aeolis.v1.json"}.status() == 401);
-    struct Message {
-        const char* json;
-        const char* least;
-        const char* says; ///< what the rest of the server answers once the right is there
-    };
-    const Message messages[] = {
-        {R"({"command":{"command":"NO_OP","request":7}})", "controller", "no run goes on"},
-        {R"({"command":{"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"}})", "director", "no run goes on"},
-        {R"({"control":{"pause":true}})", "director", "no rehearsal goes on"},
-        {R"({"command":{"action":"hold","number":1}})", "controller", "no run goes on"},
-        {R"({"command":{"action":"cancel","number":1}})", "controller", "no run goes on"},
-        {R"({"command":{"action":"release","number":1}})", "director", "no run goes on"},
-        {R"({"command":{"action":"approve","number":1}})", "director", "no run goes on"},
-    };
     for (const auto& message : messages) {
         bool allowed = false;
         for (const char* role : ladder) {
@@ -182,8 +219,94 @@ TEST_CASE("a hazardous command by HTTP needs a director, and an account's own li
     guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(at, 43)}};
     CHECK_THAT(send("robot", R"({"action":"approve","number":1})").body, Catch::Contains("token robot is none"));
     CHECK(send("nina", R"({"command":"NO_OP"})").status == 409);
+    CHECK(guarded.ask("administrator", "PATCH", "/api/v1/users/nina", R"({"commands":["NO_SUCH"]})").status == 422);
+    CHECK(guarded.ask("administrator", "PATCH", "/api/v1/users/nina", R"({"all_commands":true})").status == 200);
+    CHECK(send("nina", landing).status == 409); // only that no run goes on
+    const auto bound = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"ping","role":"director","commands":["NO_OP"]})").body;
+    guarded.as["ping"] = {{"Authorization", "Bearer " + bound.substr(bound.find(R"("token":")") + 9, 43)}};
+    CHECK_THAT(send("ping", landing).body, Catch::Contains("token ping may not send EDL_DO_EDL"));
+    CHECK(send("ping", R"({"command":"NO_OP"})").status == 409);
     CHECK(guarded.ask("administrator", "POST", "/api/v1/users",
                       R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})").status == 422);
+}
+
+namespace {
+
+/// What is asked about a command that waits: 1 is NO_OP, 2 is EDL_DO_EDL, 77 none.
+struct OfTheQueue {
+    const char* who;
+    const char* action;
+    int number;
+    const char* refusal; ///< for want of a right; empty: they may
+};
+const char* const hazardous = "EDL_DO_EDL is hazardous: it needs a director, and carl is controller";
+const char* const not_listed = "nina may not send EDL_DO_EDL: it is not among the commands of this account";
+const OfTheQueue of_the_queue[] = {
+    {"observer", "hold", 1, "right to command"},
+    {"observer", "cancel", 2, "right to command"},
+    {"carl", "hold", 2, hazardous},
+    {"carl", "release", 2, hazardous},
+    {"carl", "approve", 2, hazardous},
+    {"carl", "cancel", 2, hazardous},
+    {"nina", "hold", 2, not_listed},
+    {"nina", "release", 2, not_listed},
+    {"nina", "approve", 2, not_listed},
+    {"nina", "cancel", 2, not_listed},
+    {"robot", "approve", 1, "token robot is none"},
+    // A number that none has may be any command's by the time that it is looked up.
+    {"carl", "hold", 77, ""},
+    {"carl", "cancel", 77, ""},
+    {"carl", "release", 77, "carl may not release: it needs a director"},
+    {"carl", "approve", 77, "carl may not approve: it needs a director"},
+    {"nina", "hold", 77, "acts on no others"},
+    {"director", "release", 77, ""},
+    // What they may send they may hold and let go.
+    {"carl", "hold", 1, ""},
+    {"carl", "approve", 1, ""},
+    {"nina", "hold", 1, ""},
+    {"nina", "approve", 1, ""},
+    {"robot", "hold", 1, ""},
+    {"director", "hold", 2, ""},
+    {"director", "approve", 2, ""},
+};
+
+} // namespace
+
+TEST_CASE("who may send a command that waits may act on it, and nobody else", "[access][http][stream]") {
+    Guarded guarded;
+    for (const char* user : {R"({"user":"carl","role":"controller","password":"given by another"})",
+                             R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})"})
+        REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users", user).status == 201);
+    guarded.take_over("carl", "given by another");
+    guarded.take_over("nina", "given by another");
+    const auto token = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"controller"})").body;
+    guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(token.find(R"("token":")") + 9, 43)}};
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const char* const commands = "/api/v1/runs/latest/commands";
+    REQUIRE(guarded.ask("carl", "POST", commands, R"({"command":"NO_OP","hold":true})").status == 202);
+    REQUIRE(guarded.ask("director", "POST", commands, R"({"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL","hold":true})").status == 202);
+
+    for (const auto& [who, action, number, refusal] : of_the_queue) {
+        const auto request = std::string{R"({"action":")"} + action + R"(","number":)" + std::to_string(number) + "}";
+        const auto reply = guarded.ask(who, "POST", commands, request);
+        StreamClient stream{guarded.server.port(), "aeolis.v1.json", guarded.as.at(who)};
+        REQUIRE(stream.open());
+        stream.send(R"({"command":)" + request + "}", false);
+        const auto told = stream.receive();
+        INFO(who << ' ' << request << " -> " << reply.status << ' ' << reply.body);
+        REQUIRE(told);
+        INFO(*told);
+        CHECK((reply.status == 403) == !std::string_view{refusal}.empty());
+        CHECK_THAT(reply.body, Catch::Contains(refusal));
+        CHECK_THAT(*told, Catch::Contains(refusal));
+        if (number == 77 && std::string_view{refusal}.empty()) CHECK_THAT(reply.body, Catch::Contains("command 77 does not wait"));
+    }
+    const auto act = [&](const char* who, const char* request) { return guarded.ask(who, "POST", commands, request); };
+    CHECK_THAT(act("carl", R"({"action":"release","number":1})").body, Catch::Contains(R"("accepted":true)"));
+    CHECK_THAT(act("director", R"({"action":"cancel","number":2})").body, Catch::Contains(R"("accepted":true)")); // it waited all the while
+    CHECK_THAT(act("carl", R"({"action":"cancel","number":2})").body, Catch::Contains(hazardous)); // what it is stays known
+    CHECK_THAT(guarded.ask("carl", "POST", "/api/v1/runs/latest/sequences", R"({"commands":[{"action":"release","number":1}]})").body,
+               Catch::Contains("action are not for a command of a sequence"));
 }
 
 TEST_CASE("the script of an inline scenario is bound by the account's list, by each way to start it", "[access][http][stream]") {
@@ -242,6 +365,40 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
     CHECK(count() == before);
 }
 
+TEST_CASE("what an instructor does is told to those who may rehearse, to all others when the run is over, and bears the name of who is logged in", "[access][http][notes]") {
+    Guarded guarded;
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const char* const note = R"({"note":{"text":"do they see it?","by":"someone else"}})";
+    CHECK(guarded.ask("controller", "POST", "/api/v1/rehearsals/current", note).status == 403);
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", note).status == 202);
+    const char* const question = "/api/v1/runs/latest/interventions";
+    const auto told_once = [&](const char* role, unsigned status, const char* says) {
+        WebReply reply;
+        for (int i = 0; i < 500; ++i, std::this_thread::sleep_for(std::chrono::milliseconds{20})) {
+            reply = guarded.ask(role, "GET", question);
+            if (reply.status == status && reply.body.find(says) != std::string::npos) break;
+        }
+        INFO(role << ": " << reply.body);
+        CHECK(reply.status == status);
+        CHECK_THAT(reply.body, Catch::Contains(says) && !Catch::Contains("someone else"));
+    };
+    told_once("director", 200, R"("by":"director")");
+    told_once("controller", 403, "told when the run is over");
+    REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals/current", R"({"stop":true})").status == 202);
+    told_once("observer", 200, "do they see it?");
+
+    guarded.server.end();
+    {
+        auto database = archive::sqlite::Database::open(guarded.server.archive().string(), archive::sqlite::Mode::read_write_create);
+        REQUIRE(database);
+        REQUIRE(database->execute("UPDATE runs SET state = 'running', last_seq = NULL").ok()); // as a server leaves it that is cut off
+    }
+    guarded.server.restart();
+    guarded.as["observer"] = guarded.log_in("observer", Guarded::password);
+    CHECK_THAT(guarded.ask("observer", "GET", "/api/v1/runs/latest").body, Catch::Contains(R"("state":"interrupted")"));
+    told_once("observer", 200, "do they see it?");
+}
+
 TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
     Guarded guarded;
     StreamClient client{guarded.server.port(), "aeolis.v1.json", guarded.as.at("observer")};
@@ -264,7 +421,7 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     CHECK(guarded.ask("controller", "PATCH", "/api/v1/users/director", R"({"role":"observer"})").status == 403);
     web_request(guarded.server.port(), "POST", "/api/v1/session", R"({"user":"director","password":"a wrong guess"})");
     std::string audit;
-    for (int i = 0; i < 100 && audit.find("director\",\"outcome\":\"refused") == std::string::npos; ++i) {
+    for (int i = 0; i < 3000 && audit.find("director\",\"outcome\":\"refused") == std::string::npos; ++i) {
         audit = guarded.ask("administrator", "GET", "/api/v1/audit").body;
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }

@@ -381,7 +381,7 @@ TEST_CASE("an interrupt ends the program cleanly, with a report of what is kept"
         program(),
         {"--scenario", light_scenario(folder), "--cases", "5000", "--jobs", "1", "--json", "--results", file.string()},
         out);
-    for (int i = 0; i < 600 && count_of(file, "SELECT count(*) FROM cases") < 1; ++i)
+    for (int i = 0; i < 3000 && count_of(file, "SELECT count(*) FROM cases") < 1; ++i)
         usleep(50'000);
     kill(child, SIGINT);
     const auto ended = wait_for(child, out);
@@ -439,6 +439,20 @@ TEST_CASE("the progress line tells cases, rate and what remains", "[campaign]") 
           "[===============>              ] 15/30  2.00 cases/s, 0 min 08 s remain");
     CHECK_THAT(progress_line({.done = 30, .of = 30, .flown = 30, .wall_s = 5.0}),
                Catch::StartsWith("[==============================] 30/30"));
+}
+
+TEST_CASE("what is asked of a file of results ends when it is not wanted any more", "[campaign]") {
+    const test::TemporaryFolder folder;
+    run(folder / "a.db", 2'000, 1);
+    auto results = CampaignResults::open(folder / "a.db", 2'000);
+    REQUIRE(results);
+    bool wanted = true;
+    results->stop_when([&] { return !wanted; });
+    CHECK(results->brief().ok());
+    CHECK(results->arrivals(0, 2'000).ok());
+    wanted = false;
+    CHECK_FALSE(results->brief().ok());
+    CHECK_FALSE(results->arrivals(0, 2'000).ok());
 }
 
 TEST_CASE("plots hold a dot a case and stay within their frames", "[campaign]") {

@@ -3,23 +3,35 @@
 #include "common/space_packet.hpp"
 #include "flight/load.hpp"
 #include "server/api/json.hpp"
+#include "tests/server/running_server.hpp"
+#include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/kernels.hpp"
 #include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
 #include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http.hpp>
 #include <cstdio>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <google/protobuf/struct.pb.h>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 
@@ -52,9 +64,88 @@ const char* program() {
 
 } // namespace
 
+TEST_CASE("a command file is sent to a server by the program, whole or not at all, a line a command", "[cli][http][R44]") {
+    if (program() == nullptr) return;
+    aeolis::test::RunningServer server{aeolis::test::shipped_scenario("nominal"), 1.0};
+    const aeolis::test::TemporaryFolder folder;
+    const auto send = [&](const std::string& file, const std::string& options) {
+        std::ofstream{folder / "commands.json"} << file;
+        return run(program(), fmt::format("send --server http://127.0.0.1:{} --file '{}' {}", server.port(), (folder / "commands.json").string(), options));
+    };
+    const auto count = [&] {
+        const auto list = aeolis::test::web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body;
+        std::size_t commands = 0;
+        for (auto at = list.find("\"octets\""); at != std::string::npos; at = list.find("\"octets\"", at + 1))
+            ++commands;
+        return commands;
+    };
+    const std::string good = R"({"commands":[{"command":"NO_OP"},{"command":"EDL_SET_PARAMETERS","from_solution":true,"hold":true}]})";
+    Ended tried;
+    for (int i = 0; i < 3000 && tried.code != 0; ++i) // until the run has begun
+        tried = send(good, "--dry-run");
+    INFO(tried.text);
+    CHECK_THAT(tried.text, Catch::Contains("1  NO_OP  would be taken, ") && Catch::Contains("at the vehicle 2012-") &&
+                               Catch::Contains("to be there before ") && Catch::Contains("a dry run: nothing was sent"));
+    CHECK(count() == 0);
+    const auto spoilt = send(R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})", "");
+    CHECK(spoilt.code == 1);
+    CHECK_THAT(spoilt.text, Catch::Contains("2  EDL_DO_EDL  refused: ") && Catch::Contains("nothing was sent: commands[1]: EDL_DO_EDL is hazardous"));
+    CHECK(count() == 0);
+    const auto sent = send(good, "--by ann");
+    CHECK(sent.code == 0);
+    CHECK_THAT(sent.text, Catch::Contains("1  NO_OP  is command 1") && Catch::Contains("2  EDL_SET_PARAMETERS  is command 2"));
+    CHECK(count() == 2);
+    const auto wrong = send(good, "--run 77");
+    CHECK(wrong.code == 1);
+    CHECK_THAT(wrong.text, Catch::Contains("77"));
+}
+
+TEST_CASE("a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and where to look", "[cli][http][R44]") {
+    namespace asio = boost::asio;
+    namespace http = boost::beast::http;
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    std::ofstream{folder / "commands.json"} << R"({"commands":[{"command":"NO_OP"}]})";
+    const auto send_to_one_that_says = [&](const std::string& answer, const std::string& options) {
+        asio::io_context io;
+        asio::ip::tcp::acceptor acceptor{io, asio::ip::tcp::endpoint{asio::ip::make_address("127.0.0.1"), 0}};
+        std::thread other{[&] {
+            boost::system::error_code ignored;
+            asio::ip::tcp::socket socket{io};
+            acceptor.accept(socket, ignored);
+            boost::beast::flat_buffer buffer;
+            http::request<http::string_body> request;
+            http::read(socket, buffer, request, ignored);
+            asio::write(socket, asio::buffer(answer), ignored);
+        }};
+        const auto ended = run(program(), fmt::format("send --server http://127.0.0.1:{} --run 7 --file '{}' {}", acceptor.local_endpoint().port(),
+                                                      (folder / "commands.json").string(), options));
+        asio::ip::tcp::socket nobody{io}; // in case that the program asked for nothing
+        boost::system::error_code ignored;
+        nobody.connect(acceptor.local_endpoint(), ignored);
+        nobody.close(ignored);
+        other.join();
+        return ended;
+    };
+    const std::string page = "HTTP/1.1 502 Bad Gateway\r\nContent-Length: 6\r\n\r\n<html>";
+    for (const auto& [answer, says] : {std::pair<std::string, const char*>{"", "no answer: "}, {page.substr(0, 50), "no answer: "}, {page, "the answer (502) is not one of Aeolis"}}) {
+        const auto ended = send_to_one_that_says(answer, "");
+        INFO(answer << " -> " << ended.code << ": " << ended.text);
+        CHECK(ended.code == 3);
+        CHECK_THAT(ended.text, Catch::Contains(says) && Catch::Contains("it is not known whether the commands were taken") && Catch::Contains("/api/v1/runs/7/commands"));
+        CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
+    }
+    const auto tried = send_to_one_that_says("", "--dry-run");
+    CHECK(tried.code == 1);
+    CHECK_THAT(tried.text, Catch::Contains("nothing was sent"));
+    const auto refused = send_to_one_that_says("HTTP/1.1 400 Bad Request\r\nContent-Length: 15\r\n\r\n{\"error\":\"bad\"}", "");
+    CHECK(refused.code == 1);
+    CHECK_THAT(refused.text, Catch::Contains("refused (400): bad"));
+}
+
 TEST_CASE("bad use of the program is answered in one line that names it, with exit code 2", "[cli]") {
     if (program() == nullptr) return;
-    const std::array<std::pair<const char*, const char*>, 20> table{{
+    const std::array<std::pair<const char*, const char*>, 24> table{{
         {"frob", "there is no command 'frob'"},
         {"--frob", "there is no option '--frob'"},
         {"timeline frob", "there is no command 'timeline frob'"},
@@ -64,6 +155,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"archive samples --run 1", "--out is required"},
         {"export --archive /nope", "--run is required"},
         {"export --run 1 --format xml", "xml not in {csv,jsonl}"},
+        {"export --run 1 --csv --format jsonl", "excludes"},
         {"tones", "subcommand"},
         {"rehearse --scenario nominal_auto --seed -1", "not a whole number of at most 15 digits: -1"},
         {"rehearse", "--scenario"},
@@ -73,6 +165,9 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"serve --listen nowhere", "ADDRESS:PORT is wanted"},
         {"dictionary check /nope", "/nope"},
         {"decode --packets /dev/null", "--xtce"},
+        {"send", "--file is required"},
+        {"send --file /nope", "--file /nope: it cannot be read"},
+        {"send --file /dev/null", "--file /dev/null: "},
         {"decode --xtce /nope --packets /dev/null", "/nope cannot be read"},
         {"decode --xtce /dev/null --packets /dev/null --format frob", "there is no format 'frob'"},
     }};
@@ -83,6 +178,52 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         CHECK_THAT(ended.text, Catch::Contains(says));
         CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
     }
+}
+
+TEST_CASE("each option of serve stands in an environment variable of its name, and the command line counts before it", "[cli]") {
+    if (program() == nullptr) return;
+    const auto said = run(program(), "serve --help").text;
+    for (const char* option : {"scenario", "seed", "pace", "downlink", "xtce", "format", "skip", "frame-octets", "dictionary", "scenarios", "log-level", "listen"}) {
+        std::string variable = fmt::format("AEOLIS_{}", option);
+        for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(c));
+        CHECK_THAT(said, Catch::Contains("(Env:" + variable + ")"));
+    }
+    CHECK_THAT(said, !Catch::Contains("AEOLIS_CONFIG"));
+    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve", program())).text, Catch::Contains("neither 0 nor within 1 … 1000: 0.5"));
+    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve --pace 0.7", program())).text, Catch::Contains("1000: 0.7"));
+}
+
+TEST_CASE("a settings file may name several hosts with commas between, and a path with blanks and commas", "[cli][http]") {
+    if (program() == nullptr) return;
+    using aeolis::test::web_request;
+    const aeolis::test::TemporaryFolder folder;
+    const auto archive = folder / "the archive, of today" / "a.db";
+    const auto settings = folder / "aeolis.conf";
+    std::ofstream{settings} << "# ours\nlisten=127.0.0.1:0\nhost=first.example,second.example\narchive=" << archive.string() << '\n';
+    std::FILE* pipe = popen(fmt::format("echo $$; exec '{}' serve --config '{}' 2>&1 </dev/null", program(), settings.string()).c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::array<char, 4096> line{};
+    REQUIRE(std::fgets(line.data(), line.size(), pipe) != nullptr);
+    const pid_t server = std::atoi(line.data());
+    std::string said;
+    unsigned port = 0;
+    while (port == 0 && std::fgets(line.data(), line.size(), pipe) != nullptr) {
+        said += line.data();
+        std::sscanf(line.data(), "Aeolis is at http://127.0.0.1:%u/", &port);
+    }
+    INFO(said);
+    CHECK(port != 0);
+    const auto status = [&](const char* host) { return web_request(static_cast<std::uint16_t>(port), "GET", "/healthz", {}, {{"Host", host}}).status; };
+    if (port != 0) {
+        CHECK(status("first.example") == 200);
+        CHECK(status("second.example") == 200);
+        CHECK(status("third.example") == 403);
+        CHECK(std::filesystem::exists(archive));
+        CHECK(::kill(server, SIGTERM) == 0);
+    }
+    while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
+    }
+    CHECK(pclose(pipe) == 0);
 }
 
 TEST_CASE("the entry reference is a table of falling speed, with every row a number", "[cli][R27]") {
@@ -123,15 +264,17 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
     says("archive backup --archive " + in("a.db") + " --out " + in("b.db"), "all of ");
     says("archive verify --archive " + in("b.db"), "nothing wrong");
-    const auto rows = says("export --run 1 --channels altitude_m,speed_mps --archive " + in("b.db"), "sclk,e_s,channel,value,unit,source\n");
-    const auto objects = says("export --run 1 --channels altitude_m,speed_mps --format jsonl --archive " + in("b.db"), R"("channel":"altitude_m")");
+    const auto rows = says("export --run 1 --channel altitude_m speed_mps --csv --archive " + in("b.db"), "sclk,e_s,channel,value,unit,source\n");
+    const auto objects = says("export --run 1 --channel altitude_m speed_mps --format jsonl --archive " + in("b.db"), R"("channel":"altitude_m")");
     CHECK(std::count(rows.begin(), rows.end(), '\n') == std::count(objects.begin(), objects.end(), '\n') + 1);
-    const auto aligned = says("export --run 1 --channels altitude_m,speed_mps --align 1 --archive " + in("b.db"), "sclk,e_s,altitude_m,speed_mps\n");
+    for (const char* names : {"--channel altitude_m --channel speed_mps", "--channel altitude_m,speed_mps", "--channels altitude_m,speed_mps --format csv"})
+        CHECK(run(program(), fmt::format("export --run 1 {} --archive {}", names, in("b.db"))).text == rows);
+    const auto aligned = says("export --run 1 --channel altitude_m speed_mps --align 1 --archive " + in("b.db"), "sclk,e_s,altitude_m,speed_mps\n");
     CHECK(std::count(aligned.begin(), aligned.end(), '\n') > 100);
-    says("archive samples --run 1 --channels altitude_m,speed_mps --archive " + in("b.db") + " --out " + in("samples.db"),
+    says("archive samples --run 1 --channel altitude_m speed_mps --archive " + in("b.db") + " --out " + in("samples.db"),
          (std::to_string(std::count(objects.begin(), objects.end(), '\n')) + " samples of run 1").c_str());
     says("archive rebuild --archive " + in("b.db"), "run 1: made again from its units");
-    CHECK(run(program(), "export --run 1 --channels altitude_m,speed_mps --archive " + in("b.db")).text == rows);
+    CHECK(run(program(), "export --run 1 --channel altitude_m speed_mps --archive " + in("b.db")).text == rows);
     says("archive prune --keep 0 --archive " + in("b.db"), "1 of 1 runs would go; --yes takes them away");
     says("archive prune --keep 0 --yes --archive " + in("b.db"), "1 of 1 runs are gone");
     says("archive vacuum --archive " + in("b.db"), "octets, before");
@@ -139,7 +282,7 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("a landing is reported as it was flown, each timepoint by plan, tone, UHF and recording, which agree",
+TEST_CASE("a landing is reported as it was flown, each timepoint and event by plan, tone, UHF and recording, which agree",
           "[cli][archive][R41][R43]") {
     if (program() == nullptr) return;
     const auto folder = std::filesystem::temp_directory_path() / ("aeolis-report-" + std::to_string(getpid()));
@@ -176,6 +319,31 @@ TEST_CASE("a landing is reported as it was flown, each timepoint by plan, tone, 
     }
     CHECK(by_tone > 10);
     CHECK(live > 20);
+    std::map<std::string, const aeolis::v1::AsFlownEvent*> events;
+    double last_e_s = -1.0e9;
+    for (const auto& event : report.events()) {
+        INFO(event.name());
+        CHECK(events.emplace(event.name(), &event).second); // no name twice
+        CHECK(event.has_recorded_e_s());
+        if (event.has_realtime_e_s()) CHECK(event.realtime_e_s() == event.recorded_e_s());
+        CHECK(event.recorded_e_s() >= last_e_s);
+        CHECK_FALSE(event.text().empty());
+        last_e_s = event.recorded_e_s();
+    }
+    for (const char* name : {"guidance_start", "bank_reversal_1", "bank_reversal_2", "bank_reversal_3", "peak_deceleration", "heading_alignment", "sufr_start", "radar_lock",
+                             "powered_approach_start", "constant_velocity_start", "constant_deceleration_start", "sky_crane_start", "touchdown", "flyaway_end"}) {
+        INFO(name);
+        REQUIRE(events.contains(name));
+        CHECK_THAT(printed.text, Catch::Contains(std::string{"\n"} + name + " "));
+    }
+    CHECK(events.count("parachute_deploy") == 1); // GNC's word; the timepoint of that name reports nothing itself
+    CHECK(events.count("bridle_cut") == 0);       // the timepoint's own
+    CHECK(events.at("touchdown")->predicted_e_s() == 431.47);
+    CHECK(std::abs(events.at("touchdown")->recorded_e_s() - 431.47) < 15.0);
+    const auto csv = run(program(), "report --csv --run 1 --archive " + archive).text;
+    CHECK_THAT(csv, Catch::StartsWith("of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\ntimepoint,") &&
+                        Catch::Contains("\nevent,touchdown,,431.470000,"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + report.timepoints_size() + report.events_size());
     CHECK(predicted >= report.timepoints_size() - 1); // not the first: it counts from "do edl"
     CHECK(report.run().clock().version() == 1);
     CHECK(report.run().clock().scet() == "2012-219T05:10:47.400");
@@ -203,7 +371,11 @@ TEST_CASE("the truth of a landing is written in even rows to where it stands", "
 
 TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli]") {
     if (program() == nullptr) return;
-    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 8>{{
+    const aeolis::test::TemporaryFolder folder;
+    std::ofstream{folder / "commands.json"} << R"({"commands":[{"command":"NO_OP"}]})";
+    const std::string nobody = "send --server http://127.0.0.1:1 --file '" + (folder / "commands.json").string() + "'";
+    const std::string no_url = "send --server ftp://host --file '" + (folder / "commands.json").string() + "'";
+    for (const auto& [arguments, says] : std::array<std::pair<const char*, const char*>, 10>{{
              {"rehearse --scenario no_such", "no_such"},
              {"entry reference --scenario no_such", "no_such"},
              {"rehearse --scenario gnc_alone --truth /nope/truth.csv", "/nope/truth.csv"},
@@ -214,6 +386,8 @@ TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli
              {"campaign --scenario campaign --cases 2 --results /dev/null", "/dev/null"},
              {"campaign --scenario performance --cases 2", "performance: test_venue: "},
              {"serve --listen 192.0.2.1:0 --archive /dev/null", "loopback only"},
+             {nobody.c_str(), "http://127.0.0.1:1: no connection: "},
+             {no_url.c_str(), "--server ftp://host: http://HOST:PORT or https://HOST:PORT is wanted"},
          }}) {
         const auto ended = run(program(), arguments);
         INFO(arguments << " -> " << ended.code << ": " << ended.text);

@@ -177,6 +177,80 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     }
 }
 
+TEST_CASE("do edl wants the parameters on board to be those that were sent: other ones refuse it, equal ones let it go", "[gateway][R23][R44]") {
+    Station station;
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.set_from_solution(true);
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    const auto& command = *tests::shipped_dictionary().command("EDL_SET_PARAMETERS");
+    const auto* report = commands::read_back_packet(tests::shipped_dictionary(), command);
+    REQUIRE(report != nullptr);
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    go.set_dry_run(true);
+    const auto said = [&] {
+        const auto reply = station.send(go);
+        std::string text;
+        for (const auto& each : reply.preconditions())
+            if (each.text().starts_with("EDL_SET_PARAMETERS held as sent")) text = each.state() + ": " + each.text();
+        return std::pair{reply.accepted(), text};
+    };
+    CHECK(said() == std::pair{true, std::string{"unknown: EDL_SET_PARAMETERS held as sent (command 1): not read back yet"}}); // left to flight
+
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
+    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
+    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages); // all zero: not what was sent
+    REQUIRE(station.latest("verified") != nullptr);
+    REQUIRE(station.latest("verified")->status == "failed");
+    const auto [sent, why] = said();
+    CHECK_FALSE(sent);
+    CHECK(why == "fails: EDL_SET_PARAMETERS held as sent (command 1): the vehicle reports other values");
+}
+
+TEST_CASE("parameters that were sent anew are waited for: the vehicle may still hold the ones before", "[gateway][R23][R44]") {
+    Station station;
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.set_from_solution(true);
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    CHECK_THAT(station.send(go).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet, wait for it"));
+}
+
+TEST_CASE("do edl is left to flight when the parameters were not read back in their time", "[gateway][R23][R44]") {
+    Station station;
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.set_from_solution(true);
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    station.gateway.pass(Ert{now.microseconds + 3600LL * 1'000'000}, station.stages);
+    REQUIRE(station.latest("verified")->status == "unknown");
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    const auto reply = station.send(go);
+    CHECK(reply.accepted());
+    CHECK(reply.preconditions(reply.preconditions_size() - 1).text() == "EDL_SET_PARAMETERS held as sent (command 1): not read back in its time");
+}
+
+TEST_CASE("a run has room for so many commands, and says how many it had", "[gateway][bounds]") {
+    Station station;
+    for (std::size_t i = 0; i < CommandGateway::commands_max; ++i) {
+        auto held = request("NO_OP");
+        held.set_hold(true);
+        REQUIRE(station.send(held).accepted());
+        if (i == 0) CHECK(station.gateway.takes(CommandGateway::commands_max).error().message == "this run has had 1 of its 4096 commands");
+    }
+    CHECK(station.gateway.queued() == CommandGateway::commands_max);
+    CHECK(station.send(request("NO_OP")).reason() == "this run has had its 4096 commands");
+}
+
 TEST_CASE("silence becomes unknown when the window has passed, never ok", "[gateway][R44]") {
     Station station;
     REQUIRE(station.send(request("NO_OP")).accepted());
@@ -245,7 +319,8 @@ TEST_CASE("a dry run says what would happen, with every check and its values, an
     const auto refused = station.send(hazardous);
     CHECK_FALSE(refused.accepted());
     CHECK_THAT(refused.reason(), Catch::Contains("armed"));
-    CHECK(refused.preconditions_size() == static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()));
+    // The dictionary's, and ground's own: that the parameters that have been sent are held.
+    CHECK(refused.preconditions_size() == static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()) + 1);
 }
 
 TEST_CASE("where two persons are wanted a command leaves when another than who asked has approved it, and not before",
@@ -282,6 +357,109 @@ TEST_CASE("where two persons are wanted a command leaves when another than who a
     other.set_confirmation("EDL_DO_EDL");
     other.set_controller(std::string(65, 'x'));
     CHECK_THAT(station.send(other).reason(), Catch::Contains("at most 64"));
+}
+
+TEST_CASE("without accounts the second person is one at another browser, whatever name is typed at the first", "[gateway][R23][R44]") {
+    Station station{.second_person = {"NO_OP"}};
+    auto asked = request("NO_OP");
+    asked.set_controller("Ann");
+    asked.set_browser("b1");
+    REQUIRE(station.send(asked).command() == 1);
+    const auto approve = [&](const std::string& controller, const std::string& browser) {
+        v1::CommandRequest wanted;
+        wanted.set_action("approve");
+        wanted.set_number(1);
+        wanted.set_controller(controller);
+        wanted.set_browser(browser);
+        return station.send(wanted).reason();
+    };
+    CHECK_THAT(approve("Ben", "b1"), Catch::Contains("asked for, as Ann, from where it would now be approved") && Catch::Contains("a browser of their own"));
+    CHECK_THAT(approve("Ann", "b2"), Catch::Contains("another controller must approve it"));
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK(approve("Ben", "b2").empty());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+}
+
+TEST_CASE("what a command of the scenario's script is refused for is its history", "[gateway][R44]") {
+    Station station;
+    auto scripted = request("EDL_SET_PARAMETERS");
+    scripted.set_from_solution(true);
+    station.gateway.note_refused(scripted, "no station sees the vehicle", now, station.stages);
+    CHECK(station.stages.front().command == 1);
+    CHECK(station.stages.front().stage == "queued");
+    CHECK(station.stages.front().status == "failed");
+    CHECK_THAT(station.stages.front().evidence, Catch::Contains("the scenario's script") && Catch::Contains("no station sees the vehicle"));
+    CHECK_THAT(station.stages.front().arguments, Catch::Contains("entry_sclk=397501715"));
+    CHECK(std::ranges::all_of(station.stages, [](const auto& stage) { return stage.status == "failed" && stage.command == 1; }));
+    CHECK(station.send(request("NO_OP")).command() == 2);
+    CHECK(station.gateway.take_uplinks().size() == 1); // of the second: the first never leaves
+}
+
+TEST_CASE("a change of the timeline leaves after those that it was analysed with; when one is cancelled, only once that is analysed anew", "[gateway][R19][R44]") {
+    Station station;
+    const auto& timeline = tests::shipped_dictionary().timeline;
+    auto change = request("EDL_SET_TIMEPOINT_OFFSET");
+    for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
+             {"timepoint", static_cast<double>(std::ranges::find(timeline, "detumble", &dictionary::TimelineRow::name) - timeline.begin())},
+             {"desired_offset_s", -516.0},
+             {"minimum_offset_s", 0.0}}) {
+        auto& argument = *change.add_arguments();
+        argument.set_name(name);
+        argument.set_value(value);
+    }
+    auto held = change;
+    held.set_hold(true);
+    REQUIRE(station.send(held).command() == 1);
+    REQUIRE(station.send(held).command() == 2);
+    REQUIRE(station.send(held).command() == 3);
+    std::uint64_t undone = 0; // when it was analysed
+    const auto act = [&](const char* action, std::uint64_t number, const std::string& words = {}) {
+        v1::CommandRequest said;
+        said.set_action(action);
+        said.set_number(number);
+        said.set_analysis(words);
+        said.set_request(undone);
+        return station.send(said).accepted();
+    };
+    CHECK(act("release", 2)); // it stays behind the first, which is held
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("after command 1, with which its timeline was analysed"));
+    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold")); // nobody doubts it
+    CHECK(act("cancel", 1));
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("does not leave before its timeline is looked at again"));
+    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold")); // with the first: that analysis began before it was cancelled
+    undone = 1;
+    CHECK(act(timeline_holds_action, 2, "all bounds hold"));
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    CHECK(act("release", 3));
+    CHECK(station.gateway.take_uplinks().empty()); // of it nothing has been said yet
+    CHECK(act(timeline_refuted_action, 3, "it breaks one"));
+    CHECK(station.latest("released")->status == "failed");
+    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("has changed: it breaks one"));
+    undone = 2;
+    CHECK_FALSE(act(timeline_holds_action, 3, "all bounds hold")); // it waits no more
+    CHECK(station.gateway.take_uplinks().empty());
+}
+
+TEST_CASE("a reply says until when a command is of use, and what it comes too late for", "[gateway][R44]") {
+    const Scet entry{now.microseconds + 1'000'000'000};
+    CommandGateway gateway{tests::shipped_dictionary(), 828.0, solution_arguments(solution()), {}, {}, entry};
+    std::vector<archive::StageRecord> stages;
+    auto asked = request("NO_OP");
+    asked.set_dry_run(true);
+    const auto reply = gateway.submit(asked, now, stages); // there at E-172 s
+    REQUIRE(reply.accepted());
+    CHECK(reply.leaves() == day_of_year_text(now));
+    CHECK_FALSE(reply.useful_before().empty());
+    const auto latest = ert_from_day_of_year(reply.latest_useful());
+    REQUIRE(latest);
+    CHECK(*latest > now);
+    CHECK(std::ranges::find(reply.too_late_for(), "coolant_vent") != reply.too_late_for().end()); // E-826 s
+    CHECK(std::ranges::find(reply.too_late_for(), reply.useful_before()) == reply.too_late_for().end());
+    asked.set_dry_run(false);
+    const auto taken = gateway.submit(asked, now, stages);
+    CHECK(taken.latest_useful() == reply.latest_useful());
 }
 
 TEST_CASE("a command with a time leaves then, a held one when it is released, a cancelled one never", "[gateway][R44]") {
@@ -382,18 +560,30 @@ TEST_CASE("what waits past a pass is held until the next one begins, or told tha
         wanted.set_controller("Ben");
         return station.gateway.submit(wanted, at, station.stages);
     };
-    CHECK(approve(1, in_s(90.0)).accepted());
+    const auto in_the_gap = approve(1, in_s(90.0));
+    CHECK(in_the_gap.accepted());
+    CHECK(in_the_gap.station() == "DSS-34"); // by which it leaves, and what follows from when
+    CHECK(in_the_gap.station_until() == day_of_year_text(in_s(180.0)));
+    CHECK(in_the_gap.arrives() == day_of_year_text(in_s(120.0)));
+    CHECK(in_the_gap.effect_seen() == day_of_year_text(in_s(120.0)));
     CHECK(station.gateway.take_uplinks().empty());
     CHECK_THAT(station.latest("released")->evidence, Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
+    CHECK(std::ranges::none_of(station.stages, [](const auto& stage) { return stage.evidence == "then leaves at once"; }));
     station.gateway.pass(in_s(119.0), station.stages);
     CHECK(station.gateway.take_uplinks().empty());
     station.gateway.pass(in_s(120.0), station.stages);
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("left DSS-34"));
 
-    CHECK(approve(2, in_s(200.0)).accepted());
+    const char* const none_comes = "none comes after it";
+    const auto too_late = approve(2, in_s(180.0));
+    CHECK_FALSE(too_late.accepted());
+    CHECK_THAT(too_late.reason(), Catch::Contains("command 2 can no longer leave") && Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
+    station.gateway.pass(in_s(180.5), station.stages); // nobody can approve it any more: it is not left to wait
     CHECK(station.gateway.take_uplinks().empty());
     CHECK(station.latest("released")->status == "failed");
+    CHECK(station.latest("released")->command == 2);
+    CHECK_THAT(approve(2, in_s(181.0)).reason(), Catch::Contains("command 2 does not wait") && Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
     CHECK_THAT(station.latest("released")->evidence, Catch::Contains("DSS-34, ended") && Catch::Contains("none comes after it"));
 }
 
@@ -424,6 +614,113 @@ TEST_CASE("a frame that is not acknowledged is not sent again before a station s
     station.gateway.pass(in_s(120.0), station.stages);
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK_THAT(station.latest("radiated")->evidence, Catch::StartsWith("transmission 2"));
+}
+
+namespace {
+
+/// The vehicle's receiver of frames has no room, or has it again: what goes in sequence waits in the uplink meanwhile.
+void tell_room(Station& station, bool room, Ert at) {
+    std::array<std::uint8_t, clcw_octets> clcw{};
+    write_clcw({.wait = !room}, clcw);
+    station.gateway.receive(packet_of("CommStatus", {{"clcw", read_bits(clcw, 0, 32)}}), true, at, station.stages);
+}
+
+v1::CommandRequest do_edl() {
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    go.set_service("AD");
+    return go;
+}
+
+} // namespace
+
+TEST_CASE("what the uplink has not radiated when the last pass ends is told as failed, with the reason", "[gateway][tracking][R44]") {
+    Station station{.passes = commands::TrackingSchedule{{{"DSS-43", now, in_s(60.0)}}}};
+    tell_room(station, false, now);
+    auto asked = request("NO_OP");
+    asked.set_service("AD");
+    REQUIRE(station.send(asked).accepted());
+    CHECK(station.latest("released")->status == "ok");
+    CHECK(station.latest("radiated") == nullptr);
+    auto held = request("NO_OP");
+    held.set_hold(true);
+    REQUIRE(station.send(held).command() == 2);
+
+    station.gateway.pass(in_s(59.0), station.stages);
+    CHECK(station.latest("radiated") == nullptr);
+    station.gateway.pass(in_s(60.0), station.stages);
+    REQUIRE(station.latest("radiated") != nullptr);
+    const auto first = std::ranges::find_if(station.stages, [](const auto& stage) { return stage.command == 1 && stage.stage == "radiated"; });
+    REQUIRE(first != station.stages.end());
+    CHECK(first->status == "failed");
+    CHECK_THAT(first->evidence, Catch::Contains("DSS-43, ended") && Catch::Contains("none comes after it"));
+    CHECK(station.latest("received")->status == "failed");
+    CHECK_THAT(station.latest("received")->evidence, Catch::Contains("never left Earth"));
+    CHECK(station.latest("released")->command == 2); // what was held can never leave either
+    CHECK(station.latest("released")->status == "failed");
+
+    tell_room(station, true, in_s(61.0));
+    CHECK(station.gateway.take_uplinks().empty());
+    CHECK_THAT(station.gateway.submit(held, in_s(61.0), station.stages).reason(), Catch::Contains("none comes after it"));
+}
+
+TEST_CASE("what waits in the uplink when a pass ends waits for the next, and its preconditions are looked at when that begins",
+          "[gateway][tracking][R23][R44]") {
+    Station station{.passes = with_a_gap()};
+    tell_room(station, false, now);
+    REQUIRE(station.send(do_edl()).accepted()); // what it needs is not known yet
+    CHECK(station.latest("released")->status == "ok");
+    station.gateway.pass(in_s(61.0), station.stages);
+    CHECK(station.latest("released")->status == "pending");
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("taken back from the uplink") && Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
+    tell_room(station, true, in_s(110.0));
+    CHECK(station.gateway.take_uplinks().empty());
+
+    SECTION("nothing speaks against it") {
+        station.gateway.pass(in_s(120.0), station.stages);
+        CHECK(station.gateway.take_uplinks().size() == 1);
+        CHECK(station.latest("released")->status == "ok");
+        CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("left DSS-34"));
+    }
+    SECTION("one does not hold any more") {
+        station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0), station.stages); // no parameters on board
+        station.gateway.pass(in_s(120.0), station.stages);
+        CHECK(station.gateway.take_uplinks().empty());
+        CHECK(station.latest("released")->status == "failed");
+        CHECK_THAT(station.latest("released")->evidence, Catch::Contains("must not be sent now") && Catch::Contains("parameters_received"));
+    }
+    SECTION("it is cancelled meanwhile") {
+        v1::CommandRequest cancel;
+        cancel.set_action("cancel");
+        cancel.set_number(1);
+        CHECK(station.gateway.submit(cancel, in_s(100.0), station.stages).accepted());
+        CHECK(station.latest("released")->status == "failed");
+        station.gateway.pass(in_s(120.0), station.stages);
+        CHECK(station.gateway.take_uplinks().empty());
+    }
+}
+
+TEST_CASE("what was not acknowledged before a gap is not radiated again when it must not be sent any more", "[gateway][tracking][R23][R44]") {
+    Station station{.passes = with_a_gap()};
+    REQUIRE(station.send(do_edl()).accepted());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+    station.gateway.pass(in_s(100.0), station.stages);
+    station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0), station.stages); // no parameters on board
+    station.stages.clear();
+    station.gateway.pass(in_s(120.0), station.stages);
+    REQUIRE(station.latest("radiated") != nullptr);
+    CHECK_THAT(station.latest("radiated")->evidence, Catch::StartsWith("not acknowledged, and not radiated again") && Catch::Contains("parameters_received"));
+    // What goes out instead tells the vehicle the sequence anew, and carries no command.
+    for (const auto& unit : station.gateway.take_uplinks()) {
+        std::vector<std::uint8_t> information(cltu_information_octets_max);
+        const auto octets = read_cltu(unit, information);
+        REQUIRE(octets);
+        const auto frame = read_tc_frame(std::span{information}.first(*octets));
+        REQUIRE(frame);
+        CHECK(frame->header.control);
+    }
 }
 
 TEST_CASE("of a command that waits it is said in fields what for, not in words alone", "[gateway][R44]") {

@@ -2,8 +2,10 @@
 #include "server/downlink/downlink_follower.hpp"
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
+#include "server/access/this_user.hpp"
 #include "server/net/console_backend.hpp"
 #include "telemetry/other_mission.hpp"
+#include "tests/server/audited.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
@@ -159,6 +161,7 @@ class Follower {
         return answer;
     }
     std::uint16_t port() const { return backend_->port(); }
+    std::filesystem::path archive() const { return folder_ / "a.db"; }
     std::uint16_t downlink_port() const { return backend_->downlink_port(); }
 
   private:
@@ -268,6 +271,19 @@ TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][dow
     const auto reply = web_request(follower.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal"})");
     CHECK(reply.status >= 400);
     CHECK_THAT(reply.body, Catch::Contains("follows the downlink of another mission"));
+}
+
+TEST_CASE("a downlink that the program was started to follow is in the audit, with who started it", "[server][downlink][audit]") {
+    const auto mission = mission_of(small_xtce);
+    Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
+    auto reader = archive::Reader::open(follower.archive(), mission->dictionary(), mission.get());
+    REQUIRE(reader);
+    const auto entry = only_audited(*reader);
+    CHECK(entry.who == this_user());
+    CHECK(entry.from == "command line");
+    CHECK(entry.action == "downlink");
+    CHECK_THAT(entry.detail, Catch::StartsWith("serve --downlink udp://127.0.0.1") && Catch::EndsWith("--xtce m.xml"));
+    CHECK(entry.outcome == "done");
 }
 
 TEST_CASE("an instrument's own packets over TCP give its published values through the API", "[server][downlink]") {

@@ -45,6 +45,7 @@ struct Kept {
 enum class Kind : std::uint8_t { open, read, write, sync, truncate, remove, shared_memory };
 
 int error_code(Kind kind, FaultyDisk::Fault fault) {
+    if (fault == FaultyDisk::Fault::read_only) return SQLITE_READONLY;
     switch (kind) {
     case Kind::open: return SQLITE_CANTOPEN;
     case Kind::read: return SQLITE_IOERR_READ;
@@ -108,6 +109,7 @@ int FaultyDisk::State::strike(Kind kind) {
     if (cut) return error_code(kind, Fault::input_output);
     if (fail_nth == 0) return SQLITE_OK;
     if (fault == Fault::full && kind != Kind::write && kind != Kind::shared_memory) return SQLITE_OK;
+    if (fault == Fault::read_only && kind != Kind::write && kind != Kind::truncate && kind != Kind::remove) return SQLITE_OK;
     ++operations;
     if (operations != fail_nth && (!lasting || operations < fail_nth)) return SQLITE_OK;
     ++failed;

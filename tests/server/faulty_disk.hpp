@@ -23,6 +23,7 @@ class FaultyDisk {
     enum class Fault : std::uint8_t {
         input_output, ///< any operation: open, read, write, sync, truncate, remove, shared memory
         full,         ///< what needs room: half of it is written, then there is none
+        read_only,    ///< what changes a file, as when the kernel has mounted a sick disk read-only
     };
     /// From the n-th operation on that `fault` can strike, counted from 1 and from now: this one, or all until mend().
     void fail_at(std::uint64_t nth, Fault fault, bool lasting);

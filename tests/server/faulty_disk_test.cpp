@@ -12,6 +12,7 @@
 #include "server/api/json.hpp"
 
 #include <fstream>
+#include <future>
 #include <random>
 
 using namespace aeolis;
@@ -308,11 +309,12 @@ TEST_CASE("whichever operation of the disk fails, it is said, nothing published 
     fail_each(FaultyDisk::Fault::input_output, false, 1, 23);
     fail_each(FaultyDisk::Fault::input_output, true, 2, 23);
     fail_each(FaultyDisk::Fault::full, true, 1, 11);
+    fail_each(FaultyDisk::Fault::read_only, true, 1, 23);
 }
 
 TEST_CASE("the n-th operation of the disk fails, for every n", "[.long][archive][pipeline][disk]") {
     for (const bool lasting : {false, true})
-        for (const auto fault : {FaultyDisk::Fault::input_output, FaultyDisk::Fault::full})
+        for (const auto fault : {FaultyDisk::Fault::input_output, FaultyDisk::Fault::full, FaultyDisk::Fault::read_only})
             fail_each(fault, lasting, 1, 1);
 }
 
@@ -413,6 +415,40 @@ TEST_CASE("while the disk is full the console is told, the landing goes on, and 
             CHECK(watch.health() == 503);
             full->mend();
         });
+}
+
+TEST_CASE("while the disk is read-only the console is told, the landing goes on, and when it can be written all of it is stored",
+          "[archive][disk][stream][R43]") {
+    FaultyDisk* read_only = nullptr;
+    harm_and_mend(
+        "readonly", [&](FaultyDisk& disk, const auto&) { (read_only = &disk)->fail_at(1, FaultyDisk::Fault::read_only, true); },
+        [&](Watch& watch) {
+            CHECK(watch.health() == 503);
+            read_only->mend();
+        });
+}
+
+TEST_CASE("a server that is asked to end while the disk is full ends soon, and the run can be continued", "[archive][disk][R43]") {
+    FaultyDisk disk;
+    RunningServer server{from_uhf_on(), 60.0};
+    {
+        Watch watch{server};
+        watch.read_until([&] { return watch.last > 200; });
+        disk.fail_at(1, FaultyDisk::Fault::full, true);
+        watch.read_until([&] { return !watch.fault.empty(); });
+    }
+    std::promise<void> ended;
+    std::thread rescue{[&, over = ended.get_future()] { // so that a server which waits for the disk ends at all
+        if (over.wait_for(std::chrono::seconds{40}) == std::future_status::timeout) disk.mend();
+    }};
+    const auto asked = std::chrono::steady_clock::now();
+    server.end();
+    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds{20}); // four tries, half a second apart
+    ended.set_value();
+    rescue.join();
+    disk.mend();
+    server.restart();
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/1").body, Catch::Contains(R"("state":"interrupted")"));
 }
 
 TEST_CASE("an archive that is removed while it is written is put back with all that was in it", "[archive][disk][stream][R43]") {

@@ -1,5 +1,9 @@
 #include "aeolis/v1/run.pb.h"
+#include "server/access/this_user.hpp"
 #include "server/api/json.hpp"
+#include "server/archive/items.hpp"
+#include "tests/server/audited.hpp"
+#include "tests/server/faulty_disk.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
@@ -34,6 +38,10 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/healthz", "", 200, "ok"},
         {"GET", "/metrics", "", 200, "\naeolis_resident_memory_bytes "},
         {"GET", "/metrics", "", 200, "\naeolis_archive_commit_seconds_count "},
+        {"GET", "/metrics", "", 200, "\naeolis_archive_pending_bytes "},
+        {"GET", "/metrics", "", 200, "\naeolis_commands_waiting 0\n"},
+        {"GET", "/metrics", "", 200, "\naeolis_commands_put_off 0\n"},
+        {"GET", "/metrics", "", 200, "\naeolis_commands_queued 0\n"},
         {"GET", "/api/v1/openapi.yaml", "", 200, "openapi: 3"},
         {"GET", "/api/v1/runs", "", 200, "\"scenario\":\"nominal\""},
         {"GET", "/api/v1/runs/latest", "", 200, "\"state\":\"running\""},
@@ -55,6 +63,26 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/commands", "", 200, "\"commands\":["},
         {"GET", "/api/v1/runs/1/timepoints", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/explanations", "", 200, "\"explanations\":["},
+        {"GET", "/api/v1/runs?format=csv", "", 200, "run,scenario,title,"},
+        {"GET", "/api/v1/runs?format=xml", "", 400, "format: 'xml' is none of json, csv, jsonl"},
+        {"GET", "/api/v1/runs?colour=red", "", 400, "colour"},
+        {"GET", "/api/v1/runs/1/events?format=csv&limit=1", "", 200, "seq,event.id,event.name,"},
+        {"GET", "/api/v1/runs/1/events?format=jsonl&limit=1", "", 200, ""},
+        {"GET", "/api/v1/runs/1/events?format=xml", "", 400, "format"},
+        {"GET", "/api/v1/runs/1/tones?format=csv", "", 200, "seq,tone.ert_start,"},
+        {"GET", "/api/v1/runs/1/commands?format=csv", "", 200, "command,name,arguments,octets,stages,"},
+        {"GET", "/api/v1/runs/1/explanations?format=csv", "", 200, "seq,explanation.sclk,"},
+        {"GET", "/api/v1/runs/1/packets?format=csv&limit=5", "", 200, "unit.unit,unit.apid,"},
+        {"GET", "/api/v1/runs/1/timepoints?format=csv", "", 200, "\n1,edl_heaters,"},
+        {"GET", "/api/v1/runs/1/notes?format=csv", "", 200, "seq,note.text,"},
+        {"GET", "/api/v1/runs/1/alarms?format=csv", "", 200, "seq,link.link,"},
+        {"GET", "/api/v1/runs/1/alarms?state=current&format=jsonl", "", 200, ""},
+        {"GET", "/api/v1/runs/1/events?from=2012-219T04:00:00&to=2012-219T06:00:00.5", "", 200, "\"events\":["},
+        {"GET", "/api/v1/runs/1/state?at=2012-219T05:00:00", "", 200, "\"channels\":["},
+        {"GET", "/api/v1/runs/1/samples?names=altitude_m&to=2012-219T05:00:00", "", 200, "sclk,e_s,"},
+        {"GET", "/api/v1/runs/1/state?at=2012-400T05:00:00", "", 400, "at: '2012-400T05:00:00'"},
+        {"GET", "/api/v1/runs/1/events?to=noon", "", 400, "to: 'noon' is not a number: seconds of SCLK, or SCET as 2012-219T05:00:00"},
+        {"GET", "/api/v1/runs/1/events?from=2012-219T05:00:01&to=2012-219T05:00:00", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
         {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
         {"GET", "/api/v1/runs/1/state", "", 200, "\"channels\":["},
@@ -95,6 +123,9 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&points=0", "", 400, "points"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=xml", "", 400, "xml"},
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&colour=red", "", 400, "colour"},
+        {"GET", "/api/v1/runs/1/channels?names=altitude_m&source=rumour", "", 400, "rumour"},
+        {"GET", "/api/v1/runs/1/channels?expression=speed_mps&source=realtime", "", 400, "named channels only"},
+        {"GET", "/api/v1/runs/1/channels?names=altitude_m&source=recorded", "", 200, "altitude_m"},
         {"GET", "/api/v1/runs/1/events?level=PANIC", "", 400, "PANIC"},
         {"GET", "/api/v1/runs/1/events?limit=1000000", "", 400, "limit"},
         {"GET", "/api/v1/runs/1/explanations?decision=zz", "", 400, "zz"},
@@ -131,7 +162,7 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
         return web_request(server.port(), "GET", "/api/v1/runs/1/channels?names=altitude_m,speed_mps" + more);
     };
     WebReply json, octets;
-    for (int i = 0; i < 500 && json.body.size() < 20'000; ++i) {
+    for (int i = 0; i < 3000 && json.body.size() < 20'000; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
         json = ask("");
     }
@@ -147,6 +178,29 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
     CHECK(list.channels(0).sclk_size() > 100);
     CHECK(list.SerializeAsString() == octets.body);
     CHECK(2 * octets.body.size() < json.body.size());
+}
+
+TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK, and a page says in a header where the next begins", "[http][R43]") {
+    RunningServer server{shipped_scenario("nominal_auto"), 100.0};
+    const auto ask = [&](const std::string& question) { return web_request(server.port(), "GET", "/api/v1/runs/1" + question); };
+    v1::EventList events;
+    for (int i = 0; i < 3000 && events.events_size() < 2; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        (void)from_json(ask("/events").body, events);
+    }
+    REQUIRE(events.events_size() >= 2);
+    v1::RunState run;
+    REQUIRE(from_json(ask("").body, run).ok());
+    const auto& first = events.events(0);
+    const auto scet = day_of_year_text(archive::correlation_of(run).scet_of(Sclk{first.event().sclk()}));
+    v1::EventList found;
+    REQUIRE(from_json(ask("/events?from=" + scet + "&to=" + scet).body, found).ok());
+    REQUIRE(found.events_size() > 0);
+    CHECK(found.events(0).SerializeAsString() == first.SerializeAsString());
+
+    for (const char* format : {"json", "csv", "jsonl"})
+        CHECK(ask(std::string{"/events?limit=1&format="} + format).next_after == std::to_string(first.seq()));
+    CHECK(ask("/commands?format=csv").next_after.empty()); // it has no pages
 }
 
 TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the next one begins", "[http][R45]") {
@@ -167,7 +221,7 @@ TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the nex
 TEST_CASE("what was acknowledged is durable: the command is in the archive when the reply comes", "[http][R43]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
     WebReply reply;
-    for (int i = 0; i < 200 && reply.status != 202; ++i) {
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) {
         reply = web_request(server.port(), "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})");
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
@@ -180,11 +234,147 @@ TEST_CASE("what was acknowledged is durable: the command is in the archive when 
     CHECK(commands->commands(0).stages_size() >= 4);
 }
 
+namespace {
+
+/// What the instructor did, once it is so much.
+v1::InterventionList interventions_of(const RunningServer& server, int count) {
+    v1::InterventionList told;
+    for (int i = 0; i < 3000 && told.interventions_size() < count; ++i, std::this_thread::sleep_for(std::chrono::milliseconds{20})) {
+        told.Clear();
+        REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/interventions").body, told));
+    }
+    return told;
+}
+
+} // namespace
+
+TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is told what cannot be", "[http][faults]") {
+    RunningServer server;
+    const auto control = [&](const std::string& inject) {
+        return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"inject":{}}})", inject));
+    };
+    const char* const radar = R"({"device_fault":{"device":"DEVICE_RADAR","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":20}})";
+    CHECK(control(radar).status == 409); // none goes on
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    CHECK(control(radar).status == 202);
+    CHECK(control(R"({"system_fault":{"duration_s":3}})").status == 202);
+    CHECK(control(R"({"computer_reset":true})").status == 202);
+    const Asked refused[] = {
+        {"", "", R"({})", 422, "device_fault, system_fault, computer_reset or station_outage"},
+        {"", "", R"({"computer_reset":false})", 422, "false asks for nothing"},
+        {"", "", R"({"system_fault":{"duration_s":0}})", 422, "duration_s: 0"},
+        {"", "", R"({"station_outage":{"duration_s":0}})", 422, "station_outages[0].duration_s: 0"},
+        {"", "", R"({"station_outage":{"duration_s":3,"begin_before_entry_s":5}})", 422, "it begins now"},
+        {"", "", R"({"system_fault":{"duration_s":3,"begin_before_entry_s":5}})", 422, "it begins now"},
+        {"", "", R"({"device_fault":{"unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":1}})", 422, "device_fault.device: missing"},
+        {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_REFUSES","duration_s":1}})", 422, "not possible"},
+        {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"C"}})", 400, "unit"},
+    };
+    for (const auto& row : refused) {
+        const auto reply = control(row.body);
+        INFO(row.body << " -> " << reply.body);
+        CHECK(reply.status == row.status);
+        CHECK_THAT(reply.body, Catch::Contains(row.says));
+    }
+    const auto told = interventions_of(server, 3);
+    REQUIRE(told.interventions_size() == 3);
+    CHECK(told.interventions(0).fault().device_fault().duration_s() == 20.0);
+    CHECK(told.interventions(2).fault().computer_reset());
+    v1::RunState state;
+    REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/rehearsals/current").body, state));
+    const double start_e_s = state.start_sclk() - state.entry_sclk();
+    CHECK(told.interventions(0).e_s() >= start_e_s);
+    CHECK(told.interventions(2).e_s() >= told.interventions(0).e_s());
+    CHECK(told.interventions(2).e_s() < start_e_s + 60.0);
+}
+
+TEST_CASE("an instructor's note is kept with its instant, apart from the shift log and the stream, and what is none is refused", "[http][notes]") {
+    RunningServer server;
+    const auto note = [&](const std::string& body) {
+        return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"note":{}}})", body));
+    };
+    CHECK(note(R"({"text":"too early","by":"Ida"})").status == 409); // none goes on
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    for (const auto& [body, says] : {std::pair{R"({"text":"x"})", "by:"}, std::pair{R"({"text":" ","by":"Ida"})", "the note is empty"}}) {
+        const auto reply = note(body);
+        INFO(body << " -> " << reply.body);
+        CHECK(reply.status == 422);
+        CHECK_THAT(reply.body, Catch::Contains(says));
+    }
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"pause":true})").status == 202);
+    CHECK(note(R"({"text":"nobody looks at <the> \"radar\"","by":"Ida"})").status == 202);
+    const auto told = interventions_of(server, 1);
+    REQUIRE(told.interventions_size() == 1);
+    CHECK(told.interventions(0).note().text() == "nobody looks at <the> \"radar\"");
+    CHECK(told.interventions(0).note().by() == "Ida");
+    v1::NoteList log;
+    REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/notes").body, log));
+    CHECK(log.notes_size() == 0);
+}
+
+TEST_CASE("a rehearsal that the program was started with is in the audit, with the system's name of who started it", "[audit][http]") {
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
+    REQUIRE(reader);
+    const auto entry = only_audited(*reader);
+    CHECK(entry.who == server::this_user());
+    CHECK(entry.from == "command line");
+    CHECK(entry.action == "rehearsal");
+    CHECK_THAT(entry.detail, Catch::StartsWith("serve --scenario nominal --seed 1"));
+    CHECK(entry.outcome == "done");
+}
+
+TEST_CASE("what is answered as done is in the audit by then; while the disk refuses the answer comes all the same", "[audit][http][disk]") {
+    FaultyDisk disk;
+    RunningServer server;
+    auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
+    REQUIRE(reader);
+    const auto pace = [&](int wanted) { return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"pace":{}}})", wanted)).status; };
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    for (int wanted = 2; wanted < 12; ++wanted) {
+        REQUIRE(pace(wanted) == 202);
+        const auto entries = reader->audit(0, 100);
+        REQUIRE(entries);
+        REQUIRE(entries->size() == static_cast<std::size_t>(wanted));
+        CHECK_THAT(entries->back().detail, Catch::Contains(fmt::format(R"({{"pace":{}}})", wanted)));
+    }
+    disk.fail_at(1, FaultyDisk::Fault::input_output, true);
+    for (int i = 0; i < 3; ++i)
+        CHECK(pace(20 + i) == 202);
+    disk.mend();
+    for (int i = 0; i < 3000 && reader->audit(0, 100).value().size() < 14; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    CHECK(reader->audit(0, 100)->size() == 14);
+}
+
+TEST_CASE("a question that the disk keeps from its answer is the server's fault and not the asker's, and is answered once the disk is well", "[http][disk]") {
+    FaultyDisk disk;
+    RunningServer server{shipped_scenario("nominal"), 100.0};
+    const auto status_of = [&](const char* question) { return web_request(server.port(), "GET", fmt::format("/api/v1/runs/1/{}", question)).status; };
+    const auto comes = [&](unsigned status) {
+        for (int i = 0; i < 3'000; ++i) {
+            if (status_of("events") == status) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        }
+        return false;
+    };
+    REQUIRE(comes(200));
+    disk.fail_at(1, FaultyDisk::Fault::input_output, true);
+    for (const char* question : {"events", "channels?names=altitude_m", "samples?names=altitude_m", "state", "report"}) {
+        INFO(question);
+        CHECK(status_of(question) == 500);
+    }
+    CHECK(status_of("events?level=LOUD") == 500); // which run is looked for first
+    disk.mend();
+    CHECK(comes(200));
+    CHECK(status_of("events?level=LOUD") == 400);
+}
+
 TEST_CASE("a command file goes whole or not at all, and names the command that is refused", "[http][R44]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
     const auto post = [&](std::string_view body) { return web_request(server.port(), "POST", "/api/v1/runs/latest/sequences", body); };
     WebReply reply;
-    for (int i = 0; i < 200 && reply.status != 202; ++i) {
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) {
         reply = post(R"({"dry_run":true,"commands":[{"command":"NO_OP"},{"command":"NO_OP"}]})");
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
@@ -198,6 +388,17 @@ TEST_CASE("a command file goes whole or not at all, and names the command that i
     CHECK_THAT(taken.body, Catch::Contains(R"("request":"5","command":"1")") && Catch::Contains(R"("command":"2")"));
     CHECK(post(R"({"commands":[]})").status == 400);
     CHECK_THAT(post(R"({"commands":[{"command":"NO_OP","dry_run":true}]})").body, Catch::Contains("commands[0]: dry_run"));
+    // Nor is a part of one taken that the run has no room for.
+    std::string hundred = R"({"commands":[)";
+    for (int i = 0; i < 100; ++i)
+        hundred += i == 0 ? R"({"command":"NO_OP","hold":true})" : R"(,{"command":"NO_OP","hold":true})";
+    hundred += "]}";
+    for (int i = 0; i < 40; ++i)
+        REQUIRE(post(hundred).status == 202);
+    const auto over = post(hundred);
+    CHECK(over.status == 409);
+    CHECK_THAT(over.body, Catch::Contains("commands[94]: this run has had 4002 of its 4096 commands"));
+    CHECK(post(R"({"commands":[{"command":"NO_OP","hold":true}]})").status == 202);
 }
 
 TEST_CASE("a command that would break a constraint of the timeline is refused before it is sent, and the constraint is named", "[http][R19]") {
@@ -220,6 +421,101 @@ TEST_CASE("a command that would break a constraint of the timeline is refused be
     INFO(broken.body);
     CHECK(broken.status == 409);
     CHECK_THAT(broken.body, Catch::Contains("breaks a constraint") && Catch::Contains("cruise_stage_separation") && Catch::Contains("constraints.csv:"));
+}
+
+TEST_CASE("when a change of the timeline is cancelled, what waits is looked at again with what remains, and its history says so", "[http][R19][R44]") {
+    RunningServer server{shipped_scenario("nominal"), 1.0};
+    const auto& timeline = tests::shipped_dictionary().timeline;
+    const auto hold = [&](const char* timepoint, double desired_s, double minimum_s) {
+        const auto row = std::ranges::find(timeline, timepoint, &dictionary::TimelineRow::name) - timeline.begin();
+        const auto body = fmt::format(R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","hold":true,"arguments":[{{"name":"timepoint","value":{}}},)"
+                                      R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
+                                      row, desired_s, minimum_s);
+        return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", body);
+    };
+    const auto act = [&](const char* action, int number) {
+        return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", fmt::format(R"({{"action":"{}","number":{}}})", action, number));
+    };
+    const auto released = [&](int number, std::string_view says) { // the newest word about when it leaves, once it says so
+        std::string newest;
+        for (int i = 0; i < 3000; ++i) {
+            v1::CommandList list;
+            REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body, list));
+            if (list.commands_size() >= number)
+                for (const auto& stage : list.commands(number - 1).stages())
+                    if (stage.command_stage().stage() == "released") newest = stage.command_stage().status() + ": " + stage.command_stage().evidence();
+            if (newest.find(says) != std::string::npos) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        }
+        return newest;
+    };
+    WebReply reply;
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) { // a slow build is long in starting the run
+        reply = hold("detumble", -516.0, 0.0);
+        if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    REQUIRE(reply.status == 202);
+    const auto later = hold("cruise_stage_separation", -594.0, 2.0); // as late only because the detumble is
+    INFO(later.body);
+    REQUIRE(later.status == 202);
+    const auto other = hold("coolant_vent", -827.0, 0.0); // for which neither matters
+    INFO(other.body);
+    REQUIRE(other.status == 202);
+    CHECK_THAT(act("timeline refuted", 2).body, Catch::Contains("that is for the server itself"));
+    REQUIRE(act("cancel", 1).status == 202);
+    CHECK_THAT(released(2, "breaks a constraint"), Catch::StartsWith("failed: what it was analysed with has changed: ") && Catch::Contains("cruise_stage_separation:fired to detumble:triggered"));
+    CHECK_THAT(released(3, "constraints.csv hold"), Catch::StartsWith("pending: ") && Catch::Contains("looked at again"));
+}
+
+TEST_CASE("without accounts a browser is known by a cookie, and who asked a command cannot approve it under another name", "[http][access][R23]") {
+    RunningServer server{shipped_scenario("two_persons"), 100.0};
+    const auto port = server.port();
+    const auto browser = [&] {
+        const auto given = web_request(port, "GET", "/api/v1/session").set_cookie;
+        CHECK_THAT(given, Catch::StartsWith("aeolis_browser=") && Catch::Contains("; HttpOnly; SameSite=Strict"));
+        return Headers{{"Cookie", given.substr(0, given.find(';'))}};
+    };
+    const Headers first = browser(), second = browser(), none;
+    CHECK(first[0].second != second[0].second);
+    CHECK(web_request(port, "GET", "/api/v1/session", {}, first).set_cookie.empty()); // it stays the one that it is
+    const auto ask = [&](const std::string& name, const Headers& from) {
+        WebReply reply;
+        for (int i = 0; i < 3000 && reply.status != 202; ++i) {
+            reply = web_request(port, "POST", "/api/v1/runs/latest/commands",
+                                fmt::format(R"({{"command":"EDL_SET_PARAMETERS","from_solution":true,"controller":"{}"}})", name), from);
+            if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
+        }
+        return reply.status;
+    };
+    const auto approve = [&](int number, const std::string& name, const Headers& from) {
+        return web_request(port, "POST", "/api/v1/runs/latest/commands",
+                           fmt::format(R"({{"action":"approve","number":{},"controller":"{}","browser":"made up"}})", number, name), from).body;
+    };
+    REQUIRE(ask("ann", first) == 202);
+    CHECK_THAT(approve(1, "ben", first), Catch::Contains("a second person approves it in a browser of their own"));
+    CHECK_THAT(approve(1, "ben", second), Catch::Contains(R"("accepted":true)"));
+    REQUIRE(ask("ann", none) == 202);
+    CHECK_THAT(approve(2, "ben", none), Catch::Contains("a second person approves it in a browser of their own"));
+    CHECK_THAT(approve(2, "ben", first), Catch::Contains(R"("accepted":true)")); // a browser is another than a program
+}
+
+TEST_CASE("a command of a scenario's script that is refused in flight is in the run's history, with why", "[http][R44]") {
+    auto scenario = shipped_scenario("nominal_auto");
+    scenario.radio.tracking_passes = {{.station = "DSS-43", .begin_after_entry_s = -60.0, .end_after_entry_s = 3600.0}}; // after the script's time
+    RunningServer server{scenario, 100.0};
+    std::string commands;
+    for (int i = 0; i < 3000 && commands.find("EDL_DO_EDL") == std::string::npos; ++i) {
+        commands = web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body;
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    }
+    v1::CommandList list;
+    REQUIRE(from_json(commands, list));
+    REQUIRE(list.commands_size() == 2);
+    CHECK(list.commands(0).name() == "EDL_SET_PARAMETERS");
+    const auto& stage = list.commands(0).stages(0).command_stage();
+    CHECK(stage.stage() == "queued");
+    CHECK(stage.status() == "failed");
+    CHECK_THAT(stage.evidence(), Catch::Contains("asked for by the scenario's script, refused: no station sees the vehicle"));
 }
 
 TEST_CASE("a page of another site, or a name bound to this address, gets nothing", "[http]") {

@@ -83,6 +83,17 @@ std::string text_of(const std::vector<v1::Item>& items) {
     return text;
 }
 
+/// A run whose clock drifts as no clock does: to be seen.
+archive::RunStart drifting(double entry_sclk_s) {
+    archive::RunStart start;
+    start.scenario = "drifting";
+    start.entry = Sclk{entry_sclk_s};
+    start.correlation = {Sclk{100.0}, Scet{0}};
+    start.correlation.rate = 1.25;
+    start.correlation.version = 7;
+    return start;
+}
+
 } // namespace
 
 TEST_CASE("nothing is published before it is committed", "[pipeline]") {
@@ -99,12 +110,7 @@ TEST_CASE("nothing is published before it is committed", "[pipeline]") {
 TEST_CASE("a run keeps its clock, and its drift counts where ground dates what it received", "[pipeline][time]") {
     Ground ground;
     REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
-    archive::RunStart start;
-    start.scenario = "drifting";
-    start.entry = Sclk{1000.0};
-    start.correlation = {Sclk{100.0}, Scet{0}};
-    start.correlation.rate = 1.25; // no clock's: to be seen
-    start.correlation.version = 7;
+    auto start = drifting(1000.0);
     start.correlation.leap_seconds = 35;
     REQUIRE(ground.pipeline.begin(start).ok());
     simulation::ReceivedTone tone;
@@ -120,6 +126,42 @@ TEST_CASE("a run keeps its clock, and its drift counts where ground dates what i
     CHECK(state->clock().leap_seconds() == 35);
     CHECK(state->clock().sclk() == 100.0);
     CHECK(state->clock().scet() == "2000-001T12:00:00.000");
+}
+
+TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL", "[pipeline][archive]") {
+    Ground ground;
+    REQUIRE(ground.pipeline.finish({"stopped", "", "", ""}).ok());
+    REQUIRE(ground.pipeline.begin(drifting(1100.0)).ok());
+    archive::StageRecord stage;
+    stage.command = 3;
+    stage.name = "NO_OP";
+    stage.stage = "released";
+    stage.status = "pending";
+    stage.evidence = "waits for the approval of another controller than Ann";
+    stage.at = Ert{60'000'000};
+    stage.needs_approval = true;
+    stage.asked_by = "Ann";
+    REQUIRE(ground.pipeline.accept(stage).ok());
+    REQUIRE(ground.pipeline.commit().ok());
+
+    auto database = std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_only)).value();
+    const auto row_of = [&](const char* sql) {
+        auto rows = database.prepare(sql);
+        REQUIRE(rows.ok());
+        std::string text;
+        REQUIRE(*rows->step());
+        for (int column = 0; column < 5; ++column)
+            text += std::string(rows->text(column)) + " ";
+        return text;
+    };
+    CHECK(row_of("SELECT scenario, version, drift, scet, entry_scet FROM clock_log WHERE run = 2") ==
+          "drifting 7 0.25 2000-001T12:00:00.000 2000-001T12:20:50.000 ");
+    CHECK(row_of("SELECT run, command, asked_by, needs_approval, at FROM command_wait_log") == "2 3 Ann 1 2000-001T12:01:00.000 ");
+    // Of a run of before its clock was kept: it had no drift.
+    auto writable = std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_write_create)).value();
+    REQUIRE(writable.execute("DELETE FROM run_clocks").ok());
+    CHECK(row_of("SELECT scenario, version, drift, scet, entry_scet FROM clock_log WHERE run = 2") ==
+          "drifting  0.0 2000-001T12:00:00.000 2000-001T12:16:40.000 ");
 }
 
 TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left", "[pipeline][gateway]") {
@@ -280,6 +322,105 @@ TEST_CASE("the tone's vehicle time is its start less the light time", "[pipeline
     REQUIRE(tones->tones_size() == 1);
     CHECK(tones->tones(0).tone().sclk() == Approx(110.0)); // 20 s after the correlation at SCLK 100, less 10 s
     CHECK(tones->tones(0).tone().meaning() == "parachute deployed");
+}
+
+TEST_CASE("an event that tells the phase is believed at once: what the new phase does not promise is not missed", "[pipeline][alarms][staleness]") {
+    const bool event_heard = GENERATE(true, false);
+    TemporaryFolder folder;
+    auto dictionary = small_dictionary();
+    dictionary::Type of_phase = dictionary.channels[phase.value].type;
+    of_phase.name = "EdlPhase";
+    of_phase.kind = dictionary::ValueKind::enumerated;
+    of_phase.enumeration = {{2, "sky_crane"}, {9, "landed"}};
+    dictionary.channels[phase.value].type = dictionary.packets[1].fields[0].type = of_phase;
+    const unsigned data = tm_data_offset_octets * 8;
+    dictionary::Packet changed{"EDL_PHASE_CHANGED", "", event_apid, EvrId{8}, tm_overhead_octets + 3, {}, {}, {}};
+    changed.fields = {{"event_id", whole(16), {}, data, {}}, {"phase", of_phase, {}, data + 16, {}}};
+    dictionary.packets.push_back(changed);
+    auto& row = dictionary.telemetry_plan.emplace_back();
+    row.plan = "all";
+    row.packet = "Navigation";
+    row.every = {64, 64, 64, 0};
+    auto archive = std::move(Archive::open(folder / "a.db")).value();
+    Pipeline pipeline{archive, dictionary};
+    REQUIRE(pipeline.begin({}).ok());
+    REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    REQUIRE(pipeline.accept(live(status_packet(0, 1000.0, 2), 100'000)).ok());
+    for (std::uint16_t i = 0; i < 3; ++i)
+        REQUIRE(pipeline.accept(live(navigation_packet(i, 1000.5 + i, 1.0F, 2.0F), 500'000 + 1'000'000 * i)).ok());
+    Octets event(tm_overhead_octets + 3);
+    BitWriter bits{std::span<std::uint8_t>(event).subspan(tm_data_offset_octets)};
+    bits.put(8, 16);
+    bits.put(9, 8);
+    seal_tm_packet(event, event_apid, 0, Sclk{1003.0}, dictionary_id);
+    if (event_heard) REQUIRE(pipeline.accept(live(event, 3'000'000)).ok());
+    REQUIRE(pipeline.accept(live(status_packet(1, 1002.0, 2), 3'500'000)).ok()); // told before the event, and late
+    REQUIRE(pipeline.accept(pipeline::EarthTime{Ert{12'000'000}}).ok());
+    REQUIRE(pipeline.commit().ok());
+    auto database = archive::sqlite::Database::open((folder / "a.db").string(), archive::sqlite::Mode::read_only);
+    CHECK(database->integer_of("SELECT count(*) FROM staleness WHERE packet = 0").value() == (event_heard ? 0 : 1));
+}
+
+TEST_CASE("tones are found by words and come in pages", "[pipeline][reader]") {
+    Ground ground;
+    for (int i = 0; i < 5; ++i) {
+        simulation::ReceivedTone tone;
+        tone.start = Ert{(20 + 10 * i) * 1'000'000};
+        tone.end = Ert{(30 + 10 * i) * 1'000'000};
+        if (i != 2) tone.tone = ToneId{static_cast<std::uint8_t>(i % 2 == 0 ? 9 : 8)};
+        REQUIRE(ground.pipeline.accept(tone).ok());
+    }
+    REQUIRE(ground.pipeline.commit().ok());
+    auto reader = ground.reader();
+    const auto found = [&](const char* text) { return reader.tones(ground.run(), {{}, text})->tones_size(); };
+    CHECK(found("") == 5);
+    CHECK(found("DEPLOY para") == 2); // beginnings, in any order and case
+    CHECK(found("chute") == 0);
+    CHECK(found("--") == 0);
+    archive::ToneQuery page;
+    page.limit = 2;
+    std::string starts;
+    do {
+        const auto tones = reader.tones(ground.run(), page);
+        REQUIRE(tones.ok());
+        for (const auto& item : tones->tones())
+            starts += item.tone().ert_start().substr(15, 2) + " ";
+        starts += "| ";
+        page.after = tones->next_after();
+    } while (page.after != 0);
+    CHECK(starts == "20 30 | 40 50 | 00 | ");
+    CHECK_FALSE(reader.tones(ground.run(), {{}, "", 0, 0}).ok());
+    CHECK(reader.tones(ground.run(), {{120.0, 130.0}, ""})->tones_size() == 2);
+}
+
+TEST_CASE("commands are found by when Earth heard what left the vehicle in a range", "[pipeline][reader]") {
+    Ground ground;
+    for (const auto& [command, at_s] : {std::pair{1, 30}, {2, 50}, {1, 70}}) {
+        archive::StageRecord stage;
+        stage.command = static_cast<std::uint64_t>(command);
+        stage.name = "NO_OP";
+        stage.stage = "queued";
+        stage.status = "ok";
+        stage.at = Ert{at_s * 1'000'000};
+        REQUIRE(ground.pipeline.accept(stage).ok());
+    }
+    REQUIRE(ground.pipeline.commit().ok());
+    auto reader = ground.reader();
+    const auto found = [&](archive::SclkRange range) {
+        std::string numbers;
+        const auto list = reader.commands(ground.run(), {range, ""});
+        REQUIRE(list.ok());
+        for (const auto& command : list->commands())
+            numbers += std::to_string(command.command()) + ":" + std::to_string(command.stages_size()) + " ";
+        return numbers;
+    };
+    // SCLK 100 is 10 s on Earth: what leaves then is heard 10 s later.
+    CHECK(found({}) == "1:2 2:1 ");
+    CHECK(found({130.0, 140.0}) == "2:1 ");
+    CHECK(found({120.0, 120.0}) == "1:2 "); // with all its stages
+    CHECK(found({150.0, {}}) == "1:2 ");
+    CHECK(found({{}, 119.0}).empty());
+    CHECK_FALSE(reader.commands(ground.run(), {{2.0, 1.0}, ""}).ok());
 }
 
 TEST_CASE("a tone's evidence is kept and read back: lock, the best five, the spectrum", "[pipeline][archive][R31]") {

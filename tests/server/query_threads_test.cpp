@@ -61,3 +61,45 @@ TEST_CASE("a question that takes longer than questions may is stopped", "[http][
     CHECK(recorded.ask(nullptr) == "stopped");
     CHECK(recorded.ask(nullptr) == "stopped");
 }
+
+TEST_CASE("what is short does not wait behind questions, however many", "[http][bounds]") {
+    const Recorded recorded;
+    auto& threads = *recorded.threads;
+    std::promise<void> answered;
+    const auto waits = answered.get_future().share();
+    const auto question = [waits](archive::Reader&) { waits.wait(); };
+    for (std::size_t i = 0; i < QueryThreads::question_threads; ++i)
+        REQUIRE(threads.ask(question));
+    while (threads.waiting() > 0) // both are busy
+        std::this_thread::yield();
+    const auto room = QueryThreads::waiting_max[static_cast<std::size_t>(server::Haste::in_turn)];
+    for (std::size_t i = 0; i < room; ++i)
+        REQUIRE(threads.ask(question));
+    CHECK_FALSE(threads.ask(question));
+    for (const auto haste : {server::Haste::soon, server::Haste::at_once}) {
+        std::promise<std::size_t> told;
+        REQUIRE(threads.ask([&](archive::Reader& reader) { told.set_value(reader.items(archive::RunId{1}, 0, 10)->items.size()); }, {}, haste));
+        auto items = told.get_future();
+        REQUIRE(items.wait_for(std::chrono::seconds{10}) == std::future_status::ready);
+        CHECK(items.get() == 10);
+    }
+    answered.set_value();
+}
+
+TEST_CASE("questions that wait or go on when the server ends are stopped, and what is short is done", "[http][bounds]") {
+    Recorded recorded;
+    auto& threads = *recorded.threads;
+    const auto question = [](archive::Reader& reader) {
+        for (int i = 0; i < 3000 && !reader.stopped(); ++i)
+            (void)reader.proof(archive::RunId{1}).ok();
+    };
+    for (int i = 0; i < 20; ++i)
+        REQUIRE(threads.ask(question));
+    std::atomic<int> noted{0};
+    for (int i = 0; i < 20; ++i)
+        REQUIRE(threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {}, server::Haste::at_once));
+    const auto begun = std::chrono::steady_clock::now();
+    recorded.threads.reset();
+    CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{5});
+    CHECK(noted == 20);
+}

@@ -1,4 +1,5 @@
 #include "server/archive/reader.hpp"
+#include "server/archive/sqlite.hpp"
 #include "server/archive/timeline_plan.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
@@ -173,6 +174,37 @@ TEST_CASE("a thinned series keeps the least and the largest sample of every inte
     }
 }
 
+TEST_CASE("a series of one source has nothing of the other, exact or thinned", "[reader]") {
+    TemporaryFolder folder;
+    const dictionary::Dictionary dictionary = small_dictionary();
+    Archive archive = std::move(Archive::open(folder / "a.db")).value();
+    pipeline::Pipeline pipeline(archive, dictionary);
+    archive::RunStart start;
+    start.scenario = "nominal";
+    start.entry = Sclk{1000.0};
+    REQUIRE(pipeline.begin(start).ok());
+    constexpr std::size_t all = 2000, live_each = 8; // the rest only the recording has, and there it is larger
+    for (std::size_t i = 0; i < all; ++i) {
+        const auto packet = navigation_packet(static_cast<std::uint16_t>(i), 1000.0 + static_cast<double>(i) / 64.0, i % live_each == 0 ? 1.0F : 2.0F, 3.0F);
+        REQUIRE(pipeline.accept(i % live_each == 0 ? live(packet) : recorded(packet)).ok());
+    }
+    if (GENERATE(false, true))
+        REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
+    else
+        REQUIRE(pipeline.commit().ok());
+    Reader reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
+    const auto points = GENERATE(std::optional<std::size_t>{}, std::optional<std::size_t>{50});
+    for (const auto source : {archive::Source::realtime, archive::Source::recorded}) {
+        const bool came_live = source == archive::Source::realtime;
+        const auto list = reader.series(RunId{1}, {{"altitude_m"}, {}, points, source});
+        REQUIRE(list.ok());
+        const auto& series = list->channels(0);
+        CHECK(series.samples() == (came_live ? all / live_each : all - all / live_each));
+        CHECK(series.thinned() == points.has_value());
+        CHECK(std::ranges::all_of(series.value(), [&](double value) { return value == (came_live ? 1.0 : 2.0); }));
+    }
+}
+
 TEST_CASE("fewer samples than points are given exactly", "[reader]") {
     Recorded run(true);
     const auto list = run.reader.series(RunId{1}, {{"edl_phase"}, {}, 2000});
@@ -271,6 +303,31 @@ TEST_CASE("the timeline tells plan, real time and recording of each timepoint", 
     CHECK(list->anchors(0).parent().empty());
     CHECK((list->anchors(1).id() == 1 && list->anchors(1).name() == "entry" && list->anchors(1).parent() == "root"));
     CHECK_FALSE(list->anchors(1).has_offset_s());
+}
+
+TEST_CASE("a run is predicted by the design with which it began; one that has kept none by today's, and that is said", "[reader][timeline][R43]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    auto then = small_dictionary();
+    then.predicted_anchor_e_s = {{}, 5.0};
+    { REQUIRE(Archive::open(file)->begin_run({}, then).ok()); }
+    auto today = small_dictionary(); // the same on board: only ground's sheet has changed
+    today.predicted_anchor_e_s = {2.0, 9.0};
+    const auto kept = Reader::open(file, today)->timepoints(RunId{1});
+    REQUIRE(kept.ok());
+    CHECK_FALSE(kept->anchors(0).has_predicted_e_s());
+    CHECK(kept->anchors(1).predicted_e_s() == 5.0);
+    CHECK(kept->prediction_note().empty());
+    CHECK(Reader::open(file, today)->as_flown(RunId{1})->prediction_note().empty());
+
+    auto database = std::move(archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create)).value();
+    REQUIRE(database.execute("DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE run_anchors; PRAGMA user_version = 6").ok());
+    const auto older = Reader::open(file, today)->timepoints(RunId{1});
+    REQUIRE(older.ok());
+    CHECK(older->anchors(0).predicted_e_s() == 2.0);
+    CHECK(older->anchors(1).predicted_e_s() == 9.0);
+    CHECK_THAT(older->prediction_note(), Catch::Contains("today's predicted_anchors.csv"));
+    CHECK(Reader::open(file, today)->as_flown(RunId{1})->prediction_note() == older->prediction_note());
 }
 
 TEST_CASE("a run of another dictionary shows its packets, and says why it shows no series", "[reader]") {

@@ -1,5 +1,6 @@
 #include "server/rehearsal/rehearsal_runner.hpp"
 
+#include "server/archive/kept_request.hpp"
 #include "server/archive/reader.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_text.hpp"
@@ -11,7 +12,6 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <google/protobuf/text_format.h>
 #include <random>
 #include <sys/wait.h>
 #include <thread>
@@ -118,8 +118,7 @@ simulation::Scenario short_landing() {
 }
 
 /// Flies with a command now and then until this process is killed; every published sequence number goes into the pipe.
-[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published) {
-    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published, const dictionary::Dictionary& dictionary) {
     auto archive = archive::Archive::open(file);
     if (!archive) ::_exit(1);
     PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [&](const auto& batch) {
@@ -132,10 +131,20 @@ simulation::Scenario short_landing() {
     callbacks.on_state = [](const auto&) {};
     callbacks.on_clocks = [](const auto&) {};
     RehearsalRunner runner{short_landing(), 7, 0.0, dictionary, pipeline, callbacks};
-    for (;;) {
+    v1::FaultInjection fault;
+    fault.mutable_device_fault()->set_device(v1::DEVICE_IMU);
+    fault.mutable_device_fault()->set_unit(v1::REDUNDANT_UNIT_A);
+    fault.mutable_device_fault()->set_kind(v1::DEVICE_FAULT_KIND_DROPOUT);
+    fault.mutable_device_fault()->set_duration_s(2.0); // that loses samples: the recording tells of it
+    v1::InstructorNote note;
+    note.set_text("do they see it?");
+    while (!begun)
+        std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    for (bool first = true;; first = false) {
         v1::CommandRequest request;
         request.set_command("NO_OP");
-        if (begun) runner.submit(request, [](const auto&) {});
+        runner.submit(request, [](const auto&) {});
+        if (first && !(runner.inject(fault) && runner.note(note))) ::_exit(1);
         std::this_thread::sleep_for(std::chrono::milliseconds{40});
     }
 }
@@ -152,9 +161,12 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
         for (auto request = cut.requests.begin(); stored < last;) {
             Delivery delivery;
             for (; request != cut.requests.end() && request->cycle == rehearsal.cycles(); ++request) {
-                v1::CommandRequest again;
-                REQUIRE(google::protobuf::TextFormat::ParseFromString(request->request, &again));
-                REQUIRE(rehearsal.submit(again).accepted());
+                const auto again = archive::kept_request(request->request);
+                if (const auto* done = std::get_if<v1::Intervention>(&again)) {
+                    if (done->has_fault()) REQUIRE(rehearsal.inject(done->fault()).ok());
+                    continue;
+                }
+                REQUIRE(rehearsal.submit(std::get<v1::CommandRequest>(again)).accepted());
                 for (auto& stage : rehearsal.take_stages())
                     delivery.entries.emplace_back(std::move(stage));
             }
@@ -181,12 +193,13 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
     return items;
 }
 
-archive::Sequence kill_after(archive::Sequence published, const std::filesystem::path& file) {
+archive::Sequence kill_after(archive::Sequence published, const std::filesystem::path& file,
+                             const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
     int pipe[2];
     REQUIRE(::pipe(pipe) == 0);
     const pid_t child = ::fork();
     REQUIRE(child >= 0);
-    if (child == 0) fly_until_killed(file, pipe[1]);
+    if (child == 0) fly_until_killed(file, pipe[1], dictionary);
     ::close(pipe[1]);
     archive::Sequence acknowledged = 0;
     while (acknowledged < published && ::read(pipe[0], &acknowledged, sizeof acknowledged) > 0) {
@@ -219,6 +232,8 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
         REQUIRE(found);
         cut = *found;
         CHECK(cut->last_seq >= acknowledged);
+        const auto count_of = [&](const char* kind) { return std::ranges::count_if(cut->requests, [&](const auto& taken) { return taken.request.starts_with(kind); }); };
+        if (published > 1) CHECK((count_of("fault {") == 1 && count_of("note {") == 1));
         auto scenario = scenario_from_text(cut->scenario_text, "its row");
         REQUIRE(scenario);
         PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
@@ -254,10 +269,19 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
 
 } // namespace
 
-TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands and all",
+TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands, faults and all",
           "[rehearsal][archive][R41][R43]") {
     for (const archive::Sequence published : {1U, 9'000U, 60'000U}) // at the start, in flight, while the recording comes down
         kill_and_continue(published, 3'000);
+}
+
+TEST_CASE("a fault that an archive of before keeps without its kind is a fault like all others, and what is no request is none", "[rehearsal][archive]") {
+    const auto kept = archive::kept_request("device_fault { device: DEVICE_IMU unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_DROPOUT duration_s: 2 }");
+    const auto* bare = std::get_if<v1::Intervention>(&kept);
+    REQUIRE(bare);
+    CHECK(bare->fault().device_fault().duration_s() == 2.0);
+    CHECK(std::holds_alternative<v1::CommandRequest>(archive::kept_request("command: \"NO_OP\"")));
+    CHECK(std::holds_alternative<std::monostate>(archive::kept_request("neither of them")));
 }
 
 TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
@@ -290,4 +314,46 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     auto reader = archive::Reader::open(file, dictionary);
     CHECK(reader->run(archive::RunId{1})->state() == "interrupted");
     CHECK(reader->last_seq(archive::RunId{1}).value() == cut->last_seq);
+}
+
+TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever the sheet says by now", "[rehearsal][archive][time][R43]") {
+    test::TemporaryFolder folder;
+    const auto file = folder / "killed.db";
+    spdlog::set_level(spdlog::level::err);
+    auto then = tests::shipped_dictionary();
+    then.clock.front().correlation.rate = 1.0 + 2.0e-5; // some 18 ms over the flight to entry
+    then.clock.front().correlation.version = 4;
+    kill_after(2'000, file, then);
+    auto archive = archive::Archive::open(file);
+    REQUIRE(archive);
+    const dictionary::Dictionary& today = tests::shipped_dictionary();
+    const auto cut = archive::Reader::open(file, today)->cut_off(archive::RunId{1});
+    REQUIRE(cut);
+    CHECK(cut->clock_kept);
+    CHECK(cut->clock.rate == 1.0 + 2.0e-5);
+    std::atomic<bool> begun{false};
+    std::string failure;
+    v1::RunState state;
+    {
+        PipelineThread pipeline{std::move(*archive), today, PipelineThread::Faults::give_up, [](const auto&) {}};
+        RehearsalRunner::Callbacks callbacks;
+        callbacks.on_begun = [&](Result<v1::RunState> told) {
+            if (told)
+                state = *told;
+            else
+                failure = told.error().message;
+            begun = true;
+        };
+        callbacks.on_state = [](const auto&) {};
+        callbacks.on_clocks = [](const auto&) {};
+        RehearsalRunner runner{short_landing(), *cut, 0.0, today, pipeline, callbacks};
+        while (!begun)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        runner.stop();
+        while (!runner.over())
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
+    CHECK(failure.empty());
+    CHECK(state.clock().version() == 4);
+    CHECK(state.clock().rate() == 1.0 + 2.0e-5);
 }

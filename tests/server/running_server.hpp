@@ -63,6 +63,13 @@ class RunningServer {
         start_thread();
     }
     std::filesystem::path archive() const { return folder_ / "a.db"; }
+    /// As when it is asked to by a signal.
+    void end() {
+        if (!backend_) return;
+        backend_->stop();
+        network_.join();
+        backend_.reset();
+    }
 
   private:
     void open() {
@@ -80,11 +87,6 @@ class RunningServer {
     }
     void start_thread() {
         network_ = std::thread{[this] { backend_->run(); }};
-    }
-    void end() {
-        backend_->stop();
-        network_.join();
-        backend_.reset();
     }
 
     TemporaryFolder folder_;

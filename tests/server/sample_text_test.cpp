@@ -51,6 +51,23 @@ TEST_CASE("a line a sample says when, what, how much and by which link", "[expor
           "\n");
 }
 
+TEST_CASE("names and units that are hostile to the format are quoted as it wants them", "[export]") {
+    auto dictionary = small_dictionary();
+    auto& channel = dictionary.channels[id("speed_mps").value];
+    channel.name = "a \"quoted\", name";
+    channel.type.unit = "m\n/s";
+    const auto line_of = [&](const char* format) {
+        auto lines = std::move(SampleText::make(dictionary, {}, {format, ""})).value();
+        lines.set_entry(Sclk{100.0});
+        std::string text;
+        lines.append(text, std::vector<ChannelValue>{{channel.id, 3.0, Sclk{100.0}, Source::realtime}});
+        return text;
+    };
+    CHECK(line_of("csv") == "100,0,\"a \"\"quoted\"\", name\",3,\"m\n/s\",realtime\n");
+    CHECK(line_of("jsonl") == R"({"sclk":100,"e_s":0,"channel":"a \"quoted\", name","value":3,"unit":"m\u000a/s","source":"realtime"})"
+                              "\n");
+}
+
 TEST_CASE("aligned to a channel there is a line at each of its times, with the newest value of the others", "[export]") {
     CHECK(text_of({"altitude_m", "speed_mps"}, {"csv", "speed_mps"}, {some()}) == "sclk,e_s,altitude_m,speed_mps\n"
                                                                                   "100,0,,3\n"

@@ -40,7 +40,7 @@ inline void make_schema_three(const std::filesystem::path& file) {
     REQUIRE(database
                 .execute("DROP VIEW staleness_log; DROP VIEW alarm_action_log; DROP VIEW shift_log; DROP TABLE search; DROP VIEW search_text;"
                          "DROP TABLE staleness; DROP TABLE alarm_actions; DROP TABLE notes; DROP VIEW channel_segments; DROP INDEX segments_by_position; DROP TABLE pyramid; DROP TABLE pyramid_columns;"
-                         "DROP TABLE run_clocks; DROP TABLE command_waits; DROP TABLE audit; DROP TABLE pruned_runs; DROP TABLE requests; ALTER TABLE segments DROP COLUMN position; ALTER TABLE segments DROP COLUMN packed;"
+                         "DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE run_anchors; DROP TABLE run_clocks; DROP TABLE command_waits; DROP TABLE audit; DROP TABLE pruned_runs; DROP TABLE requests; ALTER TABLE segments DROP COLUMN position; ALTER TABLE segments DROP COLUMN packed;"
                          "CREATE INDEX segments_by_packet ON segments (run, packet, source, last_unit);"
                          "CREATE VIEW channel_segments AS SELECT g.run, g.sclk AS sclk_blob, v.value AS value_blob FROM segment_columns v"
                          " JOIN segments g ON g.segment = v.key / 65536;"

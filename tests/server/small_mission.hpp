@@ -4,6 +4,7 @@
 #include "common/space_packet.hpp"
 #include "dictionaries/dictionary.hpp"
 #include "simulation/landing.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -140,24 +141,5 @@ inline simulation::ReceivedPacket live(Octets octets, std::int64_t ert_us = 1'00
 inline simulation::ReceivedPacket recorded(Octets octets, std::int64_t ert_us = 900'000'000) {
     return {simulation::relay_link, Ert{ert_us}, std::move(octets)};
 }
-
-/// A new folder, removed with all that is in it.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "aeolis-test-XXXXXX").string();
-        path_ = ::mkdtemp(name.data());
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
-  private:
-    std::filesystem::path path_;
-};
 
 } // namespace aeolis::test

@@ -1,6 +1,7 @@
 // Frames on the wire when a client is slow: ours, and the WebSocket's own between them.
 
-#include "server/net/web_server.hpp"
+#include "tests/server/event_server.hpp"
+#include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -8,9 +9,13 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <fmt/format.h>
+#include <optional>
+#include <sys/resource.h>
+#include <sys/socket.h>
 #include <thread>
 
 using namespace aeolis;
+using namespace aeolis::test;
 using namespace std::chrono_literals;
 
 namespace {
@@ -19,55 +24,17 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 
-/// A stream of events without an archive.
-class Events {
-  public:
-    Events() {
-        server::StreamHub::Services services;
-        services.want_items = [](bool) {};
-        hub_ = std::make_unique<server::StreamHub>(std::uint16_t{1}, services);
-        v1::RunState state;
-        state.set_run(1);
-        hub_->run_state(state);
-        server::WebServer::Handlers handlers;
-        handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
-        handlers.open_stream = [this](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
-            return std::make_shared<server::StreamSession>(*hub_, format, std::move(wake), server::StreamSession::follower());
-        };
-        server_ = std::move(server::WebServer::open({}, handlers)).value();
-        network_ = std::thread{[this] { server_->run(); }};
-    }
-    ~Events() {
-        server_->stop();
-        network_.join();
-        server_.reset();
-    }
-    std::uint16_t port() const { return server_->port(); }
-    /// `count` batches in one turn, each an event with a text of so many octets.
-    void publish(std::size_t octets, std::size_t count = 1) {
-        std::vector<std::shared_ptr<const pipeline::PublishedBatch>> batches;
-        for (std::size_t i = 0; i < count; ++i) {
-            auto batch = std::make_shared<pipeline::PublishedBatch>();
-            batch->run = archive::RunId{1};
-            batch->first_seq = batch->last_seq = ++seq_;
-            v1::Item item;
-            item.set_seq(seq_);
-            item.mutable_event()->set_text(std::string(octets, static_cast<char>('a' + seq_ % 26)));
-            batch->items = {item};
-            batches.push_back(std::move(batch));
-        }
-        server_->post([this, batches] {
-            for (const auto& batch : batches)
-                hub_->published(batch);
-        });
-    }
+std::string text_of(archive::Sequence seq, std::size_t octets) {
+    return std::string(octets, static_cast<char>('a' + seq % 26));
+}
 
-  private:
-    std::unique_ptr<server::StreamHub> hub_;
-    std::unique_ptr<server::WebServer> server_;
-    std::thread network_;
-    archive::Sequence seq_ = 0;
-};
+/// `count` events in one turn, each with a text of so many octets.
+void publish(EventServer& events, std::size_t octets, std::size_t count = 1) {
+    std::vector<std::string> texts;
+    for (std::size_t i = 1; i <= count; ++i)
+        texts.push_back(text_of(events.last_seq() + i, octets));
+    events.publish(texts);
+}
 
 struct Client {
     asio::io_context io;
@@ -103,14 +70,14 @@ struct Client {
 } // namespace
 
 TEST_CASE("a client that stalls and pings gets every frame whole, and each pong between two of them", "[stream]") {
-    Events events;
+    EventServer events;
     Client client{events.port()};
     REQUIRE(client.read().has_welcome());
     // Frames of every length of header, until the kernel takes no more by far.
     constexpr std::size_t rounds = 60, octets[] = {20, 300, 70'000, 200'000};
     for (std::size_t i = 0; i < rounds; ++i) {
         for (const auto size : octets)
-            events.publish(size);
+            publish(events, size);
         if (i % 20 == 0) client.socket.ping(websocket::ping_data{fmt::format("ping {}", i)});
         std::this_thread::sleep_for(2ms);
     }
@@ -119,17 +86,16 @@ TEST_CASE("a client that stalls and pings gets every frame whole, and each pong 
         const auto message = client.read();
         for (const auto& item : message.batch().items()) {
             REQUIRE(item.seq() == ++last);
-            const auto& text = item.event().text();
-            REQUIRE(text == std::string(octets[(last - 1) % std::size(octets)], static_cast<char>('a' + last % 26)));
+            REQUIRE(item.event().text() == text_of(last, octets[(last - 1) % std::size(octets)]));
         }
     }
     // Its pongs came meanwhile or come now; Beast answers the newest ping when several wait.
     client.socket.ping("last");
-    events.publish(1);
-    events.publish(1);
+    publish(events, 1);
+    publish(events, 1);
     for (int i = 0; i < 20 && (client.pongs.empty() || client.pongs.back() != "last"); ++i) {
         client.read();
-        events.publish(1);
+        publish(events, 1);
     }
     REQUIRE_FALSE(client.pongs.empty());
     CHECK(client.pongs.front() == "ping 0");
@@ -137,22 +103,180 @@ TEST_CASE("a client that stalls and pings gets every frame whole, and each pong 
 }
 
 TEST_CASE("a client that closes gets its close, and nothing after it", "[stream]") {
-    Events events;
+    EventServer events;
     Client client{events.port()};
     REQUIRE(client.read().has_welcome());
     for (int i = 0; i < 200; ++i)
-        events.publish(1000);
+        publish(events, 1000);
     beast::error_code error;
     client.socket.close(websocket::close_code::normal, error); // reads what was under way, up to the answer
     CHECK_FALSE(error);
 }
 
 TEST_CASE("batches that are published in one turn of the network go out in one message", "[stream]") {
-    Events events;
+    EventServer events;
     Client client{events.port()};
     REQUIRE(client.read().has_welcome());
-    events.publish(10, 8);
+    publish(events, 10, 8);
     const auto message = client.read();
     CHECK(message.batch().items_size() == 8);
     CHECK(message.batch().complete_through() == 8);
+}
+
+namespace {
+
+const std::string upgrade = "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+                            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+                            "Sec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n";
+
+/// A peer that was let in and then says nothing any more, as when its cable is pulled.
+struct Dead {
+    asio::io_context io;
+    asio::ip::tcp::socket socket{io};
+
+    explicit Dead(std::uint16_t port) {
+        socket.connect({asio::ip::make_address("127.0.0.1"), port});
+        asio::write(socket, asio::buffer(upgrade));
+        v1::ClientMessage message;
+        message.mutable_subscribe()->set_all_channels(true);
+        const auto payload = message.SerializeAsString();
+        const auto frame = std::string{'\x82'} + static_cast<char>(0x80U | payload.size()) + std::string(4, '\0') + payload;
+        asio::write(socket, asio::buffer(frame));
+    }
+};
+
+} // namespace
+
+TEST_CASE("a peer that answers no ping is let go, also while the kernel takes nothing more for it, and one that answers stays", "[stream][bounds]") {
+    server::WebServer::Settings settings;
+    settings.silence_max = 600ms;
+    EventServer events{settings};
+    Client alive{events.port()};
+    REQUIRE(alive.read().has_welcome());
+    std::size_t heard = 0;
+    std::thread reads{[&] { // to read is to answer
+        beast::flat_buffer buffer;
+        for (beast::error_code error; !error;) {
+            buffer.clear();
+            alive.socket.read(buffer, error);
+            heard += error ? 0 : 1;
+        }
+    }};
+    const auto comes_to = [&](std::size_t count) {
+        for (int i = 0; i < 3000 && events.clients() != count; ++i)
+            std::this_thread::sleep_for(10ms);
+        return events.clients() == count;
+    };
+    {
+        const Dead idle{events.port()};
+        CHECK(comes_to(2));
+        CHECK(comes_to(1));
+    }
+    {
+        const Dead choked{events.port()};
+        CHECK(comes_to(2));
+        for (int i = 0; i < 64; ++i)
+            publish(events, 1 << 18); // far more than the kernel keeps of a connection
+        CHECK(comes_to(1));
+    }
+    std::this_thread::sleep_for(2 * settings.silence_max);
+    CHECK(events.clients() == 1);
+    ::shutdown(beast::get_lowest_layer(alive.socket).socket().native_handle(), SHUT_RDWR);
+    reads.join();
+    CHECK(heard > 0);
+}
+
+TEST_CASE("when the server ends, each stream is closed as going away, with the reason", "[stream]") {
+    EventServer events;
+    std::vector<StreamClient> clients;
+    for (int i = 0; i < 3; ++i) {
+        clients.emplace_back(events.port(), i == 0 ? "aeolis.v1.json" : "aeolis.v1.protobuf");
+        REQUIRE(clients.back().open());
+    }
+    publish(events, 20);
+    std::chrono::steady_clock::duration took{};
+    std::thread ends{[&] {
+        const auto begun = std::chrono::steady_clock::now();
+        events.end();
+        took = std::chrono::steady_clock::now() - begun;
+    }};
+    std::vector<std::thread> readers; // to read is to answer
+    for (auto& client : clients)
+        readers.emplace_back([&client] {
+            while (client.receive()) {}
+        });
+    for (auto& reader : readers)
+        reader.join();
+    ends.join();
+    for (const auto& client : clients) {
+        CHECK(client.close_code() == 1001);
+        CHECK(client.close_words() == "the server ends");
+    }
+    CHECK(took < server::WebServer::farewell_max); // it does not wait longer than for the last of them
+}
+
+TEST_CASE("a server that ends waits a second at most for streams that do not answer", "[stream][bounds]") {
+    EventServer events;
+    const Dead idle{events.port()}, choked{events.port()};
+    for (int i = 0; i < 3000 && events.clients() != 2; ++i)
+        std::this_thread::sleep_for(10ms);
+    REQUIRE(events.clients() == 2);
+    for (int i = 0; i < 64; ++i)
+        publish(events, 1 << 18);
+    const auto begun = std::chrono::steady_clock::now();
+    events.end();
+    const auto took = std::chrono::steady_clock::now() - begun;
+    CHECK(took >= server::WebServer::farewell_max);
+    CHECK(took < 5 * server::WebServer::farewell_max); // a loaded machine is slow
+}
+
+TEST_CASE("one stream more than there are places is refused with 503, and who has none is answered", "[stream][http][bounds]") {
+    server::WebServer::Settings settings;
+    settings.streams = 2;
+    EventServer events{settings};
+    const auto answers = [&] { return web_request(events.port(), "GET", "/healthz").status == 200; };
+    const StreamClient first{events.port(), "aeolis.v1.json"};
+    std::optional<StreamClient> second{std::in_place, events.port(), "aeolis.v1.json"};
+    REQUIRE(first.open());
+    REQUIRE(second->open());
+    CHECK(StreamClient{events.port(), "aeolis.v1.json"}.status() == 503);
+    CHECK_THAT(raw_exchange(events.port(), upgrade), Catch::Contains("2 streams are open already"));
+    CHECK(answers());
+    second.reset();
+    for (int i = 0; i < 3000 && events.clients() != 1; ++i)
+        std::this_thread::sleep_for(10ms);
+    second.emplace(events.port(), "aeolis.v1.json");
+    CHECK(second->open());
+
+    asio::io_context io;
+    std::vector<asio::ip::tcp::socket> idle; // of the places besides, all but one
+    for (std::size_t i = 0; i + 1 < server::WebServer::connections_besides; ++i)
+        idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
+    CHECK(answers());
+    std::string refused;
+    for (int i = 0; i < 100 && refused.find("503") == std::string::npos; ++i) { // the one just answered may still have its place
+        idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
+        std::this_thread::sleep_for(10ms);
+        refused = raw_exchange(events.port(), "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    }
+    CHECK_THAT(refused, Catch::Contains("66 connections are open already"));
+}
+
+TEST_CASE("while as many streams are open as may be, who has none is answered", "[stream][http][bounds]") {
+    rlimit files{}; // the server's sockets and the clients' are in one process
+    ::getrlimit(RLIMIT_NOFILE, &files);
+    files.rlim_cur = files.rlim_max;
+    ::setrlimit(RLIMIT_NOFILE, &files);
+    EventServer events;
+    asio::io_context io;
+    std::vector<asio::ip::tcp::socket> streams;
+    for (std::size_t i = 0; i < server::WebServer::streams_max; ++i) {
+        streams.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
+        asio::write(streams.back(), asio::buffer(upgrade));
+    }
+    for (int i = 0; i < 2'000 && events.clients() != streams.size(); ++i)
+        std::this_thread::sleep_for(10ms);
+    REQUIRE(events.clients() == 1'000);
+    CHECK(StreamClient{events.port(), "aeolis.v1.json"}.status() == 503);
+    CHECK(web_request(events.port(), "GET", "/healthz").status == 200);
 }

@@ -1,5 +1,14 @@
 #include "server/net/stream_session.hpp"
+
+#include "server/api/query_threads.hpp"
+#include "tests/server/faulty_disk.hpp"
+#include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
+
+#include <condition_variable>
+#include <future>
+#include <limits>
+#include <mutex>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -28,29 +37,51 @@ v1::Item event_item(archive::Sequence seq) {
     return item;
 }
 
+/// What has reached Earth `ert_s` seconds after noon of 1 January 2000.
+v1::Item event_item(archive::Sequence seq, double ert_s) {
+    auto item = event_item(seq);
+    item.mutable_event()->set_ert(day_of_year_text(Ert{static_cast<std::int64_t>(ert_s * 1e6)}));
+    return item;
+}
+
 /// The rest of the server as a stream sees it: an archive of items that answers when told to.
 struct Venue {
     std::vector<v1::Item> durable;
+    std::vector<v1::Item> flown; ///< of the run flown_before; none: the same as of this one
+    std::chrono::steady_clock::time_point now{};
     std::vector<std::function<void()>> waiting; ///< answers of the archive
     std::size_t pages_read = 0;
+    std::string broken; ///< what the disk says instead; empty: it is well
     StreamHub hub{4711, services()};
 
     StreamHub::Services services() {
         StreamHub::Services services;
-        services.read_items = [this](archive::RunId, archive::Sequence after, std::size_t limit,
-                                     archive::Reader::ItemKinds, const auto& done) {
+        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
+                                     archive::Reader::ItemKinds kinds, const auto& done) {
             ++pages_read;
+            const auto& stored = items_of(run.value);
+            if (!broken.empty()) return waiting.push_back([done, why = broken] { done(Error{why, true}); });
             archive::ItemPage page;
-            for (const auto& item : durable)
-                if (item.seq() > after && page.items.size() < limit) page.items.push_back(item);
-            page.complete_through = page.items.empty() ? after : page.items.back().seq();
-            page.more = page.complete_through < durable.size();
+            for (const auto& item : stored)
+                if (item.seq() > after && page.items.size() < limit && (kinds.units || !item.has_unit())) page.items.push_back(item);
+            page.complete_through = page.items.size() < limit ? stored.size() : page.items.back().seq();
+            page.more = page.complete_through < stored.size();
             waiting.push_back([done, page] { done(page); });
         };
-        services.read_run = [](std::uint64_t run, const auto& done) { done(Error{"no run " + std::to_string(run)}); };
+        services.read_run = [this](std::uint64_t run, const auto& done) {
+            if (!broken.empty()) return done(Error{broken, true});
+            if (run != flown_before) return done(Error{"no run " + std::to_string(run)});
+            v1::RunState state;
+            state.set_run(run);
+            state.set_last_seq(items_of(run).size());
+            done(state);
+        };
+        services.now = [this] { return now; };
         services.want_items = [](bool) {};
         return services;
     }
+    static constexpr std::uint64_t flown_before = 9;
+    const std::vector<v1::Item>& items_of(std::uint64_t run) const { return run == flown_before && !flown.empty() ? flown : durable; }
     Venue() {
         v1::RunState state;
         state.set_run(1);
@@ -64,6 +95,17 @@ struct Venue {
         batch->first_seq = items.front().seq();
         batch->last_seq = items.back().seq();
         batch->items = std::move(items);
+        hub.published(batch);
+    }
+    /// In the archive only: as when nobody followed.
+    void store_events(std::size_t count) {
+        auto batch = std::make_shared<pipeline::PublishedBatch>();
+        batch->run = archive::RunId{1};
+        batch->first_seq = durable.size() + 1;
+        for (std::size_t i = 0; i < count; ++i)
+            durable.push_back(event_item(durable.size() + 1));
+        batch->last_seq = durable.size();
+        batch->built = false;
         hub.published(batch);
     }
     void publish_events(std::size_t count) {
@@ -89,12 +131,23 @@ struct Client {
         return client;
     }
 
-    void subscribe(archive::Sequence after, double max_rate_hz = 0.0, bool all_channels = true) {
+    void subscribe(archive::Sequence after, double max_rate_hz = 0.0, bool all_channels = true, std::uint64_t run = 0) {
         v1::ClientMessage message;
+        message.mutable_subscribe()->set_run(run);
         message.mutable_subscribe()->set_after_seq(after);
         message.mutable_subscribe()->set_all_channels(all_channels);
         message.mutable_subscribe()->set_max_rate_hz(max_rate_hz);
         session->on_message(message.SerializeAsString());
+    }
+    void replay(double pace, archive::Sequence after = 0, std::uint64_t run = Venue::flown_before) {
+        v1::ClientMessage message;
+        message.mutable_subscribe()->set_run(run);
+        message.mutable_subscribe()->set_after_seq(after);
+        message.mutable_subscribe()->set_all_channels(true);
+        message.mutable_subscribe()->set_pace(pace);
+        session->on_message(message.SerializeAsString());
+        complete_through = after;
+        seen.clear();
     }
     /// Writes out what is due, and keeps it.
     void read_all() {
@@ -226,6 +279,25 @@ TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     CHECK(batch.items_size() == 0);
 }
 
+TEST_CASE("a client that wants nothing of what came last is told with the run's state that all of it is there", "[stream][R42]") {
+    Venue venue;
+    Client client{venue.hub};
+    client.subscribe(0, 0.0, false);
+    venue.publish_events(2);
+    client.read_all();
+    CHECK(client.complete_through == 2);
+    venue.publish({samples_item(3, 1.0), samples_item(4, 2.0)}); // of channels that it does not follow
+    client.read_all();
+    CHECK(client.complete_through == 2); // a message for each group of these would cost more than it says
+    v1::RunState over;
+    over.set_run(1);
+    over.set_state("finished");
+    venue.hub.run_state(over); // of a mission that is followed no clocks come
+    client.read_all();
+    CHECK(client.complete_through == 4);
+    CHECK(client.seen == std::vector<archive::Sequence>{1, 2});
+}
+
 TEST_CASE("what a client asks and cannot have is refused in words, and it goes on", "[stream]") {
     Venue venue;
     Client client{venue.hub};
@@ -286,4 +358,394 @@ TEST_CASE("a client of the newest run is moved to the next one", "[stream]") {
     client.complete_through = 0;
     client.read_all();
     CHECK(client.messages.back().welcome().run_state().run() == 2);
+}
+
+TEST_CASE("what the archive does not give is told once, comes when it can be read again, and until then nothing looks live", "[stream][disk][R42]") {
+    Venue venue;
+    venue.store_events(100);
+    Client client{venue.hub};
+    venue.broken = "a.db: disk I/O error";
+    client.subscribe(0);
+    for (int i = 0; i < 5; ++i) {
+        client.read_all();
+        venue.answer();
+        venue.hub.clocks({});
+        venue.publish_events(1);
+        client.read_all();
+        venue.hub.check_clients();
+    }
+    REQUIRE(client.refusals.size() == 1);
+    CHECK_THAT(client.refusals[0], Catch::Contains("tried again") && Catch::Contains("disk I/O error"));
+    CHECK(venue.pages_read == 6); // a check each, and no more than that
+    CHECK(client.seen.empty());
+    CHECK(std::ranges::none_of(client.messages, [](const auto& message) { return message.has_batch(); })); // and no clocks
+    venue.broken.clear();
+    venue.answer();
+    venue.hub.check_clients();
+    venue.answer();
+    client.read_all();
+    CHECK(client.saw_exactly(1, 105));
+    CHECK(client.refusals.size() == 1);
+
+    venue.broken = "a.db: disk I/O error";
+    venue.store_events(10);
+    client.read_all();
+    venue.answer();
+    client.read_all();
+    CHECK(client.refusals.size() == 2); // another time, and said again
+    venue.broken.clear();
+    venue.hub.check_clients();
+    venue.answer();
+    client.read_all();
+    CHECK(client.saw_exactly(1, 115));
+}
+
+TEST_CASE("an older run that the archive does not give at once is followed when it does", "[stream][disk]") {
+    Venue venue;
+    venue.publish_events(20);
+    Client client{venue.hub};
+    venue.broken = "a.db: disk I/O error";
+    client.subscribe(0, 0.0, true, Venue::flown_before);
+    venue.hub.check_clients();
+    client.read_all();
+    CHECK(client.refusals.size() == 1);
+    venue.broken.clear();
+    venue.hub.check_clients();
+    client.read_all();
+    venue.answer();
+    client.read_all();
+    CHECK(client.saw_exactly(1, 20));
+
+    venue.broken = "a.db: disk I/O error"; // who asks for another run meanwhile does not wait for this one
+    client.subscribe(0, 0.0, true, Venue::flown_before);
+    client.seen.clear();
+    client.complete_through = 0;
+    client.subscribe(0);
+    client.read_all();
+    CHECK(client.saw_exactly(1, 20));
+}
+
+namespace {
+
+using namespace std::chrono_literals;
+
+/// So much later; meanwhile the archive answers, and each connection writes when its timer says so.
+void pass(Venue& venue, std::chrono::milliseconds wall, const std::vector<Client*>& clients) {
+    const auto end = venue.now + wall;
+    for (;;) {
+        do {
+            venue.answer();
+            for (auto* client : clients)
+                client->read_all();
+        } while (!venue.waiting.empty());
+        auto next = end;
+        for (const auto* client : clients)
+            if (const auto due = client->session->due()) next = std::min(next, *due);
+        if (venue.now == end) return;
+        REQUIRE(next > venue.now); // a timer that has run out and brings nothing would spin
+        venue.now = next;
+    }
+}
+
+std::size_t batches(const Client& client) {
+    return static_cast<std::size_t>(std::ranges::count_if(client.messages, [](const auto& message) { return message.has_batch(); }));
+}
+
+} // namespace
+
+TEST_CASE("a run that is over comes again at the pace asked for, each item when it would have reached Earth", "[stream][R42]") {
+    Venue venue;
+    v1::Item tone, stage, link, explanation;
+    tone.set_seq(3);
+    tone.mutable_tone()->set_ert_start("2000-001T12:00:20.000"); // noon
+    tone.mutable_tone()->set_ert_end("2000-001T12:00:30.000");
+    explanation.set_seq(4); // bears no time on Earth
+    explanation.mutable_explanation()->set_text("because");
+    stage.set_seq(5);
+    stage.mutable_command_stage()->set_at("2000-001T12:00:25.000"); // before the tone was whole
+    link.set_seq(6);
+    link.mutable_link()->set_ert("2000-001T13:00:00.000"); // an hour of cruise
+    venue.flown = {event_item(1, 0.0), samples_item(2, 5.0), tone, explanation, stage, link};
+    Client client{venue.hub};
+    client.replay(10.0);
+    pass(venue, 0ms, {&client});
+    CHECK(client.messages.front().welcome().last_seq() == 6);
+    CHECK(client.saw_exactly(1, 2));
+    CHECK(client.complete_through == 2);
+    pass(venue, 2'999ms, {&client});
+    CHECK(client.saw_exactly(1, 2));
+    CHECK_FALSE(client.session->behind());
+    pass(venue, 1ms, {&client});
+    CHECK(client.saw_exactly(1, 5));
+    CHECK(client.complete_through == 5);
+    pass(venue, 356'999ms, {&client});
+    CHECK(client.complete_through == 5);
+    CHECK_FALSE(client.session->behind());
+    pass(venue, 1ms, {&client});
+    CHECK(client.saw_exactly(1, 6));
+    CHECK_FALSE(client.session->due());
+    CHECK_FALSE(client.session->behind());
+    for (const auto& message : client.messages)
+        CHECK((!message.has_batch() || message.batch().history()));
+}
+
+TEST_CASE("who replays gets twenty batches a second at most, over as many pages as it takes", "[stream][bounds]") {
+    Venue venue;
+    constexpr std::size_t items = 3 * StreamSession::page_items;
+    for (std::size_t i = 0; i < items; ++i)
+        venue.flown.push_back(event_item(i + 1, 0.001 * static_cast<double>(i)));
+    Client client{venue.hub};
+    client.replay(1.0);
+    pass(venue, 1s, {&client});
+    CHECK(client.seen.size() >= 951); // what is due goes with the next batch
+    CHECK(client.seen.size() <= 1'001);
+    CHECK(batches(client) >= 20);
+    CHECK(batches(client) <= 21);
+    pass(venue, 6s, {&client});
+    CHECK(client.saw_exactly(1, items));
+    CHECK(batches(client) <= 1 + items / 50 + venue.pages_read);
+}
+
+TEST_CASE("each replays at a pace of its own and from its own place, and who follows the run that goes on does not notice", "[stream][R42]") {
+    Venue venue;
+    for (int i = 0; i < 100; ++i)
+        venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
+    Client slow{venue.hub}, fast{venue.hub}, live{venue.hub};
+    live.subscribe(0);
+    slow.replay(1.0, 50); // its time counts from item 51 on
+    fast.replay(20.0);
+    slow.complete_through = 50;
+    for (archive::Sequence second = 1; second <= 4; ++second) {
+        venue.publish_events(10);
+        pass(venue, 1s, {&slow, &fast, &live});
+        CHECK(slow.saw_exactly(51, 51 + second));
+        CHECK(fast.saw_exactly(1, 1 + 20 * second));
+        CHECK(live.saw_exactly(1, 10 * second));
+        CHECK_FALSE(live.session->due());
+        CHECK(venue.hub.sessions_behind() == 0);
+    }
+}
+
+TEST_CASE("a new subscription changes the pace of a replay, or where it is", "[stream][R42]") {
+    Venue venue;
+    for (int i = 0; i < 1'000; ++i)
+        venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
+    Client client{venue.hub};
+    client.replay(1.0);
+    pass(venue, 10s, {&client});
+    CHECK(client.saw_exactly(1, 11));
+    client.replay(100.0, client.complete_through);
+    CHECK_FALSE(client.session->due()); // the archive is asked first
+    pass(venue, 1s, {&client});
+    CHECK(client.saw_exactly(12, 112)); // the eleventh second is not waited for again
+    client.replay(1.0, 900);
+    pass(venue, 2s, {&client});
+    CHECK(client.saw_exactly(901, 903));
+    client.replay(0.0, 903);
+    pass(venue, 0s, {&client});
+    CHECK(client.saw_exactly(904, 1'000)); // without a pace as fast as it is read
+    client.replay(1e-300);
+    pass(venue, 24h, {&client});
+    CHECK(client.saw_exactly(1, 1));
+    CHECK(client.refusals.empty());
+}
+
+TEST_CASE("a pace that is none, or for a run that goes on, is refused, and what was subscribed before goes on", "[stream]") {
+    Venue venue;
+    venue.publish_events(3);
+    venue.flown = {event_item(1, 0.0), event_item(2, 1.0)};
+    Client client{venue.hub};
+    client.replay(1.0);
+    pass(venue, 0ms, {&client});
+    client.replay(std::numeric_limits<double>::infinity());
+    client.replay(std::numeric_limits<double>::quiet_NaN());
+    client.replay(-1.0);
+    client.replay(10'000.5);
+    client.replay(1.0, 0, 1);
+    client.replay(1.0, 0, 0);
+    client.complete_through = 1;
+    pass(venue, 1s, {&client});
+    REQUIRE(client.refusals.size() == 6);
+    CHECK(client.refusals[2] == "pace: -1 is none: above 0 and up to 10000 is wanted, or 0 for as fast as it goes");
+    CHECK_THAT(client.refusals[0], Catch::StartsWith("pace: inf"));
+    CHECK_THAT(client.refusals[1], Catch::StartsWith("pace: nan"));
+    CHECK_THAT(client.refusals[3], Catch::StartsWith("pace: 10000.5"));
+    CHECK(client.refusals[4] == "pace: it is for a run that is over, and run 1 goes on: name another, or follow this one without a pace");
+    CHECK(client.refusals[5] == client.refusals[4]);
+    CHECK(client.seen == std::vector<archive::Sequence>{2});
+    client.replay(10'000.0);
+    pass(venue, 1ms, {&client});
+    CHECK(client.refusals.size() == 6);
+
+    StreamHub none{1, venue.services()};
+    Client first{none};
+    first.replay(1.0, 0, 0);
+    first.read_all();
+    CHECK(first.refusals == std::vector<std::string>{"pace: it is for a run that is over, and there is none yet"});
+}
+
+TEST_CASE("the newest run is sent again at a pace when it is over, to its end, also when another begins", "[stream][R42]") {
+    Venue venue;
+    venue.publish({event_item(1, 0.0), event_item(2, 1.0), event_item(3, 2.0)});
+    v1::RunState state;
+    state.set_run(1);
+    state.set_state("finished");
+    venue.hub.run_state(state);
+    Client client{venue.hub};
+    client.replay(1.0, 0, 0);
+    pass(venue, 1s, {&client});
+    CHECK(client.saw_exactly(1, 2));
+    state.set_run(2);
+    state.set_state("running");
+    venue.hub.run_state(state);
+    pass(venue, 1s, {&client});
+    CHECK(client.saw_exactly(1, 3));
+    REQUIRE(client.messages.front().has_welcome());
+    CHECK(client.messages.front().welcome().run_state().state() == "finished");
+    CHECK(client.messages.front().welcome().last_seq() == 3);
+    CHECK(batches(client) == client.messages.size() - 1); // nothing of the other run
+}
+
+TEST_CASE("who replays and does not read gets all samples when it does, and is behind meanwhile", "[stream][R42]") {
+    Venue venue;
+    for (int second = 0; second < 10; ++second) { // samples come in a packet, whose receipt this client does not ask for
+        const auto seq = venue.flown.size() + 1;
+        auto& unit = venue.flown.emplace_back();
+        unit.set_seq(seq);
+        unit.mutable_unit()->set_ert(day_of_year_text(Ert{second * 1'000'000}));
+        for (archive::Sequence i = 1; i <= 8; ++i)
+            venue.flown.push_back(samples_item(seq + i, second + 0.125 * static_cast<double>(i)));
+    }
+    Client client{venue.hub};
+    v1::ClientMessage message;
+    auto& subscribe = *message.mutable_subscribe();
+    subscribe.set_run(Venue::flown_before);
+    subscribe.set_all_channels(true);
+    subscribe.set_without_units(true);
+    subscribe.set_pace(1.0);
+    client.session->on_message(message.SerializeAsString());
+    pass(venue, 1s, {&client});
+    CHECK(client.seen.size() == 16);
+    CHECK_FALSE(client.session->behind());
+    venue.now += 5s;
+    CHECK(client.session->behind());
+    CHECK(venue.hub.sessions_behind() == 1);
+    client.read_all();
+    CHECK(client.seen.size() == 56); // two seconds' and five more
+    CHECK(batches(client) == 3);
+    CHECK_FALSE(client.session->behind());
+    for (const auto& told : client.messages)
+        for (const auto& item : told.batch().items()) {
+            CHECK(item.has_samples());
+            CHECK_FALSE(item.samples().thinned());
+        }
+    pass(venue, 3s, {&client});
+    CHECK(client.seen.size() == 80);
+    CHECK(client.complete_through == venue.flown.size());
+}
+
+namespace {
+
+/// A stream over a real archive and real query threads; the test is the network thread.
+struct ArchivedStream {
+    test::TemporaryFolder folder;
+    dictionary::Dictionary dictionary = test::small_dictionary();
+    std::filesystem::path file = folder / "a.db";
+    archive::Sequence last = 0;
+    std::mutex mutex;
+    std::condition_variable posted;
+    std::deque<std::function<void()>> posts;
+    std::unique_ptr<StreamHub> hub;
+    std::unique_ptr<QueryThreads> queries; ///< ends first: until then it posts
+
+    explicit ArchivedStream(std::uint16_t units) {
+        {
+            auto archive = std::move(archive::Archive::open(file)).value();
+            pipeline::Pipeline pipeline{archive, dictionary};
+            pipeline.on_publish([&](const auto& batch) { last = batch->last_seq; });
+            REQUIRE(pipeline.begin({}).ok());
+            for (std::uint16_t i = 0; i < units; ++i)
+                REQUIRE(pipeline.accept(test::live(test::navigation_packet(i, 1000.0 + i, 9000.0F, 3.0F))).ok());
+            REQUIRE(pipeline.commit().ok());
+        }
+        queries = std::move(QueryThreads::open(file, dictionary)).value();
+        StreamHub::Services services;
+        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds kinds, const auto& done) {
+            const bool taken = queries->ask([=, this](archive::Reader& reader) { post([done, page = reader.items(run, after, limit, kinds)] { done(page); }); },
+                                            {}, Haste::soon);
+            if (!taken) post([done] { done(Error{QueryThreads::busy, true}); });
+        };
+        services.want_items = [](bool) {};
+        hub = std::make_unique<StreamHub>(std::uint16_t{1}, services);
+        v1::RunState state;
+        state.set_run(1);
+        state.set_last_seq(last);
+        hub->run_state(state);
+    }
+    void post(std::function<void()> action) {
+        const std::scoped_lock lock{mutex};
+        posts.push_back(std::move(action));
+        posted.notify_one();
+    }
+    /// Does what is posted, until `over` or for half a minute.
+    void work_until(const std::function<bool()>& over) {
+        const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds{30};
+        while (!over() && std::chrono::steady_clock::now() < deadline) {
+            std::unique_lock lock{mutex};
+            if (!posted.wait_for(lock, std::chrono::seconds{1}, [&] { return !posts.empty(); })) {
+                lock.unlock();
+                hub->check_clients(); // once a second, as the server does
+                continue;
+            }
+            const auto action = std::move(posts.front());
+            posts.pop_front();
+            lock.unlock();
+            action();
+        }
+    }
+};
+
+} // namespace
+
+TEST_CASE("a thousand clients that come back at once all get what they missed, though both question threads are busy", "[stream][bounds][R42]") {
+    ArchivedStream stream{100};
+    std::promise<void> answered;
+    const auto waits = answered.get_future().share();
+    for (std::size_t i = 0; i < QueryThreads::question_threads; ++i)
+        REQUIRE(stream.queries->ask([waits](archive::Reader&) { waits.wait(); }));
+    std::vector<std::unique_ptr<Client>> clients;
+    for (int i = 0; i < 1'000; ++i) {
+        clients.push_back(std::make_unique<Client>(*stream.hub));
+        clients.back()->subscribe(0);
+        clients.back()->read_all();
+    }
+    stream.work_until([&] {
+        for (auto& client : clients)
+            client->read_all();
+        return std::ranges::all_of(clients, [&](const auto& client) { return client->complete_through == stream.last; });
+    });
+    std::size_t whole = 0, refusals = 0;
+    for (const auto& client : clients) {
+        whole += client->saw_exactly(1, stream.last) ? 1 : 0;
+        refusals += client->refusals.size();
+    }
+    CHECK(whole == 1'000);
+    CHECK(refusals == 0);
+    answered.set_value();
+}
+
+TEST_CASE("a disk that fails once stops no client's stream", "[stream][disk][R42]") {
+    test::FaultyDisk disk;
+    ArchivedStream stream{100};
+    Client client{*stream.hub};
+    disk.fail_at(1, test::FaultyDisk::Fault::input_output, false);
+    client.subscribe(0);
+    client.read_all();
+    stream.work_until([&] {
+        client.read_all();
+        return client.complete_through == stream.last;
+    });
+    CHECK(disk.failed() == 1);
+    CHECK(client.refusals.size() == 1);
+    CHECK(client.saw_exactly(1, stream.last));
 }

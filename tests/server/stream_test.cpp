@@ -2,7 +2,9 @@
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
+#include <chrono>
 #include <map>
+#include <optional>
 
 using namespace aeolis;
 using namespace aeolis::test;
@@ -207,4 +209,72 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
     const auto metrics = web_request(server.port(), "GET", "/metrics").body;
     CHECK_THAT(metrics, Catch::Contains("aeolis_link_units_total{link=\"uhf_live\"} ") && Catch::Contains("aeolis_link_units_total{link=\"tones\"} "));
     CHECK_THAT(metrics, Catch::Contains("aeolis_stream_clients_behind ") && !Catch::Contains("aeolis_stream_octets_total 0\n"));
+}
+
+TEST_CASE("a run that is over comes again over the socket at a pace, and not while it goes on", "[stream][R42][R45]") {
+    RunningServer server{shipped_scenario("nominal_auto"), 100.0};
+    Follower client{server.port(), false};
+    client.read_through(400); // some tones long
+    v1::ClientMessage replay;
+    replay.mutable_subscribe()->set_run(1);
+    replay.mutable_subscribe()->set_pace(1.0);
+    client.send(replay);
+    do
+        REQUIRE(client.read());
+    while (!client.last.has_refusal());
+    CHECK_THAT(client.last.refusal().reason(), Catch::Contains("run 1 goes on"));
+    v1::ClientMessage stop;
+    stop.mutable_control()->set_stop(true);
+    client.send(stop);
+    while (client.last.run_state().state() != "finished")
+        REQUIRE(client.read());
+    const auto last_seq = client.last.run_state().last_seq();
+    REQUIRE(last_seq > 0);
+
+    struct Arrival {
+        std::chrono::steady_clock::time_point at;
+        std::uint64_t through = 0;
+        std::optional<Ert> ert; ///< of the newest tone
+    };
+    const auto replayed = [&](double pace, std::uint64_t after) {
+        replay.mutable_subscribe()->set_pace(pace);
+        replay.mutable_subscribe()->set_after_seq(after);
+        client.send(replay);
+        do
+            REQUIRE(client.read());
+        while (!client.last.has_welcome());
+        CHECK(client.last.welcome().run_state().state() == "finished");
+        CHECK(client.last.welcome().last_seq() == last_seq);
+        client.complete_through = after;
+        client.seen.clear();
+        std::vector<Arrival> arrivals;
+        while (client.complete_through < last_seq) {
+            REQUIRE(client.read());
+            auto& arrival = arrivals.emplace_back(Arrival{std::chrono::steady_clock::now(), client.complete_through, {}});
+            for (const auto& item : client.last.batch().items())
+                if (item.has_tone()) arrival.ert = ert_from_day_of_year(item.tone().ert_end());
+        }
+        return arrivals;
+    };
+    replayed(10'000.0, 0);
+    const auto all = client.seen;
+    CHECK(all.back() + 1 >= last_seq); // the last may be samples, which nobody asked for
+    constexpr double pace = 100.0;
+    const auto arrivals = replayed(pace, 0);
+    CHECK(client.seen == all);
+    std::optional<Arrival> first;
+    std::size_t held = 0;
+    for (const auto& arrival : arrivals) {
+        if (!arrival.ert) continue;
+        if (!first) first = arrival;
+        const double wanted_s = static_cast<double>(arrival.ert->microseconds - first->ert->microseconds) * 1e-6 / pace;
+        const double took_s = std::chrono::duration<double>(arrival.at - first->at).count();
+        CHECK(took_s > wanted_s - 0.2); // the first may itself have come late, and batches are 50 ms apart
+        if (took_s < wanted_s + 0.5) ++held;
+    }
+    REQUIRE(first);
+    CHECK(arrivals.size() > 3);
+    CHECK(held > 3);
+    replayed(10'000.0, last_seq / 2); // a jump, and another pace
+    CHECK((client.seen.front() > last_seq / 2 && client.seen.front() <= last_seq / 2 + 2));
 }

@@ -1,3 +1,4 @@
+#include "server/net/http_client.hpp"
 #include "tests/server/running_server.hpp"
 
 #include <boost/asio/io_context.hpp>
@@ -7,6 +8,7 @@
 #include <boost/beast/ssl.hpp>
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
+#include <fmt/format.h>
 #include <future>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
@@ -67,6 +69,52 @@ struct SecureClient {
 };
 
 } // namespace
+
+TEST_CASE("the program's own client speaks only to a server whose certificate is of its name and of a known authority", "[access][http]") {
+    const TemporaryFolder folder;
+    write_certificate(folder / "cert.pem", folder / "key.pem");
+    write_certificate(folder / "other.pem", folder / "other_key.pem");
+    RunningServer server{RunningServer::Secure{folder / "cert.pem", folder / "key.pem"}};
+    const auto post = [&](const std::string& scheme, const std::string& host, const std::filesystem::path& authorities) {
+        const server::HttpClient client{{.server = fmt::format("{}://{}:{}", scheme, host, server.port()), .token = "none", .authorities = authorities}};
+        const auto answer = client.post("/api/v1/runs/latest/sequences", "{}");
+        if (!answer) return answer.error().message;
+        return answer->lost.empty() ? fmt::format("{} {}", answer->status, answer->body) : "perhaps sent: " + answer->lost;
+    };
+    CHECK_THAT(post("https", "localhost", folder / "cert.pem"), Catch::StartsWith("401 ") && Catch::Contains("log in first"));
+    CHECK_THAT(post("https", "127.0.0.1", folder / "cert.pem"), Catch::Contains("no safe connection"));
+    CHECK_THAT(post("https", "localhost", folder / "other.pem"), Catch::Contains("no safe connection"));
+    CHECK_THAT(post("https", "localhost", {}), Catch::Contains("no safe connection"));
+    CHECK_THAT(post("https", "localhost", folder / "no.pem"), Catch::Contains("--authorities"));
+    CHECK_THAT(post("http", "localhost", {}), Catch::StartsWith("perhaps sent: ") && Catch::Contains("no answer"));
+}
+
+TEST_CASE("over http the program's own client gives a token to this machine only", "[access][http]") {
+    const auto error_of = [](const std::string& host) {
+        const server::HttpClient client{{.server = "http://" + host + ":1", .token = "a secret"}};
+        const auto answer = client.post("/", "{}");
+        INFO(host);
+        REQUIRE_FALSE(answer); // nobody listens there
+        return answer.error().message;
+    };
+    for (const char* host : {"192.0.2.1", "station.example", "localhost.example", "[2001:db8::1]"})
+        CHECK_THAT(error_of(host), Catch::StartsWith(std::string{"--server http://"} + host) && Catch::Contains("others could read the token"));
+    for (const char* host : {"127.0.0.1", "127.1.2.3", "localhost", "[::1]"})
+        CHECK_THAT(error_of(host), !Catch::Contains("others could read the token"));
+}
+
+TEST_CASE("a request that has gone and gets no answer is told apart from one that has not gone", "[http]") {
+    asio::io_context io;
+    tcp::acceptor silent{io, tcp::endpoint{asio::ip::make_address("127.0.0.1"), 0}}; // the system takes connections and octets for it
+    const std::string silent_one = fmt::format("http://127.0.0.1:{}", silent.local_endpoint().port());
+    const server::HttpClient client{{.server = silent_one, .answer_patience = std::chrono::seconds{1}}};
+    const auto late = client.post("/", "{}");
+    REQUIRE(late);
+    CHECK(late->status == 0);
+    CHECK_THAT(late->lost, Catch::Contains("no answer"));
+    silent.close();
+    CHECK_FALSE(client.post("/", "{}"));
+}
 
 TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and stream", "[access][http][stream]") {
     const TemporaryFolder folder;
@@ -135,7 +183,7 @@ TEST_CASE("over TLS, too, a client that leaves is noticed while its question is 
     error_code ignored;
     stream->next_layer().socket().shutdown(tcp::socket::shutdown_send, ignored);
     stream.reset();
-    for (int i = 0; i < 500 && !gone(); ++i)
+    for (int i = 0; i < 3000 && !gone(); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds{10});
     CHECK(gone());
     respond({});

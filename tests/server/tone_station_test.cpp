@@ -120,8 +120,9 @@ TEST_CASE("a landing's tones are decoded from its waveform, none wrong, and what
             if (!link.up) outages.insert(link.link.name + ": " + link.reason);
     CHECK(rehearsal.outcome() == "touchdown");
     CHECK(rehearsal.recording_progress() == 1.0);
-    CHECK(outages.contains("uhf_live: plasma blackout"));
-    CHECK(outages.contains("x_band: Earth set"));
+    const auto silent = [&](const std::string& beginning) { return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); }); };
+    CHECK(silent("uhf_live: plasma blackout: predicted"));
+    CHECK(silent("x_band: Earth set: predicted"));
     CHECK(rehearsal.run_start(0.0).tone_model == "signal");
     const auto& tones = rehearsal.tones();
     CHECK(tones.sent > 30);

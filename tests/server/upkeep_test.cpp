@@ -53,9 +53,12 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
         const auto lines = run_lines(archive->database());
         REQUIRE(lines->size() == 3);
         CHECK(lines->back().units == 2500);
-        CHECK_FALSE(prune(*archive, {RunId{1}, RunId{9}}).ok()); // all or none
+        archive::AuditRecord by;
+        by.who = "nina";
+        by.from = "command line";
+        CHECK_FALSE(prune(*archive, {RunId{1}, RunId{9}}, by).ok()); // all or none
         CHECK(run_lines(archive->database())->size() == 3);
-        REQUIRE(prune(*archive, {RunId{1}, RunId{3}}).ok());
+        REQUIRE(prune(*archive, {RunId{1}, RunId{3}}, by).ok());
     }
     for (const auto& table : run_tables) {
         INFO(table.name);
@@ -67,6 +70,8 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
     }
     CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
     CHECK(ask(file, "SELECT count(*) FROM pruned_runs WHERE scenario = 'nominal'") == 2);
+    CHECK(ask(file, "SELECT count(*) FROM audit") == 1); // the refused one did nothing
+    CHECK(ask(file, "SELECT count(*) FROM audit WHERE who = 'nina' AND peer = 'command line' AND action = 'prune' AND detail = 'runs 1, 3' AND outcome = 'done'") == 1);
     CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults.empty());
     auto archive = Archive::open(file);
     CHECK(*archive->begin_run({}, dictionary) == RunId{4});
@@ -85,9 +90,9 @@ TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
 TEST_CASE("vacuum gives the room of pruned runs back", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    record(file, small_dictionary(), 2);
+    record(file, small_dictionary(), 8); // beside which a page for each of the tables is little
     auto archive = Maintenance::open(file);
-    REQUIRE(prune(*archive, {RunId{1}}).ok());
+    REQUIRE(prune(*archive, {{RunId{1}, RunId{2}, RunId{3}, RunId{4}, RunId{5}, RunId{6}, RunId{7}}}, {}).ok());
     const auto before = std::filesystem::file_size(file);
     REQUIRE(vacuum(*archive).ok());
     CHECK(std::filesystem::file_size(file) < before * 2 / 3);
@@ -197,8 +202,14 @@ TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a 
     CHECK(found->faults.empty());
     CHECK(found->notes.size() == 2);
 
-    CHECK(pipeline::rebuild(file, {}, dictionary, nullptr)->runs.size() == 3);
+    const auto before = ask(file, "SELECT count(*) FROM audit");
+    CHECK(pipeline::rebuild(file, {}, dictionary, nullptr, {})->runs.size() == 3);
+    CHECK(ask(file, "SELECT count(*) FROM audit WHERE action = 'rebuild' AND detail LIKE 'run _'") == 3);
+    CHECK(ask(file, "SELECT count(*) FROM audit") == before + 3);
     CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 0);
     CHECK(answer() == packed);
-    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->notes.empty());
+    const auto after = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
+    CHECK(after->faults.empty());
+    REQUIRE(after->notes.size() == 1); // nothing but that the rebuilds are in the audit
+    CHECK_THAT(after->notes[0], Catch::StartsWith("audit: "));
 }

@@ -17,7 +17,7 @@ namespace http = beast::http;
 using tcp = asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::chrono::seconds patience{20}; // a loaded machine with sanitizers is slow
+constexpr std::chrono::seconds patience{120}; // a loaded machine with sanitizers is slow: a run can be half a minute in starting
 
 std::string authority(std::uint16_t port) {
     return "127.0.0.1:" + std::to_string(port);
@@ -59,7 +59,7 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     const auto& response = parser.get();
     const auto text = [&](http::field field) { return std::string{response[field]}; };
     return {response.result_int(), text(http::field::content_type), text(http::field::cache_control), text(http::field::set_cookie),
-            std::string{response["Content-Security-Policy"]}, response.body()};
+            std::string{response["Content-Security-Policy"]}, response.body(), std::string{response["Aeolis-Next-After"]}};
 }
 
 std::string raw_exchange(std::uint16_t port, std::string_view octets) {

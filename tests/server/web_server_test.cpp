@@ -25,10 +25,10 @@ struct Connections {
     std::unique_ptr<WebServer> server;
     std::thread network;
 
-    explicit Connections(std::function<void(server::HttpRequest, server::Respond)> request) {
+    explicit Connections(std::function<void(server::HttpRequest, server::Respond)> request, const WebServer::Settings& settings = {}) {
         WebServer::Handlers handlers;
         handlers.request = std::move(request);
-        server = std::move(WebServer::open({}, std::move(handlers))).value();
+        server = std::move(WebServer::open(settings, std::move(handlers))).value();
         network = std::thread{[this] { server->run(); }};
     }
     ~Connections() {
@@ -62,7 +62,7 @@ bool broke_off(std::uint16_t port, const std::string& request) {
 }
 
 bool soon(const std::function<bool()>& what) {
-    for (int i = 0; i < 500 && !what(); ++i)
+    for (int i = 0; i < 3000 && !what(); ++i)
         std::this_thread::sleep_for(10ms);
     return what();
 }
@@ -139,4 +139,81 @@ TEST_CASE("who asks and leaves is noticed, so that the question can stop", "[htt
     client.reset();
     CHECK(soon(gone));
     std::exchange(answer, {})({}); // nothing of the server outlives it
+}
+
+namespace {
+
+/// Octets, as many as the path says.
+void as_many_as_asked(const server::HttpRequest& request, const server::Respond& respond) {
+    server::HttpResponse response;
+    response.body.assign(std::stoul(request.path.substr(1)), 'x');
+    respond(std::move(response));
+}
+
+/// A client that asks, and takes of the answer what a test tells it to.
+struct SlowReader {
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket socket{io};
+
+    SlowReader(std::uint16_t port, const std::string& path) {
+        socket.open(boost::asio::ip::tcp::v4());
+        socket.set_option(boost::asio::socket_base::receive_buffer_size{256 << 10}); // that the kernel keeps little
+        socket.connect({boost::asio::ip::make_address("127.0.0.1"), port});
+        const auto request = fmt::format("GET {} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n", path);
+        boost::asio::write(socket, boost::asio::buffer(request));
+    }
+    /// @return what came; less at the end
+    std::size_t take(std::size_t octets) {
+        std::string taken(octets, '\0');
+        boost::system::error_code error;
+        return boost::asio::read(socket, boost::asio::buffer(taken), error);
+    }
+};
+
+} // namespace
+
+TEST_CASE("answers that clients do not take have a limit in all, and beyond it only short ones are given", "[http][bounds]") {
+    constexpr std::size_t long_octets = 16 << 20;
+    WebServer::Settings settings;
+    settings.answers_octets_max = 3 * long_octets - 1;
+    std::atomic<unsigned> given{0};
+    const Connections here{[&](const server::HttpRequest& request, const server::Respond& respond) {
+                               as_many_as_asked(request, respond);
+                               ++given;
+                           },
+                           settings};
+    const auto long_answer = fmt::format("/{}", long_octets);
+    const auto port = here.server->port();
+    {
+        SlowReader first{port, long_answer}, second{port, long_answer};
+        REQUIRE(soon([&] { return given == 2; }));
+        const auto refused = web_request(port, "GET", long_answer);
+        CHECK(refused.status == 503);
+        CHECK_THAT(refused.body, Catch::Contains("too many long answers are under way"));
+        CHECK(web_request(port, "GET", "/1000").status == 200);
+        CHECK(first.take(long_octets) == long_octets);
+    }
+    CHECK(soon([&] { return web_request(port, "GET", long_answer).status == 200; })); // one was taken, the other's client left
+    settings.answers_octets_max = 1;
+    const Connections narrow{as_many_as_asked, settings};
+    CHECK(web_request(narrow.server->port(), "GET", long_answer).body.size() == long_octets); // alone it is given, however long
+}
+
+TEST_CASE("a client that takes a long answer slowly gets all of it, and one that takes nothing is let go", "[http][bounds]") {
+    constexpr std::size_t octets = 32 << 20;
+    WebServer::Settings settings;
+    settings.request_max = 400ms;
+    const Connections here{as_many_as_asked, settings};
+    const auto path = fmt::format("/{}", octets);
+    SlowReader slow{here.server->port(), path}, still{here.server->port(), path};
+    std::size_t taken = 0;
+    const auto begun = std::chrono::steady_clock::now();
+    for (int i = 0; i < 12; ++i) { // three times as long as a client may stand still
+        taken += slow.take(octets / 16);
+        std::this_thread::sleep_for(100ms);
+    }
+    CHECK(std::chrono::steady_clock::now() - begun > 3 * settings.request_max);
+    taken += slow.take(octets);
+    CHECK(taken > octets); // and its header
+    CHECK(still.take(2 * octets) < octets);
 }

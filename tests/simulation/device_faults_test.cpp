@@ -232,3 +232,37 @@ TEST_CASE("faults that a device cannot have are refused with the scenario", "[si
     scenario.device_faults = {{Device::uhf, Unit::a, Kind::silent, 10.0, 0.0}};
     CHECK(impossible_values(scenario).size() == 1);
 }
+
+TEST_CASE("a fault that is injected in mid-flight is the scenario's fault that begins then, to the last bit", "[simulation][faults]") {
+    constexpr double begins_s = 700.0, for_s = 40.0;
+    const auto flown = [&](bool injected, const std::optional<Fault>& fault) {
+        Scenario scenario = tests::gale_scenario(900.0);
+        if (fault && !injected) {
+            if (const auto* device = std::get_if<DeviceFault>(&*fault)) scenario.device_faults = {*device};
+            if (const auto* system = std::get_if<SystemFault>(&*fault)) scenario.system_faults = {*system};
+            if (const auto* reset = std::get_if<ComputerReset>(&*fault)) scenario.computer_resets = {*reset};
+            REQUIRE(impossible_values(scenario).empty());
+        }
+        Landing landing{scenario, 1, 0};
+        landing.uplink(test::set_parameters(landing.solution()));
+        for (int i = 0; i < 64; ++i)
+            landing.step();
+        landing.uplink(test::do_edl());
+        while (scenario.entry_sclk - landing.sclk() > begins_s)
+            landing.step();
+        if (injected) landing.inject(*fault);
+        while (scenario.entry_sclk - landing.sclk() > begins_s - 2.0 * for_s)
+            landing.step();
+        return std::vector<std::uint8_t>{landing.recording().begin(), landing.recording().end()};
+    };
+    const auto sound = flown(false, std::nullopt);
+    const Fault faults[] = {DeviceFault{Device::imu, Unit::a, Kind::dropout, begins_s, for_s}, SystemFault{begins_s, for_s}, ComputerReset{begins_s}};
+    for (const Fault& fault : faults) {
+        INFO("fault " << fault.index());
+        const auto planned = flown(false, fault), injected = flown(true, fault);
+        const auto differ = std::ranges::mismatch(planned, injected);
+        INFO("they differ from octet " << differ.in1 - planned.begin() << " of " << planned.size() << " on, " << injected.size() << " were injected");
+        CHECK((planned == injected));
+        CHECK((injected != sound));
+    }
+}

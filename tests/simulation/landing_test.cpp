@@ -163,3 +163,34 @@ TEST_CASE("when the computers go off Earth hears that their links are down, and 
     }
     CHECK(last.at("x_band").reason == "computer off");
 }
+
+TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is", "[simulation][links][faults]") {
+    auto scenario = tests::gale_scenario(60.0);
+    scenario.timeout_after_entry_s = 60.0; // nobody commands it: X-band's carrier alone, and UHF from the start
+    scenario.radio.light_time_s = 5.0;
+    Landing whole{scenario, 1}, cut{scenario, 1};
+    std::size_t octets = 0, octets_whole = 0;
+    std::vector<LinkState> told;
+    while (!cut.finished()) {
+        const CycleReport& seen = whole.step();
+        const bool begins = cut.sclk() == scenario.entry_sclk - 30.0;
+        if (begins) cut.inject(StationOutage{0.0, 10.0});
+        const CycleReport& report = cut.step();
+        const double e_s = cut.sclk() - scenario.entry_sclk; // Earth's clock at the cycle's end
+        CHECK(report.station_out == (e_s > -30.0 && e_s < -20.0));
+        CHECK(std::ranges::equal(report.recorded, seen.recorded)); // the vehicle knows nothing of it
+        octets_whole += seen.octets.size();
+        octets += report.octets.size();
+        if (report.station_out) CHECK(report.octets.empty());
+        if (e_s >= -30.1 && e_s <= -19.9) told.insert(told.end(), report.links.begin(), report.links.end());
+    }
+    CHECK(octets <= octets_whole);
+    REQUIRE(told.size() >= 2);
+    CHECK(told.front().reason == "station out");
+    CHECK_FALSE(told.front().up);
+    const auto up_again = std::ranges::count_if(told, [](const LinkState& link) { return link.up; });
+    CHECK(up_again == std::ranges::count(told, std::string{"station out"}, &LinkState::reason));
+    const auto x_band = std::ranges::find(told, simulation::x_band_link, &LinkState::link);
+    REQUIRE(x_band != told.end());
+    CHECK(x_band->reason == "station out");
+}

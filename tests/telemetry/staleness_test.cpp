@@ -27,7 +27,7 @@ struct Ground {
         return dictionary;
     }
     Ground() {
-        monitor.link("uhf_live", true, "nominal", at_s(0.0), changes);
+        monitor.link("uhf_live", LinkIs::up, "nominal", at_s(0.0), changes);
         monitor.phase("late_cruise", at_s(0.0), changes);
     }
     void hear(double s) { monitor.heard(status, at_s(s), changes); }
@@ -58,12 +58,12 @@ TEST_CASE("a packet is stale when four of its intervals bring nothing, and not b
 TEST_CASE("silence while the link is down is the link's, and nothing is stale", "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
-    ground.monitor.link("uhf_live", false, "plasma blackout", at_s(3.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
     CHECK(ground.after(90.0) == 0);
-    ground.monitor.link("uhf_live", true, "nominal", at_s(90.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(90.0), ground.changes);
     CHECK(ground.after(98.0) == 0);
     CHECK(ground.after(98.5) == 1);
-    ground.monitor.link("uhf_live", false, "Earth set", at_s(99.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(99.0), ground.changes);
     REQUIRE(ground.changes.size() == 2);
     CHECK(ground.changes[1].reason == "the link is down: Earth set");
 }
@@ -71,13 +71,61 @@ TEST_CASE("silence while the link is down is the link's, and nothing is stale", 
 TEST_CASE("one of two links is enough to be heard over, and one that brings no packets is none", "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
-    ground.monitor.link("uhf_mro", true, "nominal", at_s(2.0), ground.changes);
-    ground.monitor.link("uhf_live", false, "hand-over", at_s(3.0), ground.changes);
-    ground.monitor.link("x_band", true, "nominal", at_s(3.0), ground.changes);
+    ground.monitor.link("uhf_mro", LinkIs::up, "nominal", at_s(2.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::down, "hand-over", at_s(3.0), ground.changes);
+    ground.monitor.link("x_band", LinkIs::up, "nominal", at_s(3.0), ground.changes);
     CHECK(ground.after(9.5) == 1);
-    ground.monitor.link("uhf_mro", false, "no orbiter in view", at_s(10.0), ground.changes);
+    ground.monitor.link("uhf_mro", LinkIs::down, "no orbiter in view", at_s(10.0), ground.changes);
     CHECK(ground.changes.size() == 2);
     CHECK(ground.after(60.0) == 2);
+}
+
+TEST_CASE("a link that is lost takes no alarm away, and what it does not bring becomes one with its reason", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained: nothing is predicted to silence it now", at_s(3.0), ground.changes);
+    CHECK(ground.after(9.0) == 0);
+    REQUIRE(ground.after(9.5) == 1); // four intervals after it was last heard, not after the link went
+    CHECK(ground.changes[0].stale);
+    CHECK(ground.changes[0].silent_s == 8.5);
+    CHECK(ground.changes[0].reason == "the link is lost: unexplained: nothing is predicted to silence it now");
+    ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(20.0), ground.changes);
+    CHECK(ground.after(21.0) == 1); // until it is heard
+    ground.hear(22.0);
+    REQUIRE(ground.after(30.0) == 2);
+    CHECK(ground.changes[1].reason == "heard again");
+    REQUIRE(ground.after(30.5) == 3); // while the link is up
+    CHECK(ground.changes[2].reason.empty());
+    ground.monitor.link("uhf_live", LinkIs::lost, "ground fault: no way to the station", at_s(31.0), ground.changes);
+    CHECK(ground.after(60.0) == 3); // that stands
+    ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(61.0), ground.changes);
+    REQUIRE(ground.after(900.0) == 4);
+    CHECK_FALSE(ground.changes[3].stale);
+    CHECK(ground.changes[3].reason == "the link is down: Earth set");
+}
+
+TEST_CASE("a silence that is not explained any more is waited for from then, with the usual patience", "[alarms][staleness]") {
+    Ground ground;
+    ground.hear(1.0);
+    ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
+    CHECK(ground.after(79.0) == 0);
+    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained", at_s(80.0), ground.changes);
+    CHECK(ground.after(88.0) == 0);
+    SECTION("nothing comes: it is stale") {
+        REQUIRE(ground.after(88.5) == 1);
+        CHECK(ground.changes[0].silent_s == 87.5);
+    }
+    SECTION("the link is there again: its packets have as long to come as after any silence") {
+        ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(88.0), ground.changes);
+        CHECK(ground.after(96.0) == 0);
+        CHECK(ground.after(96.5) == 1);
+    }
+    SECTION("another link is up: it brings them") {
+        ground.monitor.link("uhf_mro", LinkIs::up, "nominal", at_s(88.0), ground.changes);
+        CHECK(ground.after(96.0) == 0);
+        REQUIRE(ground.after(96.5) == 1);
+        CHECK(ground.changes[0].reason.empty());
+    }
 }
 
 TEST_CASE("what is expected goes by the phase: less often in entry, not at all on the ground", "[alarms][staleness]") {
@@ -99,7 +147,7 @@ TEST_CASE("what never came, has no rate, or is of a plan that may not be flown i
     CHECK(ground.after(1000.0) == 0);
     ground.dictionary.telemetry_plan[0].plan = "wideband";
     StalenessMonitor other{ground.dictionary};
-    other.link("uhf_live", true, "nominal", at_s(0.0), ground.changes);
+    other.link("uhf_live", LinkIs::up, "nominal", at_s(0.0), ground.changes);
     other.phase("late_cruise", at_s(0.0), ground.changes);
     other.heard(status, at_s(1.0), ground.changes);
     other.pass(at_s(1000.0), ground.changes);
@@ -111,7 +159,7 @@ TEST_CASE("a mission without a plan is expected at the rates of its dictionary",
     dictionary.telemetry_plan.clear();
     StalenessMonitor monitor{dictionary};
     std::vector<StalenessChange> changes;
-    monitor.link("downlink", true, "connected", at_s(0.0), changes);
+    monitor.link("downlink", LinkIs::up, "connected", at_s(0.0), changes);
     monitor.heard(status, at_s(1.0), changes);
     monitor.pass(at_s(6.0), changes);
     CHECK(changes.empty()); // five seconds at least

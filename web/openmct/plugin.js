@@ -1,7 +1,7 @@
-// Aeolis in Open MCT, read-only: runs as folders, their channels as telemetry, history from the query routes, live values from the stream.
+// Aeolis in Open MCT, read-only: runs as folders, their channels as telemetry, history from the query routes, live values by serve.mjs.
 // Time is milliseconds from a run's predicted entry, at the vehicle: so runs lie over one another.
 //
-//     openmct.install(AeolisPlugin('http://127.0.0.1:8081'))     the origin under which /api/v1 is, this page's own by default
+//     openmct.install(AeolisPlugin('http://127.0.0.1:8081'))     the origin of serve.mjs: /api/v1 and /live; this page's own by default
 const NAMESPACE = 'aeolis';
 const AGAIN_MS = 1000; // after a lost connection
 const POINTS = 2000; // of a request that does not say how many: thinned by the server to least and largest
@@ -85,22 +85,27 @@ export function AeolisPlugin(origin = location.origin) {
 
   function followRun(run, ended) {
     const takers = new Set();
-    let [socket, after, closed] = [undefined, undefined, false];
+    let [socket, after, again] = [undefined, undefined, undefined];
     const ready = Promise.all([words(), get(`/runs/${run}`)]).then(([{ channels }, { entry_sclk: entry, last_seq: last }]) => {
       after = last ?? '0'; // what was before comes by request
       return { idOfName: new Map(channels.map((each) => [each.name, each.id ?? 0])), entry };
     });
-    const ask = async () => {
-      const { idOfName } = await ready;
-      if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ subscribe: { run, after_seq: after, channels: [...new Set([...takers].map((taker) => idOfName.get(taker.channel)))] } }));
-    };
+    /** Anew whenever what is shown changes: from where the last one was. */
     const connect = async () => {
       const { idOfName, entry } = await ready;
-      if (closed) return;
-      socket = new WebSocket(`${api.replace(/^http/, 'ws')}/stream`, 'aeolis.v1.json');
-      socket.onopen = ask;
-      socket.onclose = () => setTimeout(() => void connect(), AGAIN_MS);
-      socket.onmessage = ({ data }) => {
+      const before = socket;
+      socket = undefined;
+      before?.close();
+      clearTimeout(again);
+      const channels = [...new Set([...takers].map((taker) => idOfName.get(taker.channel)))];
+      if (channels.length === 0) return;
+      const mine = new WebSocket(`${origin.replace(/^http/, 'ws')}/live?run=${run}&after=${after}&channels=${channels}`, 'aeolis.v1.json');
+      socket = mine;
+      mine.onclose = () => {
+        if (socket === mine) again = setTimeout(connect, AGAIN_MS);
+      };
+      mine.onmessage = ({ data }) => {
+        if (socket !== mine) return;
         const { batch } = JSON.parse(data);
         if (batch?.complete_through) after = batch.complete_through;
         for (const { samples } of batch?.items ?? []) for (const taker of samples ? takers : []) {
@@ -109,17 +114,14 @@ export function AeolisPlugin(origin = location.origin) {
         }
       };
     };
-    connect().catch((error) => console.error(error));
     return { add(channel, take) {
       const taker = { channel, take };
       takers.add(taker);
-      void ask();
+      connect().catch((error) => console.error(error));
       return () => {
         takers.delete(taker);
-        if (takers.size > 0) return void ask();
-        closed = true;
-        socket?.close();
-        ended();
+        void connect();
+        if (takers.size === 0) ended();
       };
     } };
   }

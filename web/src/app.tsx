@@ -23,7 +23,7 @@ import { Recorded } from './recorded/view';
 import { PaceBar, Rehearsal } from './rehearsal/view';
 import { ReplayBar } from './replay/view';
 import { dismissNotice, modeNow, notices, runNow, stream } from './run/session';
-import { TABS, helpShown, tab } from './shortcuts/model';
+import { TABS, helpShown, ignoreHeldEnter, tab } from './shortcuts/model';
 import { Help } from './shortcuts/view';
 import { Timeline } from './timeline/view';
 import { Tones } from './tones/view';
@@ -43,7 +43,7 @@ function Data() {
             onClick={() => (tab.value = each.id)}>{each.title} <kbd>{each.key}</kbd></button>
         ))}
       </span>
-    } extra={<button type="button" class="quiet" onClick={() => (helpShown.value = !helpShown.value)}>keys <kbd>?</kbd></button>}>
+    } extra={<button type="button" class="quiet" aria-label="keys" onClick={() => (helpShown.value = !helpShown.value)}><span class="keys-word">keys </span><kbd>?</kbd></button>}>
       <Shown />
     </Panel>
   );
@@ -76,7 +76,7 @@ export function App({ panel }: { panel?: string | undefined }) {
   const run = runNow();
   const Alone = panel === undefined ? undefined : ALONE[panel as keyof typeof ALONE];
   return (
-    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`} data-testid="console" data-mode={mode}>
+    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`} data-testid="console" data-mode={mode} onKeyDownCapture={ignoreHeldEnter}>
       <Tape />
       <Header />
       <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>

@@ -8,6 +8,7 @@ export const LAYOUT = {
   nextDesired: ['next_desired_sclk'],
   nextMinimum: ['next_minimum_sclk'],
   currentTimepoint: ['timepoint_index'],
+  timepointState: ['timepoint_state'],
 
   /** Plots, from the top. `per` scales the dictionary's unit to the one shown. */
   plots: [
@@ -19,39 +20,53 @@ export const LAYOUT = {
 
   /**
    * The strip of phases, which values of the phase channel belong to each, and when it is predicted to begin: entry by
-   * definition, the others published [od137]. `untilEntry`: belongs to it only before entry, then to the next.
+   * definition, the others published [od137]. `untilEntry`: belongs to it only before entry, then to the next. `from`: the
+   * timepoint with which it begins, for when only tones tell.
    */
   phases: [
     {
-      title: 'Cruise', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'], untilEntry: 'wait_for_guidance', predicted_e_s: undefined,
+      title: 'Cruise', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'], untilEntry: 'wait_for_guidance', predicted_e_s: undefined, from: undefined,
       plain: 'The vehicle coasts towards Mars. It drops its cruise stage and turns the heat shield forward. From “do edl” on it follows its own timeline.',
     },
     {
       title: 'Entry', of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
-      untilEntry: undefined, predicted_e_s: 0,
+      untilEntry: undefined, predicted_e_s: 0, from: 'entry_interface',
       plain: 'It brakes in the thin air, from 5.8 km/s, and steers by rolling left and right. Around the hottest minute the radio is silent: that is expected, and the timeline names it.',
     },
     {
-      title: 'Parachute', of: ['parachute_descent'], untilEntry: undefined, predicted_e_s: 255.9,
+      title: 'Parachute', of: ['parachute_descent'], untilEntry: undefined, predicted_e_s: 255.9, from: 'parachute_deploy',
       plain: 'The parachute is open. The heat shield drops away, and the radar looks for the ground.',
     },
     {
-      title: 'Powered descent', of: ['powered_descent', 'sky_crane'], untilEntry: undefined, predicted_e_s: 378.2,
+      title: 'Powered descent', of: ['powered_descent', 'sky_crane'], untilEntry: undefined, predicted_e_s: 378.2, from: 'powered_approach',
       plain: 'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
     },
     {
-      title: 'Landed', of: ['landed', 'flyaway'], untilEntry: undefined, predicted_e_s: 431.5,
+      title: 'Landed', of: ['landed', 'flyaway'], untilEntry: undefined, predicted_e_s: 431.5, from: 'touchdown',
       plain: 'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
     },
   ],
   /** The mission whose landing the predicted corridor and phases are of. */
   predictedFor: 'MSL',
+  /** Left out of a timepoint's note where it is read as a sentence: marks of whose a number is, (H), (M) and (L), and the prediction, which has a lane. */
+  noteMarks: [/\s*\([^()]*\b[HML]\b[^()]*\)/g, /;\s*OD137 .*$/],
+  /**
+   * What the vehicle compares for a timepoint, as far as its own report of what it holds says the bound: shown until flight
+   * itself explains what holds it.
+   */
+  watches: [
+    { timepoint: 'parachute_deploy', channel: 'speed_mps', comparison: '<=', bound: 'parachute_speed_mps' },
+    { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
+  ],
   /** Commands that move timepoints, by their arguments: what they would do is drawn before they are sent. */
   moves: [
     { command: 'EDL_SET_TIMEPOINT_OFFSET', timepoint: 'timepoint', desired: 'desired_offset_s', minimum: 'minimum_offset_s' },
     { command: 'EDL_SET_PARAMETERS', anchor: 'entry', sclk: 'entry_sclk' },
     { command: 'EDL_SET_ANCHOR_OFFSET', anchorNumber: 'anchor', offset: 'offset_s' },
   ],
+
+  /** The vehicle's report of an anchor it holds: the anchor's name with this behind it is a channel. */
+  anchorReports: '_anchor_sclk',
 
   /** Shown first in the table of channels. */
   channels: [
@@ -76,8 +91,18 @@ export const LAYOUT = {
     },
   ],
 
+  /** What the review of a rehearsal says of its landing: flight's own words, and where the vehicle believed to be. */
+  landing: {
+    event: 'TOUCHDOWN', position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
+    target: { latitude_deg: 'target_latitude_deg', longitude_deg: 'target_longitude_deg', radius_m: 'target_radius_m' },
+  },
   /** The timepoint at which the descent picture ends. */
   landed: 'touchdown',
+  /** From then on the vehicle is two: these are of the one that flies away. */
+  afterLanding: {
+    whose: 'descent stage',
+    channels: ['altitude_m', 'speed_mps', 'descent_rate_mps', 'sensed_deceleration_g', 'bank_deg', 'bank_command_deg', 'mach', 'dynamic_pressure_Pa', 'radar_altitude_m', 'range_to_go_m', 'crossrange_m'],
+  },
 
   /** Seconds from entry that the timeline shows when nothing else is chosen. */
   window: { from: -60, to: 470 },

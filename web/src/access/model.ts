@@ -95,6 +95,16 @@ export function mayAct(now: Access = access.value): boolean {
   return now.state !== 'in' || now.role !== 'observer';
 }
 
+/** Rehearsals and campaigns. Whose session lacks the right is told so; the server decides. */
+export function mayRehearse(now: Access = access.value): boolean {
+  return now.state !== 'in' || now.rights.includes('rehearse');
+}
+
+/** For who may not: `what` needs a right that this session lacks. '' where there is nothing to say. */
+export function whyNotRehearse(what: string, now: Access = access.value): string {
+  return now.state === 'in' ? `${what} need the right to rehearse; you are ${now.user}, ${now.role}` : '';
+}
+
 effect(() => {
   if (turnedAway.value > 0) turnAway();
 });

@@ -3,11 +3,12 @@ import { computed, signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import type { Status } from '../design/status';
 import { Refused, call, wordsFor } from '../run/api';
-import { store } from '../run/session';
+import { isWorst } from '../run/limits';
+import { change, store } from '../run/session';
 
 export interface AlarmState {
   name: string;
-  kind: string; // limit, staleness
+  kind: string; // limit, staleness, link
   state: string; // unacknowledged, acknowledged, returned, latched, shelved, normal
   severity: string; // now; "none": within its limits again
   worst: string;
@@ -19,10 +20,10 @@ export interface AlarmState {
   sclk?: number;
   by?: string;
   note?: string;
+  reason?: string; // of staleness and links
 }
 export type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
 
-const DISTRESS = new Set(['critical', 'severe', 'distress']);
 const ORDER = ['unacknowledged', 'latched', 'returned', 'acknowledged', 'shelved', 'normal'];
 
 /** undefined: not asked yet; 'absent': a server without this route. */
@@ -39,14 +40,14 @@ export function lookOf(alarm: AlarmState): Status {
   const severity = alarm.severity === 'none' ? alarm.worst : alarm.severity;
   if (alarm.state === 'shelved' || alarm.state === 'normal') return 'quiet';
   if (alarm.severity === 'none' || alarm.severity === '') return 'good';
-  return DISTRESS.has(severity) ? 'alarm' : 'caution';
+  return isWorst(severity) ? 'alarm' : 'caution';
 }
 
 export const wantsLook = (alarm: AlarmState) => !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
 
 /** What no one has looked at first, the worst of it on top. */
 export function sorted(all: readonly AlarmState[]): AlarmState[] {
-  const rank = (alarm: AlarmState) => [ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state), DISTRESS.has(alarm.worst) ? 0 : 1];
+  const rank = (alarm: AlarmState) => [ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state), isWorst(alarm.worst) ? 0 : 1];
   return [...all].sort((a, b) => {
     const [x, y] = [rank(a), rank(b)];
     return (x[0] as number) - (y[0] as number) || (x[1] as number) - (y[1] as number) || a.name.localeCompare(b.name);
@@ -62,7 +63,7 @@ export function actionsOn(alarm: AlarmState): Action[] {
 export function calls(before: readonly AlarmState[], after: readonly AlarmState[]): 'alarm' | 'caution' | undefined {
   const known = new Map(before.filter(wantsLook).map((alarm) => [alarm.name, alarm.worst]));
   const fresh = after.filter((alarm) => wantsLook(alarm) && known.get(alarm.name) !== alarm.worst);
-  return fresh.some((alarm) => DISTRESS.has(alarm.worst)) ? 'alarm' : fresh.length > 0 ? 'caution' : undefined;
+  return fresh.some((alarm) => isWorst(alarm.worst)) ? 'alarm' : fresh.length > 0 ? 'caution' : undefined;
 }
 
 let asking = false;
@@ -93,7 +94,7 @@ export async function act(name: string, action: Action): Promise<void> {
   acting.value = name;
   problem.value = '';
   try {
-    await call('POST', `/runs/${run.id}/alarms`, {
+    await change(`/runs/${run.id}/alarms`, {
       channel: name, action, note: note.value.trim(), by: uplink.value.controller.trim(), ...(action === 'shelve' && { shelve_s: Number(shelveFor.value) }),
     });
     note.value = '';

@@ -31,6 +31,16 @@ describe('alarms', () => {
   it('look by shape as severe as they are now, and quiet once they are shelved', () => {
     expect([an({ severity: 'critical' }), an({}), an({ severity: 'none', state: 'returned' }), an({ state: 'shelved', severity: 'critical' })].map(lookOf)).toEqual(['alarm', 'caution', 'good', 'quiet']);
   });
+  it('of a lost link say that it is lost, and why', async () => {
+    server.routes[CURRENT] = { json: { alarms: [an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress', reason: 'unexplained: nothing is predicted to silence it now' })] } };
+    await refreshAlarms();
+    const page = document.createElement('main');
+    await settled(() => render(<Alarms />, page));
+    const row = page.querySelector('[data-alarm=x_band]');
+    expect(row?.textContent).toContain('lost');
+    expect(row?.textContent).toContain('unexplained');
+    expect(listed.value.map(lookOf)).toEqual(['alarm']);
+  });
   it('offer what can be done about each', () => {
     expect([an({}), an({ state: 'acknowledged', acknowledged: true }), an({ state: 'shelved' }), an({ state: 'latched', severity: 'none', latches: true })].map(actionsOn))
       .toEqual([['acknowledge', 'shelve'], ['shelve'], ['unshelve'], ['acknowledge', 'shelve', 'reset']]);

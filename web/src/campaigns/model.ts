@@ -1,8 +1,6 @@
 // Campaigns: dispersed landings that the server flies beside everything else, and what their cases come to. Statistics of rehearsals;
 // nothing here is of the vehicle.
 import { signal } from '@preact/signals';
-import { access } from '../access/model';
-import type { Access } from '../access/model';
 import { call, wordsFor } from '../run/api';
 
 export interface CampaignState {
@@ -11,7 +9,7 @@ export interface CampaignState {
   seed: string;
   cases: number;
   kept: number;
-  state: 'preparing' | 'flying' | 'complete' | 'incomplete' | 'unreadable';
+  state: 'preparing' | 'flying' | 'cancelling' | 'complete' | 'incomplete' | 'unreadable';
   jobs: number;
   rate_per_s: number;
   remaining_s?: number;
@@ -68,7 +66,8 @@ export const touchdowns = signal<readonly Touchdown[]>([]);
 export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
 export const busy = signal(false);
 
-export const flies = (state: CampaignState | undefined): boolean => state?.state === 'preparing' || state?.state === 'flying';
+/** Also one that is being cancelled: until its cases have ended no other can start. */
+export const flies = (state: CampaignState | undefined): boolean => state !== undefined && ['preparing', 'flying', 'cancelling'].includes(state.state);
 export const flyingNow = (): CampaignState | undefined => campaigns.value.find(flies);
 const at = (campaign: string) => `/campaigns/${encodeURIComponent(campaign)}`;
 
@@ -96,11 +95,21 @@ async function lookNow(): Promise<void> {
     choose(chosen.value ?? (flyingNow() ?? campaigns.value.find((each) => each.state !== 'unreadable'))?.campaign);
     await lookAtChosen();
     if (message.value?.text.startsWith(NO_LOOK)) message.value = undefined;
+    sayHowItEnded();
   } catch (error) {
     message.value = { good: false, text: `${NO_LOOK}${wordsFor(error)}` };
   }
 }
 const NO_LOOK = 'campaigns cannot be read now: ';
+
+let cancelledHere: string | undefined; // whoever cancels is told what came of it, once its cases have ended
+
+function sayHowItEnded(): void {
+  const state = campaigns.value.find((each) => each.campaign === cancelledHere);
+  if (flies(state)) return;
+  cancelledHere = undefined;
+  if (state) message.value = { good: state.fault === '', text: endWords(state) };
+}
 
 async function lookAtChosen(): Promise<void> {
   const campaign = chosen.value;
@@ -140,11 +149,10 @@ export const start = (scenario: string, cases: number, seed: string): Promise<vo
 });
 export const cancel = (campaign: string): Promise<void> => act(async () => {
   const state = await call<CampaignState>('POST', `${at(campaign)}/cancel`);
-  return `cancelled: ${state.kept} cases of ${campaign} are kept; starting it again goes on with them`;
+  campaigns.value = campaigns.value.map((each) => (each.campaign === campaign ? state : each));
+  cancelledHere = campaign;
+  return `${campaign} is being cancelled`;
 });
-
-/** Whose session lacks the right is told so; the server decides. */
-export const mayRehearse = (now: Access = access.value): boolean => now.state !== 'in' || now.rights.includes('rehearse');
 
 /** What is wrong with what was typed; undefined: nothing. */
 export function orderProblem(cases: string, seed: string, cases_max: number): string | undefined {
@@ -172,11 +180,20 @@ export function stateWords(state: CampaignState): string {
       const remains = state.remaining_s === undefined ? '' : `, ${lengthWords(state.remaining_s)} remain`;
       return `▶ ${kept}${rate}${remains}`;
     }
+    case 'cancelling':
+      return `◌ cancelling, ${kept} so far; it is over once those that fly now have ended`;
     case 'complete':
       return `✓ all ${state.cases} cases are kept`;
     default:
       return `▲ ${kept}: not complete; starting it again goes on`;
   }
+}
+
+/** Of one that was cancelled, once it is over. */
+export function endWords({ campaign, kept, cases, state, fault }: CampaignState): string {
+  if (fault !== '') return `${campaign} ended: ${fault}; ${kept} of its cases are kept`;
+  if (state === 'complete') return `too late to cancel: all ${cases} cases of ${campaign} had been flown, and are kept`;
+  return `cancelled: ${kept} cases of ${campaign} are kept; starting it again goes on with them`;
 }
 
 const STANDARD_GRAVITY_MPS2 = 9.80665;

@@ -3,8 +3,6 @@ import { ticks, valueStep } from '../draw/axis';
 import type { Surface } from '../draw/canvas';
 import { reach_km, report, touchdowns } from './model';
 
-const LEFT = 44;
-const BOTTOM = 34;
 const EDGE = 10;
 const LOW_PX = 170; // lower than this the axes go without words
 
@@ -13,17 +11,20 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   const ellipse = report.value?.ellipse;
   const reach = reach_km(points, ellipse);
   const low = height < LOW_PX;
-  const [wide, high] = [width - LEFT - EDGE, height - (low ? 18 : BOTTOM) - EDGE];
+  const type_px = Math.round(Math.min(17, Math.max(11, height / 32))); // read from farther away where there is room
+  c.font = `${type_px}px ${colours.sans}`;
+  const [left_px, bottom_px] = [type_px * 4, type_px * (low ? 1.7 : 3.1)];
+  const [wide, high] = [width - left_px - EDGE, height - bottom_px - EDGE];
   if (wide < 40 || high < 40) return;
   const km_px = Math.min(wide / (2 * reach.east), high / (2 * reach.north));
-  const [x0, y0] = [LEFT + wide / 2, EDGE + high / 2];
+  const [x0, y0] = [left_px + wide / 2, EDGE + high / 2];
   const x = (east_km: number) => x0 + east_km * km_px;
   const y = (north_km: number) => y0 - north_km * km_px;
-  const [bottom, right] = [EDGE + high, LEFT + wide];
+  const [bottom, right] = [EDGE + high, left_px + wide];
 
   // The grid: the same step both ways, so that its squares are squares.
   const [half_east, half_north] = [wide / 2 / km_px, high / 2 / km_px];
-  const step = valueStep((low ? 28 : 55) / km_px, 1);
+  const step = valueStep((low ? 28 : type_px * 3.6) / km_px, 1);
   c.strokeStyle = colours.line;
   c.fillStyle = colours.dim;
   c.lineWidth = 1;
@@ -37,15 +38,15 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   c.textAlign = 'right';
   c.textBaseline = 'middle';
   for (const north of ticks(-half_north, half_north, step)) {
-    line(c, LEFT, y(north), right, y(north));
-    c.fillText(words(north), LEFT - 5, y(north));
+    line(c, left_px, y(north), right, y(north));
+    c.fillText(words(north), left_px - 5, y(north));
   }
   c.textAlign = 'center';
   if (!low) {
     c.textBaseline = 'bottom';
     c.fillText('km east of the target', x0, height - 2);
     c.save();
-    c.translate(11, y0);
+    c.translate(type_px, y0);
     c.rotate(-Math.PI / 2);
     c.textBaseline = 'middle';
     c.fillText('km north of it', 0, 0);
@@ -55,7 +56,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
   // Cases: a dot each; what was no landing is a cross of another colour.
   c.fillStyle = colours.rehearsal;
   c.globalAlpha = points.length > 2000 ? 0.45 : 0.75;
-  const radius = points.length > 2000 ? 1.5 : 2.5;
+  const radius = points.length > 2000 ? 1.5 : type_px * 0.23;
   for (const point of points) {
     if (point.outcome !== 'touchdown' || point.east_m === undefined || point.north_m === undefined) continue;
     c.beginPath();
@@ -92,7 +93,7 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
 
   // A bar of a round length, for those who do not count squares.
   const bar_km = valueStep((wide / km_px) * 0.25, 1.01);
-  const [bx, by] = [LEFT + 12, bottom - 12];
+  const [bx, by] = [left_px + 12, bottom - 12];
   c.strokeStyle = colours.text;
   c.fillStyle = colours.text;
   line(c, bx, by, bx + bar_km * km_px, by);

@@ -4,7 +4,7 @@ import { act } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { access } from '../access/model';
 import { aServer } from '../testing/server';
-import { campaigns, cancel, choose, chosen, ellipseWords, lengthWords, look, message, orderProblem, reach_km, report, spreadRows, start, stateWords, touchdowns } from './model';
+import { campaigns, cancel, choose, chosen, ellipseWords, endWords, flies, lengthWords, look, message, orderProblem, reach_km, report, spreadRows, start, stateWords, touchdowns } from './model';
 import type { CampaignReport, CampaignState, Touchdown } from './model';
 import { Campaigns } from './view';
 
@@ -61,6 +61,25 @@ describe('a campaign', () => {
     await cancel('campaign-1');
     expect(message.value).toEqual({ good: false, text: 'the campaign campaign-1 does not fly' });
   });
+  it('that is cancelled is told of twice: that its cases still end, then what is kept', async () => {
+    const of = state({ state: 'cancelling', kept: 3 });
+    serves([of], aReport({ state: of }), { 0: [landed(1), landed(2), landed(3)], 3: [landed(4)] });
+    server.routes['POST /campaigns/campaign-1/cancel'] = { status: 202, json: of };
+    await cancel('campaign-1');
+    expect(message.value).toEqual({ good: true, text: 'campaign-1 is being cancelled' });
+    expect([stateWords(of), flies(of)]).toEqual(['◌ cancelling, 3 of 10 cases so far; it is over once those that fly now have ended', true]);
+    const over = state({ state: 'incomplete', kept: 4 });
+    serves([over], aReport({ state: over }), {});
+    await look();
+    expect(message.value).toEqual({ good: true, text: 'cancelled: 4 cases of campaign-1 are kept; starting it again goes on with them' });
+    message.value = undefined;
+    await look();
+    expect(message.value).toBeUndefined(); // said once
+  });
+  it('that ended otherwise than it was cancelled says how', () => {
+    expect(endWords(state({ state: 'complete', kept: 10 }))).toBe('too late to cancel: all 10 cases of campaign-1 had been flown, and are kept');
+    expect(endWords(state({ state: 'incomplete', fault: 'disk full' }))).toBe('campaign-1 ended: disk full; 2 of its cases are kept');
+  });
   it('is refused before it is sent where no server would take it', () => {
     expect(orderProblem('0', '1', 100)).toContain('1 to 100');
     expect(orderProblem('101', '1', 100)).toContain('cases');
@@ -106,6 +125,16 @@ describe('the panel', () => {
     expect(root.querySelector('[data-testid="campaign-failures"]')?.textContent).toContain('✖ lost<b>no</b> lift');
     expect(root.querySelector('[data-testid="campaign-cancel"]')?.textContent).toBe('cancel campaign-1');
     expect(root.querySelector<HTMLButtonElement>('[data-testid="campaign-start"]')?.disabled).toBe(true);
+  });
+  it('lets nobody cancel twice, nor start while the cases of one that is cancelled end', () => {
+    serves([state({ state: 'cancelling' })], aReport(), {});
+    campaigns.value = [state({ state: 'cancelling' })];
+    choose('campaign-1');
+    const root = shown();
+    const button = root.querySelector<HTMLButtonElement>('[data-testid="campaign-cancel"]');
+    expect([button?.textContent, button?.disabled]).toEqual(['cancelling campaign-1', true]);
+    expect(root.querySelector<HTMLButtonElement>('[data-testid="campaign-start"]')?.disabled).toBe(true);
+    expect(root.querySelector('[data-testid="campaign-state"]')?.textContent).toContain('cancelling');
   });
   it('lets nobody start who may not, and says why', () => {
     serves([], aReport(), {});

@@ -1,11 +1,11 @@
 // Campaigns: start one, watch the landing ellipse fill, cancel it, go on; and what former ones came to.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
-import { access } from '../access/model';
+import { mayRehearse, whyNotRehearse } from '../access/model';
 import { Canvas } from '../draw/canvas';
 import { scenarios } from '../run/session';
 import {
-  busy, campaigns, cancel, choose, chosen, ellipseWords, flyingNow, limits, look, mayRehearse, message, orderProblem, report, spreadRows, start, stateWords, touchdowns,
+  busy, campaigns, cancel, choose, chosen, ellipseWords, flyingNow, limits, look, message, orderProblem, report, spreadRows, start, stateWords, touchdowns,
 } from './model';
 import type { CampaignReport, CampaignState } from './model';
 import { drawTouchdowns } from './picture';
@@ -18,11 +18,6 @@ const scenario = signal('campaign');
 const cases = signal('200');
 const seed = signal('1');
 
-function whyNot(): string {
-  const now = access.value;
-  return now.state === 'in' ? `starting and cancelling need the right to rehearse; you are ${now.user}, ${now.role}` : '';
-}
-
 function Order() {
   const flying = flyingNow();
   const allowed = mayRehearse();
@@ -30,7 +25,7 @@ function Order() {
   const names = scenarios.value.length > 0 ? scenarios.value.map((each) => each.name) : ['campaign'];
   const known = campaigns.value.find((each) => each.campaign === `${scenario.value}-${seed.value}`);
   const goesOn = known !== undefined && known.kept > 0;
-  const hint = !allowed ? `○ ${whyNot()}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
+  const hint = !allowed ? `○ ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
   return (
     <form class="table-tools campaign-form" onSubmit={(event) => {
       event.preventDefault();
@@ -42,7 +37,11 @@ function Order() {
       <label>cases <input class="count" value={cases.value} inputMode="numeric" aria-invalid={problem?.startsWith('cases') === true} data-testid="campaign-cases" onInput={(event) => (cases.value = event.currentTarget.value)} /></label>
       <label>seed <input class="count" value={seed.value} inputMode="numeric" aria-invalid={problem !== undefined && !problem.startsWith('cases')} data-testid="campaign-seed" onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
       <button type="submit" disabled={problem !== undefined || flying !== undefined || !allowed || busy.value} data-testid="campaign-start">{goesOn ? 'go on' : 'start'}</button>
-      {flying && <button type="button" disabled={!allowed || busy.value} data-testid="campaign-cancel" onClick={() => void cancel(flying.campaign)}>cancel {flying.campaign}</button>}
+      {flying && (
+        <button type="button" disabled={!allowed || busy.value || flying.state === 'cancelling'} data-testid="campaign-cancel" onClick={() => void cancel(flying.campaign)}>
+          {flying.state === 'cancelling' ? 'cancelling' : 'cancel'} {flying.campaign}
+        </button>
+      )}
       {hint !== '' && <span class="campaign-hint">{hint}</span>}
     </form>
   );
@@ -78,7 +77,7 @@ function Numbers({ of }: { of: CampaignReport }) {
   const least = of.least_margin;
   return (
     <>
-      <p data-testid="campaign-ellipse">99 % ellipse: {of.ellipse ? ellipseWords(of.ellipse) : 'two touchdowns make one'}.</p>
+      <p class="campaign-matter" data-testid="campaign-ellipse">99 % ellipse: {of.ellipse ? ellipseWords(of.ellipse) : 'two touchdowns make one'}.</p>
       <table data-testid="campaign-outcomes">
         <thead><tr><th>outcome</th><th class="number">cases</th><th class="number">share</th></tr></thead>
         <tbody>

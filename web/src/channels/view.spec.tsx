@@ -1,9 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import { aDictionary, aStore, samples } from '../testing/fixtures';
-import { channelRows } from './model';
+import { aDictionary, aRun, aStore, samples } from '../testing/fixtures';
+import { contextAt } from '../run/limits';
+import { channelRow, channelsShown } from './model';
 
-const row = (store: ReturnType<typeof aStore>, name: string, cutoff = Infinity) =>
-  channelRows(store, aDictionary, name, cutoff).rows[0];
+function row(store: ReturnType<typeof aStore>, name: string, cutoff = Infinity, lost = false) {
+  const channel = aDictionary.pick([name]);
+  return channel && channelRow(store, channel, contextAt(store, aDictionary, cutoff), cutoff, lost);
+}
 
 describe('channels', () => {
   it('say label, unit and age in stream time', () => {
@@ -13,8 +16,17 @@ describe('channels', () => {
   it('are stale when they should have come', () => {
     expect(row(aStore([samples(880, { 3: 1, 4: 1 })]), 'altitude_m')?.look).toBe('stale');
   });
-  it('say that nothing came, and that a value is undefined', () => {
-    expect(row(aStore(), 'altitude_m')).toMatchObject({ value: '—', look: 'never' });
+  it('are stale at the instant that is shown, after the run as well, and all of them while nothing comes', () => {
+    const [old, going] = [[samples(500, { 3: 1, 4: 1 }), samples(501, { 3: 1, 4: 1 })], aStore([samples(899, { 3: 1, 4: 1 })])];
+    expect([row(aStore(old), 'altitude_m', 502)?.look, row(aStore(old), 'altitude_m', 520)?.look]).toEqual(['good', 'stale']);
+    expect(row(aStore(old, aRun({ state: 'finished' })), 'altitude_m')?.look).toBe('stale');
+    expect([false, true].map((lost) => row(going, 'altitude_m', Infinity, lost)?.look)).toEqual(['good', 'stale']);
+  });
+  it('say that nothing came once they were asked for, and that a value is undefined', () => {
+    const store = aStore();
+    expect(row(store, 'altitude_m')).toMatchObject({ value: '—', look: 'unasked' });
+    store.addHistory([], ['altitude_m']);
+    expect([row(store, 'altitude_m'), row(store, 'speed_mps')]).toMatchObject([{ value: '—', look: 'never' }, { look: 'unasked' }]);
     expect(row(aStore([samples(900, { 3: 1 })]), 'speed_mps')?.value).toBe('undefined');
   });
   it('judge the limits anew in a past view', () => {
@@ -22,7 +34,12 @@ describe('channels', () => {
     expect(row(store, 'altitude_m', 850)?.look).toBe('caution');
     expect(row(store, 'altitude_m')?.look).toBe('good');
   });
+  it('judge a past view by the limits of its state of EDL', () => {
+    const store = aStore([samples(800, { 1: 4, 4: 100 }), samples(850, { 1: 9, 4: 100 })]);
+    expect([800, 850].map((cutoff) => [row(store, 'speed_mps', cutoff)?.look, row(store, 'speed_mps', cutoff)?.limits]))
+      .toEqual([['caution', 'watch > 90; distress > 120'], ['good', 'watch > 6000']]);
+  });
   it('are found by any of their words', () => {
-    expect(channelRows(undefined, aDictionary, 'gnc speed', Infinity)).toMatchObject({ total: 1, rows: [{ name: 'speed_mps' }] });
+    expect(channelsShown(aDictionary, 'gnc speed')).toMatchObject({ total: 1, channels: [{ name: 'speed_mps' }] });
   });
 });

@@ -1,38 +1,51 @@
-import { signal } from '@preact/signals';
+import { computed, signal } from '@preact/signals';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { STATUS } from '../design/status';
-import { cutoff, dictionary, store, tick } from '../run/session';
-import { channelRows } from './model';
+import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import { contextAt } from '../run/limits';
+import { cutoff, dictionary, runNow, shownRun, stream } from '../run/session';
+import { watchSight, whenDue } from './due';
+import { channelRow, channelsShown } from './model';
 import './style.css';
 
 const filter = signal('');
+const shown = computed(() => (dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 }));
+const lost = computed(() => stream.value.state === 'lost');
+const context = computed(() => contextAt(runNow(), dictionary.value, cutoff.value));
+
+function Row({ channel, place }: { channel: DictionaryChannel; place: number }) {
+  whenDue(place);
+  const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, lost.value);
+  return (
+    <tr class={`look-${row.look}`} title={row.text} data-testid={`channel-${row.name}`}>
+      <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>
+      <td><span class="alias">{row.alias}</span> {row.name}{row.whose && <span class="alias">, {row.whose}</span>}</td>
+      <td class="number value">{row.value}</td>
+      <td>{row.unit}</td>
+      <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ' ▣' : ''}</td>
+      <td class="limits" title={row.allLimits}>{row.limits}</td>
+    </tr>
+  );
+}
 
 export function Channels() {
-  void tick.value;
-  const words = dictionary.value;
-  if (!words) return null;
-  const { rows, total } = channelRows(store.value, words, filter.value, cutoff.value);
+  const box = useRef<HTMLDivElement>(null);
+  const rows = useRef<HTMLTableSectionElement>(null);
+  const known = dictionary.value !== undefined;
+  useLayoutEffect(() => (box.current && rows.current ? watchSight(box.current, rows.current) : undefined), [known]);
+  if (!dictionary.value) return null;
+  const { channels, total } = shown.value;
   return (
     <div class="table-box">
       <div class="table-tools">
         <input type="search" placeholder="filter channels" aria-label="filter channels" value={filter.value}
           data-testid="channel-filter" onInput={(event) => (filter.value = event.currentTarget.value)} />
-        <span>{rows.length} of {words.channels.length} shown{total > rows.length ? `, ${total} match` : ''}</span>
+        <span>{channels.length} of {dictionary.value.channels.length} shown{total > channels.length ? `, ${total} match` : ''}</span>
       </div>
-      <div class="table-scroll" tabIndex={0} aria-label="channels">
+      <div class="table-scroll" ref={box} tabIndex={0} aria-label="channels">
         <table class="channels" data-testid="channel-table">
           <thead><tr><th>state</th><th>channel</th><th class="number">value</th><th>unit</th><th class="number">age</th><th>limits</th></tr></thead>
-          <tbody>
-            {rows.map((row) => (
-              <tr key={row.id} class={`look-${row.look}`} title={row.text} data-testid={`channel-${row.name}`}>
-                <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>
-                <td><span class="alias">{row.alias}</span> {row.name}</td>
-                <td class="number value">{row.value}</td>
-                <td>{row.unit}</td>
-                <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ' ▣' : ''}</td>
-                <td class="limits">{row.limits}</td>
-              </tr>
-            ))}
-          </tbody>
+          <tbody ref={rows}>{channels.map((channel, place) => <Row key={channel.id} channel={channel} place={place} />)}</tbody>
         </table>
       </div>
     </div>

@@ -1,9 +1,9 @@
+import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
-import { dayOfYear, duration, fromEntry } from '../run/time';
+import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';
 import { linkTitle } from '../links/model';
 import { MODES, isReal, modeOf } from '../mode/model';
 import type { RunStore } from '../run/store';
-import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { StreamState } from '../stream/messages';
 
 export interface Clock {
@@ -22,27 +22,26 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   const others: Clock[] = [
     { id: 'scet', label: 'at Mars (SCET)', value: dayOfYear(ert - lightTime) },
     { id: 'ert', label: 'on Earth (ERT)', value: dayOfYear(ert) },
-    { id: 'sclk', label: 'SCLK', value: Number.isFinite(sclk) ? sclk.toFixed(3) : '—' },
-    { id: 'light-time', label: 'light time', value: duration(lightTime) },
+    { id: 'sclk', label: 'SCLK', value: Number.isFinite(sclk) && sclk !== 0 ? sclk.toFixed(3) : '—' },
+    { id: 'light-time', label: 'light time', value: lightTime === 0 && isReal(store.run) ? '—' : duration(lightTime) },
   ];
   if (lightTime > 0 && past === undefined && clocks?.ert) {
     others.push({ id: 'mars-now', label: 'the vehicle is at', value: fromEntry(clocks.eS) });
   }
-  return { entry: fromEntry(e_s, { hours: true }), others };
+  return { entry: fromEntry(store.entryKnown ? e_s : NaN, { hours: true }), others };
 }
 
-/** When a command must leave Earth at the latest to come before the first timepoint of the plan. */
-export function latestSend(
-  store: RunStore, plan: readonly TimepointRow[],
-): { at: string; left_s: number; first: string } | undefined {
-  let first: TimepointRow | undefined;
-  for (const row of plan) {
-    if (row.plannedES !== undefined && (first?.plannedES === undefined || row.plannedES < first.plannedES)) first = row;
-  }
-  if (first?.plannedES === undefined || store.firings.size > 0) return undefined;
-  const latest_e_s = first.plannedES - store.run.lightTimeS;
-  const now_e_s = store.clocks?.eS ?? store.seenE;
-  return { at: fromEntry(latest_e_s), left_s: latest_e_s - now_e_s, first: first.name };
+/** Until when a command must leave Earth to come before the next timepoint of the plan that one can still reach; undefined `next`: none can. */
+export interface LatestSend {
+  next: { name: string; at: string; left_s: number } | undefined;
+}
+
+/** As the ground has it; undefined where it has no clocks. */
+export function latestSend(store: RunStore): LatestSend | undefined {
+  const { clocks } = store;
+  if (!clocks?.ert) return undefined;
+  const left_s = secondsOfDayOfYear(clocks.latestUseful) - secondsOfDayOfYear(clocks.ert);
+  return { next: clocks.usefulBefore === '' ? undefined : { name: clocks.usefulBefore, at: fromEntry(clocks.eS + left_s), left_s } };
 }
 
 export interface LinkLine {
@@ -51,13 +50,15 @@ export interface LinkLine {
   detail: string;
 }
 
-export function linksOf(store: RunStore, cutoff: number): LinkLine[] {
+/** Without a connection nothing is known of what a link does now: only of a past view it still is. */
+export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
+    if (lost && cutoff === Infinity && store.going) return { name: linkTitle(link), look: 'unknown', detail: 'no connection' };
     const until = changes.filter((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff));
     const last = until[until.length - 1]?.fact;
     return {
       name: linkTitle(link),
-      look: last === undefined ? 'unknown' : last.up ? 'up' : 'down',
+      look: last === undefined ? 'unknown' : linkLook(last.up, last.reason),
       detail: last?.reason || (last === undefined ? 'not yet' : last.up ? 'receiving' : 'silent'),
     };
   });
@@ -65,15 +66,14 @@ export function linksOf(store: RunStore, cutoff: number): LinkLine[] {
 
 const FEW = 3;
 
-/** For the header, where there is room for few: beyond that, the orbiters' links are one entry that says how many are up. */
-/** What does not arrive, or does not stay. */
-export function headerLinks(store: RunStore, cutoff: number): LinkLine[] {
+/** For the header: what does not arrive, or does not stay. Beyond a few, the orbiters' links are one entry that says how many are up. */
+export function headerLinks(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   const fault = store.run.archiveFault;
-  return [...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []), ...radioLinks(store, cutoff)];
+  return [...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []), ...radioLinks(store, cutoff, lost)];
 }
 
-function radioLinks(store: RunStore, cutoff: number): LinkLine[] {
-  const all = linksOf(store, cutoff);
+function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] {
+  const all = linksOf(store, cutoff, lost);
   if (all.length <= FEW) return all;
   const names = [...store.links.keys()];
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
@@ -81,7 +81,7 @@ function radioLinks(store: RunStore, cutoff: number): LinkLine[] {
   const up = others.filter((line) => line.look === 'up');
   return [...own, {
     name: `${others.length} relay links`, look: up.length > 0 ? 'up' : others.some((line) => line.look === 'down') ? 'down' : 'unknown',
-    detail: up.length > 0 ? `up: ${up.map((line) => line.name).join(', ')}` : others.findLast((line) => line.look === 'down')?.detail ?? 'not yet',
+    detail: up.length > 0 ? `up: ${up.map((line) => line.name).join(', ')}` : (others.findLast((line) => line.look === 'down') ?? others.at(-1))?.detail ?? 'not yet',
   }];
 }
 
@@ -93,7 +93,7 @@ export function streamLine(state: StreamState, attempt: number, gaps: number): L
   return {
     name: STREAM_WORDS[state],
     look: state === 'live' ? 'up' : state === 'lost' ? 'lost' : 'unknown',
-    detail: state === 'lost' ? `what is shown is old; attempt ${attempt}` : `gaps ${gaps}`,
+    detail: state === 'lost' ? `what is shown is old; attempt ${attempt}` : gaps > 0 ? `gaps ${gaps}` : '',
   };
 }
 

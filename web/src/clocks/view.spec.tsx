@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { aPlan, aRun, aStore, event, link, tone } from '../testing/fixtures';
+import { aRun, aStore, event, link, tone } from '../testing/fixtures';
 import { badgeOf, clocksOf, headerLinks, latestSend, linksOf, streamLine } from './model';
 
 describe('the header', () => {
@@ -11,10 +11,30 @@ describe('the header', () => {
     expect(entry).toBe('E−00:03:20');
     expect([of('ert'), of('scet'), of('sclk'), of('mars-now')]).toEqual(['2012-219T05:00:00.0', '2012-219T04:58:20.0', '800.000', 'E−01:40']);
   });
-  it('counts down to the latest time to send, a light time before the first timepoint', () => {
+  it('counts down to the latest time to send, as the ground has it', () => {
     const run = aRun({ lightTimeS: 10 });
-    if (run.clocks) run.clocks = { ...run.clocks, eS: -1000 };
-    expect(latestSend(aStore([], run), aPlan)).toMatchObject({ left_s: 164, first: 'coolant_vent' });
+    if (run.clocks) run.clocks = { ...run.clocks, eS: -1000, latestUseful: '2012-219T05:02:44.000', usefulBefore: 'coolant_vent' };
+    expect(latestSend(aStore([], run))).toEqual({ next: { name: 'coolant_vent', at: 'E−13:56', left_s: 164 } });
+  });
+  it('says that nothing useful can arrive, and nothing where the run has no clocks', () => {
+    expect(latestSend(aStore())).toEqual({ next: undefined });
+    const run = aRun({ state: 'finished' });
+    delete (run as { clocks?: unknown }).clocks;
+    expect(latestSend(aStore([], run))).toBeUndefined();
+  });
+  it('has a dash for every clock that nobody knows, of another mission that is followed', () => {
+    const run = aRun({ venue: 'downlink', entrySclk: 0 });
+    const of = (clocks: Partial<NonNullable<typeof run.clocks>>) => {
+      const store = aStore([], { ...run, clocks: run.clocks && { ...run.clocks, ert: '', scet: '', ...clocks } });
+      const { entry, others } = clocksOf(store, undefined);
+      return [entry, ...others.map((clock) => clock.value), latestSend(store)];
+    };
+    expect(of({ sclk: 0, seenSclk: 0 })).toEqual(['E —', '—', '—', '—', '—', undefined]);
+    expect(of({ sclk: 397500668, seenSclk: 397500668 })).toEqual(['E —', '—', '—', '397500668.000', '—', undefined]);
+  });
+  it('knows nothing of a link while nothing comes, but of the past what it was', () => {
+    const store = aStore([link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:00.0' })]);
+    expect([linksOf(store, Infinity, true)[0], linksOf(store, 890, true)[0]?.look]).toEqual([{ name: 'UHF live', look: 'unknown', detail: 'no connection' }, 'up']);
   });
   it('cannot be taken for another mode', () => {
     const titles = [

@@ -1,7 +1,9 @@
 // The header: which run, what time it is, what is connected.
 import { LINK_STATUS, STATUS } from '../design/status';
+import { inWords } from '../run/dictionary';
+import { isWorst } from '../run/limits';
 import { fromEntry, duration } from '../run/time';
-import { cutoff, modeNow, pastRange, replay, runNow, stream, timepoints } from '../run/session';
+import { cutoff, modeNow, pastRange, replay, runNow, stream } from '../run/session';
 import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model';
 import type { LinkLine } from './model';
 import { access } from '../access/model';
@@ -12,9 +14,33 @@ import './style.css';
 
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
   return (
-    <div class={`link link-${line.look}`} data-testid={testId}>
+    <div class={`link link-radio link-${line.look}`} data-testid={testId}>
       <b><span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}</b>
-      <small>{line.detail}</small>
+      <small title={line.detail}>{line.detail}</small>
+    </div>
+  );
+}
+
+/** Whether all that is shown is now, and all that there is: never cut off. */
+function Stream({ line, through }: { line: LinkLine; through: number | undefined }) {
+  return (
+    <div class={`link link-stream link-${line.look}`} data-testid="stream-state">
+      <b><span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}</b>
+      <small>
+        {through !== undefined && <span data-testid="complete-through">complete through {through.toLocaleString('en').replaceAll(',', ' ')}</span>}
+        {line.detail !== '' && `${through === undefined ? '' : ', '}${line.detail}`}
+      </small>
+    </div>
+  );
+}
+
+/** How many stand, the worst of it, and how many no one has looked at. Red only where one of them is of the worst kind, as anywhere else. */
+function AlarmCount({ severities, waiting, worst }: { severities: string[]; waiting: number; worst: boolean }) {
+  if (severities.length === 0 && waiting === 0) return null;
+  return (
+    <div class={`link link-${worst ? 'lost' : 'alarm'}`} data-testid="alarm-count">
+      <b><span aria-hidden="true">{worst ? '■' : '▲'}</span> {severities.length === 0 ? 'no alarm now' : `${severities.length} ${severities.length === 1 ? 'alarm' : 'alarms'}: ${[...new Set(severities)].join(', ')}`}</b>
+      {waiting > 0 && <small data-testid="alarms-waiting"><button type="button" class="quiet" onClick={() => focusPanel('alarms')}>{waiting} to acknowledge <kbd>a</kbd></button></small>}
     </div>
   );
 }
@@ -24,8 +50,8 @@ export function Header() {
   const past = pastRange.value;
   const badge = badgeOf(run, past, replay.value !== undefined);
   const clocks = run && clocksOf(run, past?.to);
-  const send = run?.going && !past ? latestSend(run, timepoints.value) : undefined;
-  const severities = run && !past ? [...run.alarms.values()] : [];
+  const send = run?.going && !past ? latestSend(run) : undefined;
+  const severities = run && !past ? [...run.alarms.values()].map((alarm) => alarm.severity) : [];
   const waiting = past ? 0 : toAcknowledge.value.length;
   return (
     <header class="header" data-testid="header">
@@ -47,37 +73,18 @@ export function Header() {
         </dl>
       )}
       {send && (
-        <div class={`clock ${send.left_s < 60 ? 'late' : ''}`} title={`before ${send.first}`}>
-          <small>send at the latest</small>
-          <output data-testid="latest-send">
-            {send.left_s < 0 ? `▲ too late since ${send.at}` : `${send.at}, in ${duration(send.left_s)}`}
-          </output>
+        <div class={`clock ${send.next && send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
+          <small>{send.next ? `latest to send before ${inWords(send.next.name)}` : 'latest to send'}</small>
+          <output>{send.next ? `${send.next.at}, in ${duration(send.next.left_s)}` : 'nothing useful can arrive'}</output>
         </div>
       )}
       <div class="links">
-        {waiting > 0 && (
-          <div class="link link-lost" data-testid="alarms-waiting">
-            <b><span aria-hidden="true">■</span> {waiting} to acknowledge</b>
-            <small><button type="button" class="quiet" onClick={() => focusPanel('alarms')}>alarms <kbd>a</kbd></button></small>
-          </div>
-        )}
-        {severities.length > 0 && (
-          <div class="link link-alarm" data-testid="alarm-count">
-            <b><span aria-hidden="true">▲</span> {severities.length} {severities.length === 1 ? 'alarm' : 'alarms'}</b>
-            <small>{[...new Set(severities.map((alarm) => alarm.severity))].join(', ')}</small>
-          </div>
-        )}
-        {run && headerLinks(run, cutoff.value).map((line) => (
+        <AlarmCount severities={severities} waiting={waiting} worst={[...severities, ...(past ? [] : toAcknowledge.value.map((alarm) => alarm.worst))].some(isWorst)} />
+        {run && headerLinks(run, cutoff.value, stream.value.state === 'lost').map((line) => (
           <Link key={line.name} line={line} testId={`link-${line.name}`} />
         ))}
-        <Link line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} testId="stream-state" />
+        <Stream line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} through={run?.completeThrough} />
         <Who />
-        {run && (
-          <div class="link" data-testid="complete-through">
-            <b>complete</b>
-            <small>through {run.completeThrough.toLocaleString('en').replaceAll(',', ' ')}</small>
-          </div>
-        )}
       </div>
     </header>
   );

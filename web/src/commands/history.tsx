@@ -10,7 +10,9 @@ import { act, uplink } from './line';
 import { newestEvidence, readBackOf, stageCells, waitingCommands } from './model';
 import type { StageCell } from './model';
 
-const HISTORY_SHOWN = 12;
+const HISTORY_SHOWN = 12; // ours: each has eight stages; older ones come by as many
+/** How many of which run. */
+const shown = signal({ run: 0, commands: HISTORY_SHOWN });
 
 export function Queue() {
   const run = runNow();
@@ -112,13 +114,14 @@ export function History() {
   const rows = [...run.commands.values()].sort((a, b) => b.command - a.command)
     .map((row) => ({ row, cells: stageCells(row, known) }))
     .filter(({ cells }) => cells.some((cell) => cell.look !== 'none'));
+  const most = shown.value.run === run.id ? shown.value.commands : HISTORY_SHOWN;
   return (
     <ol class="history" data-testid="command-history">
-      {rows.slice(0, HISTORY_SHOWN).map(({ row, cells }) => (
+      {rows.slice(0, most).map(({ row, cells }) => (
         <li key={row.command} data-command={row.name}>
           <div>
             <button type="button" class="link-button" aria-expanded={opened.value === row.command} onClick={() => void toggle(row.command)}>{row.name} #{row.command}</button>
-            {' '}<small>{newestEvidence(cells)}</small>
+            {' '}<small title={newestEvidence(cells)}>{newestEvidence(cells)}</small>
           </div>
           <ol class="stages">
             {cells.map((cell) => (
@@ -131,7 +134,7 @@ export function History() {
           {opened.value === row.command && <Details row={row} cells={cells} run={run} known={known} />}
         </li>
       ))}
-      {rows.length > HISTORY_SHOWN && <li class="none">{rows.length - HISTORY_SHOWN} older ones are in the archive</li>}
+      {rows.length > most && <li class="none"><button type="button" data-testid="older-commands" onClick={() => (shown.value = { run: run.id, commands: most + HISTORY_SHOWN })}>{rows.length - most} older: show {rows.length - most > HISTORY_SHOWN ? `${HISTORY_SHOWN} of them` : rows.length - most > 1 ? 'them' : 'it'}</button></li>}
       {rows.length === 0 && <li class="none">no command in this run yet</li>}
     </ol>
   );

@@ -1,7 +1,8 @@
 // The state of the command line, and its three keys: Enter goes one step on, Esc one step back, arrows choose.
 import { computed, signal } from '@preact/signals';
+import { learnAccess } from '../access/model';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
-import { dictionary, sendCommand, store, stream, tick } from '../run/session';
+import { OutcomeUnknown, dictionary, pastRange, sendCommand, store, stream, tick } from '../run/session';
 import type { CommandIntent, QueueAction } from '../stream/messages';
 import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
 import type { Step, UplinkText } from './model';
@@ -43,8 +44,8 @@ const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
   return intentOf(command, fields.value, uplink.value, store.value);
 });
 export const problemNow = computed(() => (intent.value && 'problem' in intent.value ? intent.value.problem : undefined));
-/** Changes when what would be sent does. */
-export const intentKey = computed(() => JSON.stringify(intent.value));
+/** Changes when what would be sent does, or where to. */
+export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRange.value !== undefined, intent.value]));
 
 /** The server's answer to a dry run of what is shown: nothing is sent by it. */
 export const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
@@ -89,6 +90,7 @@ export function choose(name: string): void {
   confirmation.value = '';
   formText.value = new Map();
   uplink.value = { ...AT_ONCE, controller: uplink.value.controller };
+  preview.value = undefined; // one of before says nothing of now
   step.value = 'review';
   message.value = undefined;
 }
@@ -122,6 +124,10 @@ export async function forward(): Promise<void> {
     return;
   }
   if (step.value === 'review' && isHazardous(command)) return arm();
+  if (!previewNow.value) {
+    message.value = { good: false, text: notReviewed() };
+    return;
+  }
   if (step.value === 'armed' && confirmation.value.trim().toUpperCase() !== command.name) {
     message.value = { good: false, text: `type ${command.name} to confirm; nothing was sent` };
     return;
@@ -135,8 +141,10 @@ export async function forward(): Promise<void> {
       ? { good: true, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}` }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) line.value = '';
+    else void learnAccess().catch(() => undefined); // rights may have been taken away in the middle
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
+    if (error instanceof OutcomeUnknown) line.value = ''; // the next Enter must not be a second one
   }
   step.value = 'type';
   chosenName.value = undefined;
@@ -144,12 +152,20 @@ export async function forward(): Promise<void> {
   openCommandLine();
 }
 
-/** Not while it is known that it would be refused: an armed command is one that can be sent. */
+/** What leaves has been shown as it leaves: only on the ground's answer to exactly this is Enter a yes. */
+const notReviewed = () => (['live', 'catching_up'].includes(stream.value.state)
+  ? 'the ground has not answered yet what would become of it: nothing was sent; read the review, then press Enter' : 'not connected: nothing was sent');
+
+/** Not while it is known that it would be refused, nor while nothing is known: an armed command is one that can be sent. */
 async function arm(): Promise<void> {
   const of = intentKey.value;
-  const reply = stream.value.state === 'live' ? await tryOut() : undefined;
+  const reply = await tryOut();
   if (step.value !== 'review' || intentKey.value !== of) return;
-  if (reply && !reply.accepted) {
+  if (!reply) {
+    message.value = { good: false, text: `not armed: ${notReviewed()}` };
+    return;
+  }
+  if (!reply.accepted) {
     message.value = { good: false, text: `not armed: ${reply.reason}` };
     return;
   }
@@ -180,4 +196,12 @@ export function back(all = false): void {
     line.value = '';
     (document.activeElement as HTMLElement | null)?.blur();
   }
+}
+
+/** What the ground said was of one run as it stood then: when another or the past is looked at nothing stays armed, and for another run nothing reviewed. */
+export function disarm(another: boolean): void {
+  const armed = step.value === 'armed' ? chosen.value?.name : undefined;
+  preview.value = undefined;
+  if (step.value === 'armed' || (step.value === 'review' && another)) back(another);
+  if (armed !== undefined) message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
 }

@@ -1,6 +1,6 @@
 // From what is typed to what is sent, step by step, all of it pure: what is sent is decided here and tested.
 import type { CommandArgument } from '../gen/aeolis/v1/scenario_pb';
-import type { DictionaryArgument, DictionaryCommand, TimepointRow } from '../gen/aeolis/v1/run_pb';
+import type { CommandReply, DictionaryArgument, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import type { StageLook } from '../design/status';
 import type { Dictionary } from '../run/dictionary';
 import { numberText } from '../run/dictionary';
@@ -119,6 +119,9 @@ export function unknownNames(command: DictionaryCommand, given: ReadonlyMap<stri
   return [...given.keys()].filter((name) => !command.arguments.some((argument) => argument.name === name));
 }
 
+/** The unit of a number without one is 1 in the dictionary: beside a range it would be read as a number. */
+export const unitText = (argument: DictionaryArgument): string => (argument.unit === '1' ? '' : argument.unit);
+
 export function rangeText(argument: DictionaryArgument): string {
   if (argument.labels.length > 0) return argument.labels.map((label) => label.label).join(' | ');
   const { min, max } = argument;
@@ -133,11 +136,11 @@ export interface Precondition {
 }
 
 /** Preconditions as the page sees them, for who waits for one; before sending the server is asked, and flight decides by itself. */
-export function preconditionsOf(command: DictionaryCommand, dictionary: Dictionary, store: RunStore | undefined): Precondition[] {
+export function preconditionsOf(command: DictionaryCommand, dictionary: Dictionary, store: RunStore | undefined, cutoff = Infinity): Precondition[] {
   return command.preconditions.map((words, index) => {
     const condition = command.conditions[index];
     const channel = condition && dictionary.channel(condition.channel);
-    const sample = channel && store?.latest(channel.id);
+    const sample = channel && store?.latest(channel.id, cutoff);
     if (!channel || !sample || Number.isNaN(sample.value)) return { words, holds: undefined, value: 'not known' };
     return {
       words, holds: compare(sample.value, condition.comparison, condition.value),
@@ -146,7 +149,7 @@ export function preconditionsOf(command: DictionaryCommand, dictionary: Dictiona
   });
 }
 
-function compare(value: number, relation: string, bound: number): boolean {
+export function compare(value: number, relation: string, bound: number): boolean {
   switch (relation) {
     case '==': return value === bound;
     case '!=': return value !== bound;
@@ -193,25 +196,22 @@ export function readReleaseAt(text: string, store: RunStore | undefined): string
 }
 
 export interface Arrival {
-  leaves_ert: string;
   arrives_e_s: number;
-  /** The next planned timepoint that it still comes before, and when it must leave at the latest for that. */
+  /** What it is to come before, when it must leave at the latest for that, and how long before that it does: negative, it comes too late. */
   before: { name: string; leave_ert: string; slack_s: number } | undefined;
-  /** Timepoints that will be past while it is on its way. */
+  /** Timepoints that will be past when it is there. */
   tooLateFor: string[];
 }
 
-/** What a dry run's times mean for the plan. */
-export function arrivalOf(reply: { arrives: string }, store: RunStore, plan: readonly TimepointRow[]): Arrival {
-  const light_s = store.run.lightTimeS;
-  const arrives_e_s = secondsOfDayOfYear(reply.arrives) + light_s - store.ertOf(store.entrySclk);
-  const now_e_s = store.clocks?.eS ?? store.seenE;
-  const planned = plan.flatMap((row) => (row.plannedES === undefined ? [] : [{ name: row.name, at: row.plannedES }])).sort((a, b) => a.at - b.at);
-  const next = planned.find((row) => row.at > arrives_e_s);
+/** What the ground says of the times of a command, by the clock from entry. */
+export function arrivalOf(reply: Pick<CommandReply, 'arrives' | 'leaves' | 'latestUseful' | 'usefulBefore' | 'tooLateFor'>, store: RunStore): Arrival {
+  const name = reply.usefulBefore;
+  const slack_s = secondsOfDayOfYear(reply.latestUseful) - secondsOfDayOfYear(reply.leaves);
+  const misses = name !== '' && slack_s <= 0 && !reply.tooLateFor.includes(name);
   return {
-    leaves_ert: dayOfYear(secondsOfDayOfYear(reply.arrives) - light_s), arrives_e_s,
-    before: next && { name: next.name, leave_ert: dayOfYear(store.ertOf(store.entrySclk + next.at) - 2 * light_s), slack_s: next.at - arrives_e_s },
-    tooLateFor: planned.filter((row) => row.at > now_e_s && row.at <= arrives_e_s).map((row) => row.name),
+    arrives_e_s: secondsOfDayOfYear(reply.arrives) + store.run.lightTimeS - store.ertOf(store.entrySclk),
+    before: name === '' ? undefined : { name, leave_ert: reply.latestUseful, slack_s },
+    tooLateFor: misses ? [...reply.tooLateFor, name] : reply.tooLateFor,
   };
 }
 

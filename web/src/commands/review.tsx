@@ -3,11 +3,11 @@ import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
-import { runNow, store, timepoints } from '../run/session';
+import { runNow, store } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import { moved } from '../timeline/now';
 import { confirmation, fields, formText, intentKey, openCommandLine, previewNow, problemNow, step, tryOut, typed, uplink } from './line';
-import { arrivalOf, conditionWords, isHazardous, rangeText } from './model';
+import { arrivalOf, conditionWords, isHazardous, rangeText, unitText } from './model';
 import type { UplinkText } from './model';
 
 const TYPED_MS = 150; // ours: after the last key
@@ -32,7 +32,7 @@ function Fields({ onKey }: Pick<Properties, 'onKey'>) {
               aria-invalid={field.problem !== undefined} disabled={typed.value.given.has(field.argument.name) || step.value !== 'review'}
               onKeyDown={onKey}
               onInput={(event) => (formText.value = new Map([...formText.value, [field.argument.name, event.currentTarget.value]]))} />
-            <small>{field.argument.unit} {field.problem ?? rangeText(field.argument)}</small>
+            <small>{unitText(field.argument)} {field.problem ?? rangeText(field.argument)}</small>
           </label>
         ))}
       </div>
@@ -67,7 +67,7 @@ const CONDITION = { holds: 'holds', fails: 'failed', unknown: 'unknown' } as con
 function Told({ reply }: { reply: CommandReply }) {
   const run = runNow();
   if (!run) return null;
-  const arrival = reply.arrives ? arrivalOf(reply, run, timepoints.value) : undefined;
+  const arrival = reply.arrives ? arrivalOf(reply, run) : undefined;
   const octets = reply.octets.length / 2;
   return (
     <>
@@ -82,15 +82,15 @@ function Told({ reply }: { reply: CommandReply }) {
       )}
       {arrival && (
         <dl class="told">
-          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{arrival.leaves_ert}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}{reply.station && <>, <span data-testid="station">from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT</span></>}</dd>
-          <dt>at Mars</dt><dd data-testid="arrives"><output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>{uplink.value.hold && ' or later'}</dd>
-          <dt>effect seen</dt><dd data-testid="effect-seen">from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it leaves</dd>
           <dt>at the latest</dt>
           <dd data-testid="send-by">
-            {arrival.before ? <>leave by <output>{arrival.before.leave_ert}</output> ERT to be there before {inWords(arrival.before.name)}: <output>{duration(arrival.before.slack_s)}</output> to spare</>
-              : 'nothing that is planned by the clock comes after it'}
-            {arrival.tooLateFor.length > 0 && <b class="caution"> ▲ Too late for {arrival.tooLateFor.slice(0, 3).map(inWords).join(', ')}{arrival.tooLateFor.length > 3 && ` and ${arrival.tooLateFor.length - 3} more`}.</b>}
+            {arrival.before && arrival.before.slack_s > 0 ? <>leave by <output>{arrival.before.leave_ert}</output> ERT to be there before {inWords(arrival.before.name)}: <output>{duration(arrival.before.slack_s)}</output> to spare</>
+              : arrival.before ? <>too late: to be there before {inWords(arrival.before.name)} it had to leave by <output>{arrival.before.leave_ert}</output> ERT</>
+              : 'nothing comes after it whose time is planned or predicted'}
           </dd>
+          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{reply.leaves}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}{reply.station && <>, <span data-testid="station">from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT</span></>}</dd>
+          <dt>at Mars</dt><dd data-testid="arrives"><output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>{uplink.value.hold && ' or later'}</dd>
+          <dt>effect seen</dt><dd data-testid="effect-seen">from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it leaves</dd>
           {reply.timeline && <><dt>timeline</dt><dd data-testid="analysed">✓ {reply.timeline}</dd></>}
           {reply.arguments && <><dt>as encoded</dt><dd class="encoded" tabIndex={0} aria-label="arguments as encoded">{reply.arguments}</dd></>}
           <dt>{octets} octets</dt><dd class="encoded" tabIndex={0} aria-label="octets">{reply.octets.replace(/../g, '$& ')}</dd>
@@ -100,8 +100,26 @@ function Told({ reply }: { reply: CommandReply }) {
   );
 }
 
+/** The ground's word on what stands in the form, and what it comes too late for: the first to be seen, before and while it is armed. */
+function Verdict({ command }: { command: DictionaryCommand }) {
+  const run = runNow();
+  const reply = previewNow.value;
+  const problem = problemNow.value;
+  const tooLateFor = run && reply?.arrives && problem === undefined ? arrivalOf(reply, run).tooLateFor : [];
+  return (
+    <>
+      {problem !== undefined ? <p class="verdict unknown">○ {problem}</p>
+        : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
+          : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
+          : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
+            : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
+      {tooLateFor.length > 0 && <p class="verdict caution" data-testid="too-late">▲ Too late for {tooLateFor.slice(0, 3).map(inWords).join(', ')}{tooLateFor.length > 3 && ` and ${tooLateFor.length - 3} more`}.</p>}
+    </>
+  );
+}
+
 /** Asks again while it is looked at, for conditions change. */
-function DryRun({ command }: { command: DictionaryCommand }) {
+function DryRun({ command, onKey }: Properties) {
   const key = intentKey.value;
   useEffect(() => {
     const soon = setTimeout(() => void tryOut(), TYPED_MS);
@@ -112,43 +130,37 @@ function DryRun({ command }: { command: DictionaryCommand }) {
     };
   }, [key, store.value?.id]);
   const reply = previewNow.value;
-  const problem = problemNow.value;
   return (
     <div class="dry-run" data-testid="dry-run" aria-live="polite">
-      {problem !== undefined ? <p class="verdict unknown">○ {problem}</p>
-        : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
-          : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
-          : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
-            : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
+      <Verdict command={command} />
       {step.value === 'review' && (
-        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
+        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : reply?.needsApproval ? 'asks a second controller for it' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
       )}
+      <Effect onKey={onKey} />
       {reply && <Told reply={reply} />}
     </div>
   );
 }
 
-const MOVED_SHOWN = 4;
+const MOVED_SHOWN = 12;
 
-/** What it would move, in words; the lane of predictions has the same drawn. */
-function Effect() {
+/** What it would move: one line, that opens; the lane of predictions has the same drawn. */
+function Effect({ onKey }: Pick<Properties, 'onKey'>) {
   const all = moved.value;
   if (!all) return null;
   const most = all.reduce((largest, each) => Math.max(largest, Math.abs(each.to_e_s - each.from_e_s)), 0);
+  if (all.length === 0) return <p class="effect" data-testid="effect">◌ As predicted now, it moves no timepoint.</p>;
+  const [what, atMost] = [`◌ It would move ${all.length} ${all.length === 1 ? 'timepoint' : 'timepoints'}`, `, by at most ${duration(most)}`];
   return (
-    <div class="effect" data-testid="effect" role="status">
-      {all.length === 0 ? <p>◌ As predicted now, it moves no timepoint.</p> : (
-        <>
-          <p><b>◌ It would move {all.length} {all.length === 1 ? 'timepoint' : 'timepoints'}</b>, by at most {duration(most)}: dashed on the timeline.</p>
-          <ul>
-            {all.slice(0, MOVED_SHOWN).map((each) => (
-              <li key={each.id}>{inWords(each.name)} <output>{fromEntry(each.from_e_s, { tenths: true })} → {fromEntry(each.to_e_s, { tenths: true })}, {each.to_e_s > each.from_e_s ? '+' : '−'}{duration(Math.abs(each.to_e_s - each.from_e_s))}</output></li>
-            ))}
-            {all.length > MOVED_SHOWN && <li>and {all.length - MOVED_SHOWN} more</li>}
-          </ul>
-        </>
-      )}
-    </div>
+    <details class="effect" data-testid="effect">
+      <summary title={what + atMost} onKeyDown={(event) => event.key === 'Escape' && onKey(event)}><b>{what}</b>{atMost}</summary>
+      <ul>
+        {all.slice(0, MOVED_SHOWN).map((each) => (
+          <li key={each.id}>{inWords(each.name)} <output>{fromEntry(each.from_e_s, { tenths: true })} → {fromEntry(each.to_e_s, { tenths: true })}, {each.to_e_s > each.from_e_s ? '+' : '−'}{duration(Math.abs(each.to_e_s - each.from_e_s))}</output></li>
+        ))}
+        {all.length > MOVED_SHOWN && <li>and {all.length - MOVED_SHOWN} more, dashed on the timeline</li>}
+      </ul>
+    </details>
   );
 }
 
@@ -157,8 +169,7 @@ export function Review({ command, onKey }: Properties) {
     <div class="review" data-testid="command-review">
       <p><b>{command.name}</b> {command.text}</p>
       {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
-      <Effect />
-      <DryRun command={command} />
+      <DryRun command={command} onKey={onKey} />
       <Fields onKey={onKey} />
       <Uplink onKey={onKey} />
     </div>
@@ -174,6 +185,8 @@ export function Armed({ command, onKey }: { command: DictionaryCommand; onKey: (
   return (
     <div class="armed" data-testid="command-armed">
       <b>▲ ARMED: {command.name}</b>
+      {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
+      <Verdict command={command} />
       <label>
         <span> Type <b>{command.name}</b> and press Enter to send. Esc disarms.</span>
         <input ref={input} data-testid="command-confirmation" autocomplete="off" spellcheck={false} value={confirmation.value}

@@ -1,13 +1,17 @@
 // @vitest-environment happy-dom
+import { create } from '@bufbuild/protobuf';
 import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { afterEach, beforeEach, describe, expect, it } from 'vitest';
-import { useForTest } from '../run/session';
-import { aDictionary, aPlan, aRun, aStore, samples, stage } from '../testing/fixtures';
-import { back, chosen, complete, forward, line, message, step, type } from './line';
+import { backToLive, dismissNotice, lookAtPast, notices, onMessage, useForTest } from '../run/session';
+import { CommandReplySchema, DictionaryArgumentSchema } from '../gen/aeolis/v1/run_pb';
+import type { ToWorker } from '../stream/messages';
+import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
+import { aServer } from '../testing/server';
+import { back, chosen, complete, confirmation, forward, line, message, previewNow, step, tryOut, type } from './line';
 import {
   AT_ONCE, argumentOffers, arrivalOf, candidates, conditionWords, fieldsOf, intentOf, isHazardous, preconditionsOf, readBackOf, readLine, readReleaseAt,
-  stageCells, waitingCommands,
+  stageCells, unitText, waitingCommands,
 } from './model';
 import { Commands } from './view';
 
@@ -51,6 +55,11 @@ describe('what is typed', () => {
   });
 });
 
+it('a number without a unit has none beside its range, where the dictionary’s 1 would be read as a number', () => {
+  const unit = (of: string) => unitText(create(DictionaryArgumentSchema, { unit: of }));
+  expect([unit('1'), unit('m/s'), unit('')]).toEqual(['', 'm/s', '']);
+});
+
 describe('stages', () => {
   it('shows nothing green that was not heard of', () => {
     const row = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok' }), stage({ command: 1n, stage: 'received', status: 'unknown' })]).commands.get(1);
@@ -82,10 +91,15 @@ describe('what is asked of the uplink', () => {
     const run = aRun({ lightTimeS: 60 });
     if (run.clocks) run.clocks = { ...run.clocks, sclk: 160, eS: -840, seenSclk: 100 };
     // Received now, at 05:00:00: SCLK 100, which was SCET 04:59:00. What leaves now comes at SCLK 220, which is E-780.
-    expect(arrivalOf({ arrives: '2012-219T05:01:00' }, aStore([], run), aPlan)).toEqual({
-      leaves_ert: '2012-219T05:00:00.0', arrives_e_s: -780, tooLateFor: ['coolant_vent'],
-      before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.0', slack_s: 780 },
+    const told = { leaves: '2012-219T05:00:00.000', arrives: '2012-219T05:01:00.000', latestUseful: '2012-219T05:13:00.000', usefulBefore: 'entry_interface', tooLateFor: ['coolant_vent'] };
+    expect(arrivalOf(told, aStore([], run))).toEqual({
+      arrives_e_s: -780, tooLateFor: ['coolant_vent'],
+      before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.000', slack_s: 780 },
     });
+    // A change of an offset that comes after what it moves.
+    const late = arrivalOf({ ...told, latestUseful: '2012-219T04:50:00.000', usefulBefore: 'uhf_start' }, aStore([], run));
+    expect([late.before?.slack_s, late.tooLateFor]).toEqual([-600, ['coolant_vent', 'uhf_start']]);
+    expect(arrivalOf({ ...told, latestUseful: '', usefulBefore: '' }, aStore([], run)).before).toBeUndefined();
   });
   it('shows the ground’s word on a precondition with its value apart', () => {
     expect(conditionWords('parameters_received == 1: is 0')).toEqual({ words: 'parameters_received == 1', value: 'is 0' });
@@ -143,12 +157,89 @@ describe('Tab', () => {
   });
 });
 
+let heard: Extract<ToWorker, { type: 'command' }>[] = [];
+/** A worker that says nothing by itself. */
+function connected(): void {
+  heard = [];
+  useForTest(aStore(), aDictionary, (message) => {
+    if (message.type === 'command') heard.push(message);
+  });
+  onMessage({ type: 'stream', state: 'live', attempt: 0, gaps: 0, serverVersion: '' });
+}
+const reply = (fields: object = {}, to = heard.at(-1)) => onMessage({ type: 'reply', reply: create(CommandReplySchema, { request: BigInt(to?.request ?? 0), accepted: true, command: 7n, ...fields }) });
+/** The ground says yes to what was asked last. */
+async function answered(step: Promise<unknown>): Promise<void> {
+  await Promise.resolve();
+  reply();
+  await step;
+}
+
+describe('an answer', () => {
+  aServer(); // after a lost connection it is asked who we are
+  beforeEach(() => connected());
+  afterEach(() => {
+    onMessage({ type: 'stream', state: 'connecting', attempt: 0, gaps: 0, serverVersion: '' });
+    back(true);
+    type('');
+    dismissNotice();
+  });
+  const reviewed = async () => {
+    type('no op');
+    await forward();
+    await answered(tryOut());
+  };
+  it('is that which bears the command’s number: a refusal of anything else is a notice, and takes no answer away', async () => {
+    await reviewed();
+    const sent = forward();
+    onMessage({ type: 'refusal', reason: 'the archive could not be read' });
+    onMessage({ type: 'trouble', words: 'history: 503' });
+    expect([step.value, notices.value.map((each) => each.text)]).toEqual(['sending', ['the archive could not be read', 'history: 503']]);
+    await answered(sent);
+    expect(message.value).toMatchObject({ good: true, text: expect.stringContaining('NO_OP is #7') });
+  });
+  it('to something else that comes in between is not taken for it', async () => {
+    await reviewed();
+    const sent = forward();
+    reply({ accepted: false, reason: 'another one' }, { ...heard[0], request: 4711 } as never);
+    expect(step.value).toBe('sending');
+    await answered(sent);
+    expect(message.value?.good).toBe(true);
+  });
+  it('to the dry run must stand there before anything leaves', async () => {
+    type('no op');
+    await forward();
+    await forward();
+    expect([heard.length, step.value, message.value?.text]).toEqual([0, 'review', expect.stringContaining('nothing was sent')]);
+    await answered(tryOut());
+    await answered(forward());
+    expect(heard.map((each) => each.intent.dryRun === true)).toEqual([true, false]);
+  });
+  it('that never comes leaves nothing in the line that another Enter would send again', async () => {
+    await reviewed();
+    const sent = forward();
+    onMessage({ type: 'stream', state: 'lost', attempt: 1, gaps: 0, serverVersion: '' });
+    await sent;
+    expect([line.value, step.value, message.value?.text]).toEqual(['', 'type', expect.stringContaining('whether it was taken is not known')]);
+    connected();
+    for (let presses = 0; presses < 4; ++presses) await forward();
+    expect(heard).toEqual([]);
+  });
+  it('is not waited for where nothing left', async () => {
+    await reviewed();
+    const sent = forward();
+    onMessage({ type: 'not_sent', request: heard.at(-1)?.request ?? 0 });
+    await sent;
+    expect([line.value, message.value?.text]).toEqual(['no op', expect.stringContaining('not connected: nothing was sent')]);
+  });
+});
+
 describe('the command line', () => {
   let root: HTMLElement;
   beforeEach(() => {
     root = document.createElement('div');
     document.body.append(root);
     useForTest(aStore(), aDictionary);
+    onMessage({ type: 'stream', state: 'connecting', attempt: 0, gaps: 0, serverVersion: '' }); // nobody answers
     act(() => render(<Commands />, root));
   });
   afterEach(() => {
@@ -178,8 +269,12 @@ describe('the command line', () => {
     expect([step.value, chosen.value?.name]).toEqual(['review', 'EDL_DO_EDL']);
     expect(isHazardous(doEdl)).toBe(true);
     await act(() => forward());
+    expect([step.value, message.value?.text]).toEqual(['review', 'not armed: not connected: nothing was sent']);
+    connected();
+    await act(() => answered(forward()));
     expect(step.value).toBe('armed');
-    expect(root.querySelector('[data-testid="command-armed"]')).not.toBeNull();
+    // What matters at that moment stands with it: why to beware, and the ground's word.
+    expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(/ARMED: EDL_DO_EDL.*Starts the timeline.*It would be sent once it is armed and its name is typed.*Type EDL_DO_EDL/);
     await act(() => forward());
     expect([step.value, message.value?.good]).toEqual(['armed', false]);
     act(() => back());
@@ -187,11 +282,51 @@ describe('the command line', () => {
     act(() => back());
     expect(step.value).toBe('type');
   });
+  it('keeps nothing armed when the past is looked at, nor anything reviewed when it is another run', async () => {
+    const armed = async () => {
+      connected();
+      act(() => type('do edl'));
+      await act(() => forward());
+      await act(() => answered(forward()));
+      act(() => void (confirmation.value = 'EDL_DO_EDL'));
+      expect([step.value, heard.length]).toEqual(['armed', 1]);
+    };
+    await armed();
+    act(() => lookAtPast({ from: -200, to: -150 }, false));
+    act(() => backToLive());
+    expect([step.value, confirmation.value, previewNow.value, message.value?.text]).toEqual(['review', '', undefined, 'EDL_DO_EDL is not armed any more: nothing was sent']);
+    act(() => back(true));
+    await armed();
+    act(() => useForTest(aStore([], aRun({ run: 2n })), aDictionary, (said) => said.type === 'command' && void heard.push(said)));
+    expect([step.value, confirmation.value, chosen.value, root.querySelector('[data-testid="command-armed"]')]).toEqual(['type', '', undefined, null]);
+    await act(() => forward());
+    expect([step.value, previewNow.value, heard.length]).toEqual(['review', undefined, 1]); // and needs the ground's word of that run
+  });
+  it('is not armed by an answer that comes when the past is looked at', async () => {
+    connected();
+    act(() => type('do edl'));
+    await act(() => forward());
+    const arming = forward();
+    act(() => lookAtPast({ from: -200, to: -150 }, false));
+    await act(() => answered(arming));
+    act(() => backToLive());
+    expect(step.value).toBe('review');
+  });
   it('does not go on with a missing argument', async () => {
     act(() => type('set edl parameters'));
     await act(() => forward());
     await act(() => forward());
     expect([step.value, message.value?.text]).toEqual(['review', 'solution_id is needed']);
+  });
+  it('shows the newest twelve commands, and older ones on request, down to the first', () => {
+    const numbers = () => [...root.querySelectorAll('[data-command] button')].map((each) => Number(each.textContent?.split('#')[1]));
+    act(() => useForTest(aStore(Array.from({ length: 30 }, (_, i) => stage({ command: BigInt(i + 1), name: 'NO_OP', stage: 'queued', status: 'ok' }))), aDictionary));
+    expect([numbers().length, numbers()[0], numbers().at(-1)]).toEqual([12, 30, 19]);
+    const older = () => root.querySelector<HTMLElement>('[data-testid="older-commands"]');
+    expect(older()?.textContent).toBe('18 older: show 12 of them');
+    act(() => older()?.click());
+    act(() => older()?.click());
+    expect([numbers().length, numbers().at(-1), older()]).toEqual([30, 1, null]);
   });
   it('shows a name with markup as text', () => {
     act(() => {

@@ -1,10 +1,12 @@
 // Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
 import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';
-import { pastRange, takesCommands } from '../run/session';
+import { hasNoCommands, pastRange, takesCommands } from '../run/session';
+import './disarm';
+import { CommandFile } from './file_view';
 import { History, Queue } from './history';
 import { back, choiceIndex, choose, chosen, complete, forward, inArguments, line, message, offered, openCommandLine, step, type } from './line';
-import { isHazardous, rangeText } from './model';
+import { isHazardous, rangeText, unitText } from './model';
 import { Armed, Review } from './review';
 import './style.css';
 
@@ -34,7 +36,7 @@ function Offers() {
               complete();
               openCommandLine();
             }}>
-              <b>{within.stem}{offer}</b> <span>{argument && `${argument.unit} ${rangeText(argument)} ${argument.text}`}</span>
+              <b>{within.stem}{offer}</b> <span>{argument && `${unitText(argument)} ${rangeText(argument)} ${argument.text}`}</span>
             </li>
           );
         })}
@@ -60,6 +62,7 @@ function Offers() {
 export function Commands() {
   const command = chosen.value;
   const canSend = takesCommands();
+  if (hasNoCommands()) return <Panel name="commands" title="Command"><p class="none" data-testid="no-commands">This venue has no commands here.</p></Panel>;
   return (
     <Panel name="commands" title="Command" extra={<span><kbd>/</kbd> to type</span>}>
       <div class="command-line">
@@ -77,6 +80,7 @@ export function Commands() {
         </p>
       )}
       <Queue />
+      {canSend && <CommandFile />}
       <History />
     </Panel>
   );

@@ -65,3 +65,21 @@ export function placeIn(corridor: readonly CorridorPoint[], altitude_m: number, 
   }
   return best.off <= best.half ? 'inside' : best.side > 0 ? 'above' : 'below';
 }
+
+export type Box = readonly [left: number, top: number, right: number, bottom: number];
+export type Pixel = readonly [x: number, y: number];
+const STEP_PX = 4; // ours: words that keep clear of a point each so many pixels keep clear of the line
+
+/** Of the way that is drawn a point each few pixels. */
+export function wayOf(points: readonly Pixel[]): Pixel[] {
+  const way: Pixel[] = [];
+  for (const point of points) {
+    const last = way[way.length - 1];
+    if (!last || Math.hypot(point[0] - last[0], point[1] - last[1]) >= STEP_PX) way.push(point);
+  }
+  return way;
+}
+
+/** Whether the way goes by these words, and not through them. */
+export const isClear = ([left, top, right, bottom]: Box, way: readonly Pixel[]): boolean =>
+  !way.some(([x, y]) => x > left - STEP_PX && x < right + STEP_PX && y > top && y < bottom);

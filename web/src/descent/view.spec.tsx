@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { CORRIDOR } from './corridor';
-import { LEAST_M, fraction, halfWidth, placeIn } from './model';
+import { LEAST_M, fraction, halfWidth, isClear, placeIn, wayOf } from './model';
 
 describe('the descent picture', () => {
   it('gives the last ten metres as much room as the last hundred kilometres have for each factor of ten', () => {
@@ -25,5 +25,13 @@ describe('the descent picture', () => {
     expect(placeIn(CORRIDOR, 190000, 5800)).toBeUndefined();
     expect(placeIn(CORRIDOR, 1, 0.1)).toBeUndefined();
     expect(placeIn([], 1000, 80)).toBeUndefined();
+  });
+  it('lets no way run through words that have another place: however small the words, and dense its points', () => {
+    const way = wayOf(Array.from({ length: 4001 }, (_, i) => [i / 10, i / 20] as const)); // from (0, 0) to (400, 200)
+    expect(way.length).toBeLessThan(130);
+    for (let x = 10; x < 380; x += 7) {
+      expect(isClear([x, x / 2 - 4, x + 30, x / 2 + 8], way), `through it at ${x}`).toBe(false);
+      expect(isClear([x, x / 2 + 22, x + 30, x / 2 + 38], way), `below it at ${x}`).toBe(true);
+    }
   });
 });

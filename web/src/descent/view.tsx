@@ -4,13 +4,15 @@ import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
-import { cutoff, dictionary, runNow, store, tick, timepoints } from '../run/session';
+import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
+import { landedSclk } from '../run/whose';
 import { inWords } from '../run/dictionary';
 import { isImportant, outages } from '../timeline/model';
 import { phaseSteps } from '../phases/model';
 import { CORRIDOR } from './corridor';
-import { LEAST_M, LEAST_MPS, fraction, halfWidth, pairs, placeIn } from './model';
+import { LEAST_M, LEAST_MPS, fraction, halfWidth, isClear, pairs, placeIn, wayOf } from './model';
+import type { Box } from './model';
 import './style.css';
 
 const LEFT = 66;
@@ -21,15 +23,11 @@ const FASTEST_MPS = 8000;
 const GAP_S = 6; // ours: longer without a sample is a gap
 
 /** The picture ends at touchdown: what the descent stage does after it is not the landing. */
-function lastInstant(run: RunStore | undefined, end: number): number {
-  for (const pair of run?.firings.values() ?? []) {
-    const fired = (pair.live ?? pair.recorded)?.firedSclk;
-    if (pair.name === LAYOUT.landed && fired !== undefined) return Math.min(end, fired);
-  }
-  return end;
-}
+const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, landedSclk(run));
 
 const corridorNow = () => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? CORRIDOR : []);
+
+const isFree = (box: Box, taken: readonly Box[]) => !taken.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1]);
 
 interface Scales {
   x: (mps: number) => number;
@@ -111,16 +109,29 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
   c.lineWidth = 1;
 }
 
-/** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. */
-function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: Scales): void {
+/** Whose the figures are, once it is not the vehicle's. */
+const whoseWords = (run: RunStore | undefined) => (lastInstant(run, cutoff.value) < cutoff.value ? `${LAYOUT.afterLanding.whose}, the rover hangs below it` : undefined);
+
+/** Where the figures stand, in the corner below, and under them whose they are: as style.css has them. */
+function figures({ context: c, width, height, colours }: Surface): Box[] {
+  const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1;
+  const whose = whoseWords(shownRun());
+  c.font = `12.5px ${colours.sans}`;
+  const line_px = whose === undefined ? 0 : 15;
+  const bottom_px = matchMedia('(max-width: 1500px)').matches ? 46 : 62;
+  const all: Box[] = [[width - RIGHT - figure_px * 3.6, height - bottom_px - line_px - 2 * figure_px, width, height]];
+  return whose === undefined ? all : [...all, [width - 36 - c.measureText(whose).width, height - bottom_px - line_px, width, height - bottom_px]];
+}
+
+/** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. Where all of these stand. */
+function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
+  const { context: c, width, height, colours } = surface;
+  const taken = figures(surface);
   const words = dictionary.value;
   const corridor = corridorNow();
-  if (!words || corridor.length === 0) return;
-  const steps = phaseSteps(store.value, words, cutoff.value);
+  if (!words || corridor.length === 0) return taken;
+  const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value);
   c.textBaseline = 'middle';
-  const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1; // as style.css has them, in the corner below
-  const figures = { left: width - RIGHT - figure_px * 3.6, top: height - 62 - 2 * figure_px };
-  const taken: [number, number, number][] = []; // left, right, middle of what is written
   const order = steps.map((step, index) => ({ step, index })).sort((a, b) => Number(b.step.state === 'now') - Number(a.step.state === 'now'));
   for (const { step, index } of order) {
     const from = step.predicted_e_s;
@@ -133,20 +144,20 @@ function drawPhases({ context: c, width, height, colours }: Surface, { x, y }: S
     c.textAlign = 'left';
     const wide = c.measureText(step.title).width;
     const [px, py] = [x(at.speed_mps), y(at.altitude_m)];
-    const places: [number, number][] = index === 1 ? [[width - RIGHT - 6 - wide, py + 46]] : [[Math.min(width - wide - RIGHT, px + 34), py + 24], [px - wide - 44, py + 8]];
-    const place = places.find(([left, top]) => left > LEFT && (left + wide < figures.left || top + 16 < figures.top) &&
-      !taken.some(([l, r, middle]) => left < r && left + wide > l && Math.abs(top - middle) < 24));
+    const places: [number, number][] = index === 1 ? [[width - RIGHT - 6 - wide, py + 46]] : [[Math.min(width - wide - RIGHT, px + 34), py + 24], [px - wide - 44, py + 8], [px + 34, py + 4]];
+    const place = places.find(([left, top]) => left > LEFT && top + 12 < height - BOTTOM && isFree([left, top - 12, left + wide, top + 12], taken));
     if (place) {
-      taken.push([place[0], place[0] + wide, place[1]]);
+      taken.push([place[0], place[1] - 12, place[0] + wide, place[1] + 12]);
       c.fillText(step.title, ...place);
     }
     c.globalAlpha = 1;
   }
+  return taken;
 }
 
 function draw(surface: Surface): void {
   const { context: c, width, height, colours } = surface;
-  const run = store.value;
+  const run = shownRun();
   const altitude = dictionary.value?.pick(LAYOUT.altitude);
   const speed = dictionary.value?.pick(LAYOUT.speed);
   if (!altitude || !speed) return;
@@ -154,7 +165,7 @@ function draw(surface: Surface): void {
   const { x, y } = scales;
   drawCorridor(surface, scales);
   drawAxes(surface, scales);
-  drawPhases(surface, scales);
+  const taken = drawPhases(surface, scales);
   if (!run) return;
 
   const until = lastInstant(run, cutoff.value);
@@ -183,7 +194,7 @@ function draw(surface: Surface): void {
     before = point;
   }
   c.stroke();
-  moments(c, points, x, y, width, height - BOTTOM, colours);
+  moments(c, points, x, y, width, height - BOTTOM, taken, colours);
   const now = points[points.length - 1];
   if (!now) {
     c.fillStyle = colours.dim;
@@ -226,14 +237,20 @@ function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
   c.stroke();
 }
 
+/** Where the words of a moment may stand beside it, the best first. */
+const WORDS_AT = [[-14, -14, 'right'], [-18, -30, 'right'], [-22, -46, 'right'], [-18, 4, 'right'], [-26, -62, 'right'], [16, 14, 'left'], [16, 34, 'left'], [-30, -78, 'right'], [-34, -94, 'right'], [-26, 22, 'right'], [-30, 40, 'right'], [-34, 58, 'right'], [16, 54, 'left']] as const;
+
 function moments(
   c: CanvasRenderingContext2D, points: { sclk: number; speed: number; altitude: number }[], x: (v: number) => number,
-  y: (h: number) => number, width: number, bottom: number, colours: Surface['colours'],
+  y: (h: number) => number, width: number, bottom: number, taken: readonly Box[], colours: Surface['colours'],
 ): void {
-  const run = store.value;
+  const run = shownRun();
   if (!run || points.length === 0) return;
   c.font = `14px ${colours.sans}`;
-  const boxes: [number, number, number, number][] = [];
+  const boxes = [...taken];
+  const way = wayOf(points.map((point) => [x(point.speed), y(point.altitude)] as const));
+  const now = points[points.length - 1];
+  if (now) boxes.push([x(now.speed) - 18, y(now.altitude) - 18, x(now.speed) + 18, y(now.altitude) + 18]); // the dot
   const fired = [...run.firings.values()].map((pair) => pair.live ?? pair.recorded)
     .filter((firing) => firing !== undefined && isImportant(firing.name) && firing.firedSclk <= cutoff.value);
   for (const firing of fired) {
@@ -251,25 +268,23 @@ function moments(
     c.fill();
     const words = inWords(firing.name);
     const wide = c.measureText(words).width;
-    for (const [dx, dy, align] of [[-14, -14, 'right'], [-18, -30, 'right'], [-22, -46, 'right'], [-18, 4, 'right'], [-26, -62, 'right'], [16, 14, 'left'], [16, 34, 'left']] as const) {
+    const places = WORDS_AT.flatMap(([dx, dy, align]) => {
       const left = align === 'left' ? px + dx : px + dx - wide;
-      const box: [number, number, number, number] = [left, py + dy - 8, left + wide, py + dy + 8];
-      if (box[0] < LEFT || box[2] > width - 8 || box[3] > bottom || box[1] < 4) continue;
-      if (boxes.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1])) continue;
-      boxes.push(box);
-      if (Math.abs(dy) > 15) {
-        c.strokeStyle = colours.dim;
-        c.lineWidth = 1;
-        c.beginPath();
-        c.moveTo(px, py);
-        c.lineTo(px + dx - 2, py + dy);
-        c.stroke();
-      }
-      c.fillStyle = colours.text;
-      c.textAlign = align;
-      c.fillText(words, px + dx, py + dy);
-      break;
+      const box: Box = [left, py + dy - 8, left + wide, py + dy + 8];
+      const fits = box[0] >= LEFT && box[2] <= width - 8 && box[3] <= bottom && box[1] >= 4 && isFree(box, boxes);
+      return fits ? [{ dx, dy, align, box }] : [];
+    });
+    const place = places.find(({ box }) => isClear(box, way)) ?? places[0];
+    if (!place) continue;
+    boxes.push(place.box);
+    if (Math.abs(place.dy) > 15) {
+      c.strokeStyle = colours.dim;
+      c.lineWidth = 1;
+      line(c, px, py, px + place.dx - 2, py + place.dy);
     }
+    c.fillStyle = colours.text;
+    c.textAlign = place.align;
+    c.fillText(words, px + place.dx, py + place.dy);
   }
 }
 
@@ -288,20 +303,22 @@ export function Descent() {
   const h = altitude && run?.latest(altitude.id, until)?.value;
   const v = speed && run?.latest(speed.id, until)?.value;
   const inKm = (h ?? 0) >= 10000;
+  const whose = whoseWords(run);
   const place = h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
   return (
-    <Panel name="descent" title="Descent, how high and how fast" extra={
+    <Panel name="descent" title={<>Descent<span class="how">, how high and how fast</span></>} extra={
       <>
-        {until < cutoff.value && <span>at touchdown</span>}
+        {whose !== undefined && <span>at touchdown</span>}
         {place && <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">{PLACES[place].status.shape} {PLACES[place].words}</span>}
       </>
     }>
       <div class="descent-box">
         <Canvas label="Altitude against speed, with the predicted corridor" draw={draw} testId="descent-canvas" keyOf={() =>
-          `${store.value?.id} ${tick.value} ${timepoints.value.length} ${cutoff.value}`} />
+          `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value}`} />
         {h !== undefined && <dl class="descent-now" title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
           <div><dt>high</dt><dd><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</dd></div>
           <div><dt>fast</dt><dd><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</dd></div>
+          {whose !== undefined && <div class="descent-whose" data-testid="descent-whose"><dt>whose</dt><dd>{whose}</dd></div>}
         </dl>}
       </div>
     </Panel>

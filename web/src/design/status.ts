@@ -10,6 +10,7 @@ export const STATUS = {
   quiet: { shape: '◇', token: 'caution', word: 'silent' },
   stale: { shape: '◌', token: 'dim', word: 'stale' },
   unknown: { shape: '?', token: 'dim', word: 'not known' },
+  unasked: { shape: '…', token: 'dim', word: 'not asked for yet' },
   never: { shape: '·', token: 'dim', word: 'not received' },
 } as const;
 export type Status = keyof typeof STATUS;
@@ -20,6 +21,11 @@ export const held = (holds: boolean | undefined): Status => (holds === undefined
 /** Of a link or of the connection. down: silent for a reason that is named; lost: it should be there. */
 export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown: 'unknown' } as const satisfies Record<string, Status>;
 export type LinkLook = keyof typeof LINK_STATUS;
+/** Ground's class of a silence stands first in its reason: of these two nothing that was predicted is the cause. */
+export const linkLook = (up: boolean, reason: string): LinkLook => (up ? 'up' : /^(unexplained|ground fault)\b/.test(reason) ? 'lost' : 'down');
+
+/** Of a silence, by its reason: as its link looked then. */
+export const silenceStatus = (reason: string) => STATUS[LINK_STATUS[linkLook(false, reason)]];
 
 /** A stage of a command: what was never heard of has no shape, and nothing is green by default. */
 export const STAGE_LOOKS = {

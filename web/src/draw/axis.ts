@@ -1,6 +1,6 @@
 // Axes: steps that people count in, and the way from seconds to pixels.
 
-const TIME_STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21600, 43200, 86400];
+const TIME_STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 180, 300, 600, 1800, 3600, 7200, 21600, 43200, 86400];
 
 /** The least step in seconds that gives no more than `most` ticks over `span_s`. */
 export function timeStep(span_s: number, most: number): number {
@@ -31,4 +31,26 @@ export function axisTime(e_s: number, step_s: number): string {
   return minutes >= 60
     ? `E${sign}${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, '0')}:${seconds}`
     : `E${sign}${minutes}:${seconds}`;
+}
+
+/** "+3:30", "−0:10", "E" at entry: for a plot, where every letter costs a tick. */
+export function shortTime(e_s: number, step_s: number): string {
+  return Math.abs(e_s) < step_s / 2 ? 'E' : axisTime(e_s, step_s).slice(1);
+}
+
+const CHARACTER_PX = 6.7; // of the 11 px mono of axes
+const BETWEEN_PX = 14;
+
+/** The least step whose short labels stand beside each other in `wide_px`. */
+export function shortStep(from_e_s: number, to_e_s: number, wide_px: number): number {
+  return TIME_STEPS_S.find((step) => {
+    const longest = Math.max(shortTime(from_e_s, step).length, shortTime(to_e_s, step).length);
+    return (step / (to_e_s - from_e_s)) * wide_px >= longest * CHARACTER_PX + BETWEEN_PX;
+  }) ?? 86400;
+}
+
+/** "6 000", "−0.25": as long as it must be, in no one's language. */
+export function axisNumber(value: number): string {
+  const [whole = '', part] = String(Number(Math.abs(value).toPrecision(12))).split('.');
+  return `${value < 0 ? '−' : ''}${/^\d+$/.test(whole) ? whole.replace(/\B(?=(\d{3})+$)/g, '\u2009') : whole}${part === undefined ? '' : `.${part}`}`;
 }

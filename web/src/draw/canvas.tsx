@@ -1,5 +1,5 @@
 // A canvas that fills its box, sharp on every screen, drawn by the loop when its key has changed.
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import { onDraw } from './loop';
 import { palette } from './palette';
 import type { Palette } from './palette';
@@ -11,6 +11,11 @@ export interface Surface {
   colours: Palette;
 }
 
+/** By how much the page is larger on a wall: what the mouse says is in the screen's pixels, what is laid out in the page's. */
+export const grownBy = (element: Element): number => (element as Element & { currentCSSZoom?: number }).currentCSSZoom ?? 1;
+/** The screen's pixels for one of the page's. */
+export const sharpness = (element: Element): number => (window.devicePixelRatio || 1) * grownBy(element);
+
 interface Properties {
   /** Changes whenever the drawing would. */
   keyOf: () => string;
@@ -19,15 +24,17 @@ interface Properties {
   label: string;
   testId?: string;
   onPoint?: (x: number, y: number, width: number, height: number) => void;
+  /** While the mouse is over it; undefined once it has left. */
+  onHover?: (x: number | undefined, width: number) => void;
   onWheel?: (x: number, width: number, delta: number) => void;
 }
 
-export function Canvas({ keyOf, draw, label, testId, onPoint, onWheel }: Properties) {
+export function Canvas({ keyOf, draw, label, testId, onPoint, onHover, onWheel }: Properties) {
   const element = useRef<HTMLCanvasElement>(null);
   const current = useRef({ keyOf, draw });
   current.current = { keyOf, draw };
 
-  useEffect(() => {
+  useLayoutEffect(() => {
     const canvas = element.current;
     const context = canvas?.getContext('2d');
     if (!canvas || !context) return undefined;
@@ -35,26 +42,29 @@ export function Canvas({ keyOf, draw, label, testId, onPoint, onWheel }: Propert
     return onDraw(() => {
       const width = canvas.clientWidth;
       const height = canvas.clientHeight;
-      if (width === 0 || height === 0) return;
-      const ratio = window.devicePixelRatio || 1;
+      if (width === 0 || height === 0) return undefined;
+      const ratio = sharpness(canvas);
       const colours = palette();
       const key = `${width}×${height}×${ratio} ${colours.name} ${current.current.keyOf()}`;
-      if (key === shown) return;
+      if (key === shown) return undefined;
       shown = key;
-      if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
-        canvas.width = Math.round(width * ratio);
-        canvas.height = Math.round(height * ratio);
-      }
-      context.setTransform(ratio, 0, 0, ratio, 0, 0);
-      context.clearRect(0, 0, width, height);
-      context.font = '11px var(--sans, sans-serif)';
-      current.current.draw({ context, width, height, colours });
+      return () => {
+        if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
+          canvas.width = Math.round(width * ratio);
+          canvas.height = Math.round(height * ratio);
+        }
+        context.setTransform(ratio, 0, 0, ratio, 0, 0);
+        context.clearRect(0, 0, width, height);
+        context.font = '11px var(--sans, sans-serif)';
+        current.current.draw({ context, width, height, colours });
+      };
     });
   }, []);
 
   const at = (event: MouseEvent): [number, number, number, number] => {
-    const box = (event.currentTarget as HTMLCanvasElement).getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top, box.width, box.height];
+    const canvas = event.currentTarget as HTMLCanvasElement;
+    const [box, grown] = [canvas.getBoundingClientRect(), grownBy(canvas)];
+    return [(event.clientX - box.left) / grown, (event.clientY - box.top) / grown, box.width / grown, box.height / grown];
   };
   return (
     <canvas
@@ -63,6 +73,11 @@ export function Canvas({ keyOf, draw, label, testId, onPoint, onWheel }: Propert
       aria-label={label}
       data-testid={testId}
       onClick={onPoint && ((event) => onPoint(...at(event)))}
+      onMouseMove={onHover && ((event) => {
+        const [x, , width] = at(event);
+        onHover(x, width);
+      })}
+      onMouseLeave={onHover && (() => onHover(undefined, 0))}
       onWheel={onWheel && ((event) => {
         event.preventDefault();
         const [x, , width] = at(event);

@@ -1,5 +1,5 @@
-// The as-flown report in words: each timepoint by every source that told of it, and what was silent.
-import type { AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
+// The as-flown report in words: each timepoint and event by every source that told of it, and what was silent.
+import type { AsFlownEvent, AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';
 
 export interface FlownRow {
@@ -23,13 +23,18 @@ export function flownRow(row: AsFlownTimepoint): FlownRow {
   };
 }
 
+/** An event that flight reported, by what brought it. */
+export function flownEvent(row: AsFlownEvent) {
+  return { name: row.name, predicted: time(row.predictedES), uhf: time(row.realtimeES), recorded: time(row.recordedES), text: row.text };
+}
+
 /** What the landing came to, in one sentence for people. */
 export function summaryOf(report: AsFlownReport): string {
   const all = report.timepoints.length;
   const count = (known: (row: AsFlownTimepoint) => boolean) => report.timepoints.filter(known).length;
   const fired = count((row) => row.recordedES !== undefined || row.realtimeES !== undefined);
   return `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
-    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.`;
+    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.${report.predictionNote && ` Note: ${report.predictionNote}.`}`;
 }
 
 export function silenceWords(silence: AsFlownReport['silences'][number]): string {

@@ -1,7 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { AsFlownReportSchema, AsFlownTimepointSchema, SilenceSchema } from '../gen/aeolis/v1/run_pb';
-import { flownRow, silenceWords, summaryOf } from './model';
+import { AsFlownEventSchema, AsFlownReportSchema, AsFlownTimepointSchema, SilenceSchema } from '../gen/aeolis/v1/run_pb';
+import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
 
 const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_deploy', verdict: 'nominal', ...of });
 
@@ -17,10 +17,18 @@ describe('a timepoint as it was flown', () => {
   });
 });
 
+describe('an event as it was flown', () => {
+  it('has the times that are known, and flight’s own words', () => {
+    expect(flownEvent(create(AsFlownEventSchema, { name: 'bank_reversal_2', recordedES: 121.5, text: 'Bank reversal 2 begins' })))
+      .toEqual({ name: 'bank_reversal_2', predicted: '', uhf: '', recorded: 'E+02:01.5', text: 'Bank reversal 2 begins' });
+  });
+});
+
 describe('the report', () => {
   it('says in a sentence what came by which way', () => {
     const report = create(AsFlownReportSchema, { timepoints: [row({ toneES: 1, realtimeES: 2, recordedES: 2 }), row({ recordedES: 3 }), row({})], tonesDecoded: 40n, tonesErased: 3n });
     expect(summaryOf(report)).toBe('2 of 3 timepoints fired: 1 told by UHF, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.');
+    expect(summaryOf(create(AsFlownReportSchema, { predictionNote: 'by today’s sheet' }))).toMatch(/ Note: by today’s sheet\.$/);
   });
   it('tells a silence from when to when, and why', () => {
     expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'plasma', fromES: 60, toES: 130 }))).toBe('E+01:00 to E+02:10, 70 s: plasma');

@@ -4,11 +4,14 @@ import { step as commandStep } from '../commands/line';
 import type { Step } from '../commands/model';
 import { LAYOUT } from '../layout';
 import { phaseSteps } from '../phases/model';
-import { cutoff, dictionary, modeNow, runNow } from '../run/session';
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import { heardOf } from '../timeline/heard';
+import { cutoff, dictionary, modeNow, runNow, timepoints, withRecording } from '../run/session';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';
-import { statusAgainst, stepEvidence } from '../waiting/model';
+import { mayAct, mayRehearse } from '../access/model';
+import { missingStep } from '../waiting/model';
 
 const KEY = 'aeolis-guide';
 export const guideShown = signal(localStorage.getItem(KEY) !== 'hidden');
@@ -52,34 +55,38 @@ function commandPress(step: FirstStep, at: Step): Press[] {
   }
 }
 
-export function guideStep(run: RunStore | undefined, words: Dictionary, mode: Mode, at: Step, until: number): GuideStep | undefined {
+export function guideStep(run: RunStore | undefined, words: Dictionary, plan: readonly TimepointRow[], mode: Mode, at: Step, until: number, recorded = false): GuideStep | undefined {
   if (mode === 'range' || mode === 'replay') {
-    return { number: GUIDE_STEPS, title: 'You are looking at the past', why: 'Every panel shows what was known then, and nothing later.', press: [{ key: 'Esc', words: 'goes back' }], wants: 'nothing' };
+    return { number: GUIDE_STEPS, title: 'You are looking at the past', why: recorded ? 'Every panel shows what had happened by then, with what only the recording told later.' : 'Every panel shows what had been heard by then, and nothing later.',
+      press: [{ key: 'w', words: recorded ? 'shows what had been heard then' : 'shows it with the recording' }, { key: 'Esc', words: 'goes back' }], wants: 'nothing' };
   }
   if (!run) return { number: 1, title: 'Start a rehearsal', why: 'A simulated landing, as it would be heard on Earth.', press: [{ key: 's', words: 'goes to the runs; choose one and press Enter' }], wants: 'nothing' };
   if (mode === 'live') return undefined; // the real thing is not where one learns
   if (mode === 'ended') return afterwards(run);
 
-  const missing = LAYOUT.firstSteps.findIndex((each) => stepEvidence(run, each) === undefined && words.command(each.command));
-  const step = LAYOUT.firstSteps[missing];
-  if (step && run.firings.size === 0) {
-    const sent = [...run.commands.values()].some((row) => row.name === step.command);
-    if (sent && at === 'type') {
-      return { number: missing + 1, title: 'Sent. Waiting for the vehicle to say so', why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.', press: [], wants: 'nothing' };
+  const missing = heardOf(run, plan, until).size === 0 ? missingStep(run, words) : undefined;
+  if (missing) {
+    const { step, state, evidence, against } = missing;
+    const number = missing.number + 1;
+    const nothing: Pick<GuideStep, 'number' | 'press' | 'wants'> = { number, press: [], wants: 'nothing' };
+    if (at === 'type' && state === 'sent') {
+      return { ...nothing, title: 'Sent. Waiting for the vehicle to say so', why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.' };
     }
-    const against = missing > 0 && at === 'type' ? statusAgainst(run, words, step) : undefined;
-    if (against) {
+    if (at === 'type' && state === 'on_ground') {
+      return { ...nothing, wants: 'command', title: 'It waits on the ground', why: `“${step.words}” ${evidence}. In the command panel it can be released or approved, or cancelled and sent anew.` };
+    }
+    if (at === 'type' && against) {
       return {
-        number: missing + 1, title: 'Taken. Waiting for the vehicle’s status to say so', wants: 'nothing', press: [],
+        ...nothing, title: 'Taken. Waiting for the vehicle’s status to say so',
         why: `${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
       };
     }
     return {
-      number: missing + 1, title: missing === 0 ? 'Tell the vehicle where it is' : 'Let it begin', why: `“${step.words}” ${step.why}.`,
+      number, title: missing.number === 0 ? 'Tell the vehicle where it is' : 'Let it begin', why: `“${step.words}” ${step.why}.`,
       press: commandPress(step, at), wants: 'command',
     };
   }
-  const phases = phaseSteps(run, words, until);
+  const phases = phaseSteps(run, words, plan, until);
   const now = phases.findIndex((phase) => phase.state === 'now');
   const plain = LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.';
   const pace = run.run.pace === 0 ? Infinity : run.run.pace;
@@ -112,5 +119,8 @@ function afterwards(run: RunStore): GuideStep {
 export function guideNow(): GuideStep | undefined {
   const words = dictionary.value;
   if (!guideShown.value || !words) return undefined;
-  return guideStep(runNow(), words, modeNow(), commandStep.value, cutoff.value);
+  const step = guideStep(runNow(), words, timepoints.value, modeNow(), commandStep.value, cutoff.value, withRecording.value);
+  // Who only looks on finds nothing to press that would be refused.
+  const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();
+  return step && !allowed ? { ...step, press: [], wants: 'nothing' } : step;
 }

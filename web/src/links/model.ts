@@ -1,5 +1,7 @@
 // Each link: its state and silences as it told them, what came over it, and how much of it was damaged.
 import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
+import { linkLook } from '../design/status';
+import type { LinkLook } from '../design/status';
 import { linkTotals } from '../packets/model';
 import type { RunStore } from '../run/store';
 import { outages } from '../timeline/model';
@@ -13,11 +15,9 @@ export function linkTitle(link: string): string {
   return [title, ...rest.map((part) => (part === 'live' ? part : part.toUpperCase()))].join(' ').trim();
 }
 
-export type LinkState = 'up' | 'down' | 'unknown';
-
 export interface LinkView {
   link: string;
-  state: LinkState;
+  state: LinkLook;
   reason: string;
   since_e_s: number | undefined;
   silences: Outage[];
@@ -28,20 +28,22 @@ export interface LinkView {
   judged: { live: number; identical: number; recorded: number; neverLive: number } | undefined;
 }
 
-export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number): LinkView[] {
+/** `lost`: without a connection what a link does now is not known. */
+export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number, lost = false): LinkView[] {
   const totals = new Map(linkTotals(store).map((each) => [each.link, each]));
   const names = new Set([
     ...store.links.keys(), ...totals.keys(), ...(proof?.counters.map((each) => each.link) ?? []), ...(proof?.links.map((each) => each.name) ?? []),
   ]);
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
   return [...names].sort(byImportance).map((link) => {
+    const silent = lost && cutoff === Infinity && store.going;
     const last = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff))?.fact;
     const total = totals.get(link);
     const judged = proof?.links.find((row) => row.name === link);
     return {
       link,
-      state: last === undefined ? 'unknown' : last.up ? 'up' : 'down',
-      reason: last?.reason ?? '',
+      state: last === undefined || silent ? 'unknown' : linkLook(last.up, last.reason),
+      reason: silent ? 'no connection' : last?.reason ?? '',
       since_e_s: last && store.sclkSeenAt(last.ert) - store.entrySclk,
       silences: outages(store, link, now, cutoff),
       units: total?.units ?? 0, octets: total?.octets ?? 0, seenBefore: total?.duplicates ?? 0,

@@ -1,7 +1,7 @@
 // The links side by side: which is up, which is silent and why, what each brought and lost.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { useReport } from '../proof/report';
-import { cutoff, pastRange, runNow } from '../run/session';
+import { cutoff, pastRange, runNow, stream } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import { framesKept, linkTitle, linkViews } from './model';
 import type { LinkView } from './model';
@@ -18,7 +18,7 @@ function Row({ view }: { view: LinkView }) {
   return (
     <tr data-testid={`link-row-${view.link}`} data-state={view.state}>
       <td><b><span class={`status-${look.token}`} aria-hidden="true">{look.shape}</span> {linkTitle(view.link)}</b></td>
-      <td class={`status-${look.token}`}>{view.state === 'unknown' ? 'has not told' : view.state}{view.reason && `, ${view.reason}`}
+      <td class={`status-${look.token}`}>{view.state === 'unknown' ? 'not known' : view.state}{view.reason && `, ${view.reason}`}
         {view.since_e_s !== undefined && Number.isFinite(view.since_e_s) && <small> since {fromEntry(view.since_e_s)}</small>}</td>
       {counters ? (
         <>
@@ -55,7 +55,7 @@ export function Links() {
   const run = runNow();
   const proof = useReport();
   if (!run) return <p class="none">no run</p>;
-  const views = linkViews(run, proof, cutoff.value);
+  const views = linkViews(run, proof, cutoff.value, stream.value.state === 'lost');
   return (
     <div class="table-box" data-testid="links">
       {pastRange.value && <p class="not-past">▲ Counters are of the whole run; states and silences are those of the past that is shown.</p>}

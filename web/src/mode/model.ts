@@ -26,6 +26,11 @@ export function isReal(run: RunState): boolean {
   return run.venue === 'downlink';
 }
 
+/** The server flies a rehearsal that was cut off again as far as it had come; a real landing goes on without us. */
+export function canContinue(run: RunState): boolean {
+  return run.state === 'interrupted' && !isReal(run);
+}
+
 export function modeOf(store: { run: RunState; going: boolean } | undefined, past: boolean, replayed: boolean): Mode {
   if (!store) return 'none';
   if (replayed) return 'replay';
@@ -42,11 +47,13 @@ export function panelMark(mode: Mode, run: RunState | undefined): string {
 }
 
 /** After a break: since when, what was filled in, and whether the run went on without us. */
-export function resumedWords(break_: { after: number; through: number; attempts: number }, state: string, lost_e_s: number): string {
+export function resumedWords(break_: { after: number; through: number; attempts: number }, run: RunState, lost_e_s: number): string {
   const count = break_.through - break_.after;
   const filled = count > 0
     ? `numbers ${break_.after + 1} to ${break_.through}, which came meanwhile, were filled in from the archive, none is missing`
     : 'nothing had come meanwhile';
   const begin = `The connection was lost at ${fromEntry(lost_e_s)} and is back at attempt ${break_.attempts}: ${filled}.`;
-  return state === 'interrupted' ? `${begin} The server had stopped and was started again: this run was cut off at number ${break_.through}; continue it under Runs, or start another.` : begin;
+  if (run.state !== 'interrupted') return begin;
+  const cutOff = `${begin} The server had stopped and was started again: this run was cut off at number ${break_.through}`;
+  return canContinue(run) ? `${cutOff}; continue it under Runs, or start another.` : `${cutOff}, and cannot be continued: what is followed after it is another run.`;
 }

@@ -36,8 +36,9 @@ describe('the mode', () => {
 describe('a break of the connection', () => {
   it('says since when, what was filled in, and whether the server went on without us', () => {
     const break_ = { after: 1200, through: 1612, attempts: 3 };
-    expect(resumedWords(break_, 'running', 80)).toBe('The connection was lost at E+01:20 and is back at attempt 3: numbers 1201 to 1612, which came meanwhile, were filled in from the archive, none is missing.');
-    expect(resumedWords({ ...break_, through: 1200 }, 'running', 80)).toContain('nothing had come meanwhile');
-    expect(resumedWords(break_, 'interrupted', 80)).toContain('this run was cut off at number 1612; continue it under Runs');
+    expect(resumedWords(break_, aRun(), 80)).toBe('The connection was lost at E+01:20 and is back at attempt 3: numbers 1201 to 1612, which came meanwhile, were filled in from the archive, none is missing.');
+    expect(resumedWords({ ...break_, through: 1200 }, aRun(), 80)).toContain('nothing had come meanwhile');
+    expect(resumedWords(break_, aRun({ state: 'interrupted' }), 80)).toContain('this run was cut off at number 1612; continue it under Runs');
+    expect(resumedWords(break_, aRun({ state: 'interrupted', venue: 'downlink' }), 80)).toMatch(/cut off at number 1612, and cannot be continued: what is followed after it is another run\.$/);
   });
 });

@@ -1,6 +1,7 @@
 // The mode, where no one can miss it: tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
 import { backToLive, modeNow, pastRange, replay, runNow, stream } from '../run/session';
 import { fromEntry } from '../run/time';
+import { Reading } from '../replay/view';
 import { MODES, isReal, panelMark } from './model';
 import './style.css';
 
@@ -15,15 +16,17 @@ export function PastBar() {
   const past = pastRange.value;
   const run = runNow();
   const lost = stream.value.state === 'lost';
-  if (lost && !past) {
-    return <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">✖ NO CONNECTION: everything here is old. Trying again, attempt {stream.value.attempt}.</div>;
-  }
-  if (!past || replay.value) return null;
   return (
-    <div class="past-bar" role="alert" data-testid="past-bar">
-      THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live{run?.going ? '; the run goes on' : ''}.
-      <button type="button" onClick={backToLive}>leave <kbd>Esc</kbd></button>
-    </div>
+    <>
+      {lost && <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">✖ NO CONNECTION: {past ? 'nothing new comes' : 'everything here is old'}. Trying again, attempt {stream.value.attempt}.</div>}
+      {past && !replay.value && (
+        <div class="past-bar" role="alert" data-testid="past-bar">
+          THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live{run?.going ? '; the run goes on' : ''}.
+          <Reading />
+          <button type="button" onClick={backToLive}>leave <kbd>Esc</kbd></button>
+        </div>
+      )}
+    </>
   );
 }
 

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import { Refused, call, wordsFor } from '../run/api';
-import { store } from '../run/session';
+import { change, store } from '../run/session';
 import type { RunStore } from '../run/store';
 
 export interface NoteRow {
@@ -59,7 +59,7 @@ export async function write(text: string, sclk: number | undefined): Promise<boo
   if (problem.value) return false;
   writing.value = true;
   try {
-    await call('POST', `/runs/${run.id}/notes`, { text: text.trim(), by: uplink.value.controller.trim(), ...(sclk !== undefined && { sclk }) });
+    await change(`/runs/${run.id}/notes`, { text: text.trim(), by: uplink.value.controller.trim(), ...(sclk !== undefined && { sclk }) });
     await refreshNotes();
     return true;
   } catch (error) {

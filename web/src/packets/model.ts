@@ -1,8 +1,9 @@
 // Units as they arrived: how fast each link and each packet comes, and which octets of one are which of its fields.
 import type { Unit } from '../gen/aeolis/v1/items_pb';
-import type { PacketField } from '../gen/aeolis/v1/run_pb';
+import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';
 import type { Known, RunStore, UnitTotals } from '../run/store';
 import { secondsOfDayOfYear } from '../run/time';
+import { SOURCE_RECORDED } from '../stream/columns';
 
 export interface Totals {
   units: number;
@@ -58,14 +59,15 @@ export function linkTotals(store: RunStore): (Totals & { link: string })[] {
   return [...grouped(store.unitTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({ link: first.link, ...totals }));
 }
 
-export function linkRows(store: RunStore): LinkRow[] {
-  const recent = recentOf(store);
+/** `rated`: with the rates of now, which are none of a past view. */
+export function linkRows(store: RunStore, rated = true): LinkRow[] {
+  const recent = rated ? recentOf(store) : undefined;
   return linkTotals(store).map((totals) => ({ ...totals, rate: rateOf(recent, (unit) => unit.link === totals.link) }));
 }
 
 /** Each packet of the dictionary that has come, whichever way; several may share an APID. */
-export function packetStreams(store: RunStore): PacketStream[] {
-  const recent = recentOf(store);
+export function packetStreams(store: RunStore, rated = true): PacketStream[] {
+  const recent = rated ? recentOf(store) : undefined;
   return [...grouped(store.unitTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
     .map(({ first, ...totals }) => ({
       apid: first.apid, name: first.name, ...totals,
@@ -74,8 +76,20 @@ export function packetStreams(store: RunStore): PacketStream[] {
     .sort((a, b) => a.apid - b.apid || a.name.localeCompare(b.name));
 }
 
+/** Of what a range of the archive has, what had been heard by `cutoff`: neither what only the recording told, nor what an orbiter or a queue on board brought later. */
+export function heardRows(store: RunStore, rows: readonly PacketRow[], cutoff: number): PacketRow[] {
+  return rows.filter(({ unit }) => unit && unit.source !== SOURCE_RECORDED && store.knownBy(unit.ert, cutoff));
+}
+
 export function newestUnits(store: RunStore, most: number, packet?: string): Known<Unit>[] {
   return store.units.filter(({ fact }) => packet === undefined || fact.name === packet).slice(-most).reverse();
+}
+
+/** Of what the archive has in a range, a page at a time. */
+export function pageWords(page: number, size: number, listed: number, more: boolean): string {
+  const first = page * size;
+  if (listed === 0) return 'no unit in this range';
+  return `units ${first + 1} to ${first + listed} of ${more ? `more than ${first + listed}` : first + listed}, oldest first`;
 }
 
 export interface HexLine {

@@ -1,6 +1,9 @@
+import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
+import { UnitSchema } from '../gen/aeolis/v1/items_pb';
+import { PacketRowSchema } from '../gen/aeolis/v1/run_pb';
 import { aRun, aStore, unit } from '../testing/fixtures';
-import { fieldsAt, hexLines, linkRows, newestUnits, octetsOf, packetStreams, placeWords } from './model';
+import { fieldsAt, heardRows, hexLines, linkRows, newestUnits, octetsOf, packetStreams, pageWords, placeWords } from './model';
 
 const at = (seconds: number) => `2012-219T04:59:${String(seconds).padStart(2, '0')}.0`; // the run's clock is at 05:00:00
 const some = [
@@ -29,6 +32,17 @@ describe('what the links bring', () => {
     expect(newestUnits(aStore(some), 2).map(({ fact }) => Number(fact.unit))).toEqual([4, 3]);
     expect(newestUnits(aStore(some), 2, 'Status').map(({ fact }) => Number(fact.unit))).toEqual([4, 2]);
   });
+});
+
+it('in the past as it was heard are neither units of the recording nor those that an orbiter brought later', () => {
+  const row = (unit: number, ert: string, source = 1) => create(PacketRowSchema, { unit: create(UnitSchema, { unit: BigInt(unit), sclk: 800, ert, source }) });
+  const rows = [row(1, at(20)), row(2, at(40)), row(3, at(20), 2)]; // E-100 is heard at 05:00:00, E-130 at 04:59:30
+  expect([870, Infinity].map((cutoff) => heardRows(aStore(), rows, cutoff).map(({ unit }) => Number(unit?.unit)))).toEqual([[1], [1, 2]]);
+});
+
+it('a page of a range says where in it it lies, and how many there are once that is known', () => {
+  expect([pageWords(0, 100, 100, true), pageWords(2, 100, 43, false), pageWords(0, 100, 0, false)])
+    .toEqual(['units 1 to 100 of more than 100, oldest first', 'units 201 to 243 of 243, oldest first', 'no unit in this range']);
 });
 
 describe('a packet, octet by octet', () => {

@@ -4,11 +4,11 @@ import { useEffect } from 'preact/hooks';
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
-import { ask, notify, pastRange, replay, runNow, store } from '../run/session';
+import { ask, cutoff, notify, pastRange, replay, runNow, store, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { Mark } from '../verdicts/mark';
-import { fieldsAt, hexLines, linkRows, newestUnits, octetsOf, packetStreams, placeWords } from './model';
+import { fieldsAt, heardRows, hexLines, linkRows, newestUnits, octetsOf, packetStreams, pageWords, placeWords } from './model';
 import type { Rate } from './model';
 import './style.css';
 
@@ -27,18 +27,21 @@ const current = signal<bigint | undefined>(undefined); // number of the unit tha
 /** While one is open the list stands still, so that what is looked at does not run away. */
 const held = signal<{ run: number; lines: Line[] } | undefined>(undefined);
 /** In a past view the units of that range come from the archive: the page itself holds only the newest. */
-const pastRows = signal<PacketRow[]>([]);
+const pastRows = signal<{ packets: PacketRow[]; next: number }>({ packets: [], next: 0 });
+/** Which page of which range: where each begins, up to the one that is shown. */
+const pages = signal<{ of: object | undefined; name: string | undefined; after: number[] }>({ of: undefined, name: undefined, after: [0] });
 /** What the mouse or the keys are at: a field, or an octet with all fields in it. */
 const lit = signal<{ field: number } | { octet: number } | undefined>(undefined);
 
-async function askPackets(query: string): Promise<PacketRow[]> {
+async function askPackets(query: string): Promise<{ packets: PacketRow[]; next: number }> {
   const run = store.value;
-  if (!run) return [];
+  if (!run) return { packets: [], next: 0 };
   try {
-    return (await ask<PacketList>('packets', `/runs/${run.id}/packets?${query}`)).packets;
+    const { packets, nextAfter } = await ask<PacketList>('packets', `/runs/${run.id}/packets?${query}`);
+    return { packets, next: Number(nextAfter) };
   } catch (error) {
     notify(`packets: ${error instanceof Error ? error.message : String(error)}`);
-    return [];
+    return { packets: [], next: 0 };
   }
 }
 
@@ -47,7 +50,7 @@ async function show(line: Line, lines: Line[]): Promise<void> {
   if (!run) return;
   current.value = line.fact.unit;
   held.value ??= { run: run.id, lines };
-  const row = line.row ?? (await askPackets(`after=${line.seq - 1}&limit=1`))[0];
+  const row = line.row ?? (await askPackets(`after=${line.seq - 1}&limit=1`)).packets[0];
   if (current.value !== line.fact.unit) return;
   opened.value = row;
   lit.value = undefined;
@@ -63,7 +66,8 @@ function close(): void {
 function linesOf(run: RunStore, past: boolean): Line[] {
   if (held.value?.run === run.id) return held.value.lines;
   if (!past) return newestUnits(run, SHOWN, wanted.value);
-  return pastRows.value.flatMap((row) => (row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : []));
+  const rows = withRecording.value ? pastRows.value.packets : heardRows(run, pastRows.value.packets, cutoff.value);
+  return rows.flatMap((row) => (row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : []));
 }
 
 function onListKey(event: KeyboardEvent, lines: Line[]): void {
@@ -88,7 +92,7 @@ function rateText(rate: Rate | undefined): string {
 function Links({ whole }: { whole: boolean }) {
   const run = runNow();
   if (!run) return null;
-  const rows = linkRows(run);
+  const rows = linkRows(run, !whole);
   return (
     <div class="table-tools link-rates" data-testid="link-rates">
       {rows.map((row) => (
@@ -103,7 +107,7 @@ function Links({ whole }: { whole: boolean }) {
   );
 }
 
-function Streams() {
+function Streams({ whole }: { whole: boolean }) {
   const run = runNow();
   const choose = (name: string | undefined) => {
     wanted.value = name;
@@ -114,7 +118,7 @@ function Streams() {
       <table data-testid="packet-streams">
         <thead><tr><th>APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
         <tbody>
-          {(run ? packetStreams(run) : []).map((row) => (
+          {(run ? packetStreams(run, !whole) : []).map((row) => (
             <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
               <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
               <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
@@ -131,7 +135,7 @@ function Streams() {
 
 function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
   return (
-    <div class="table-scroll units" tabIndex={0} role="region" aria-label="units, newest first; up and down open them" data-testid="units" onKeyDown={(event) => onListKey(event, lines)}>
+    <div class="table-scroll units" tabIndex={0} role="region" aria-label={`units, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`} data-testid="units" onKeyDown={(event) => onListKey(event, lines)}>
       <table data-testid="unit-table">
         <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th><th>verdict</th></tr></thead>
         <tbody>
@@ -219,19 +223,45 @@ function Packet({ packet }: { packet: PacketRow }) {
   );
 }
 
+/** Where in the range the page lies; how many there are is known with the last page. */
+function Pages({ after, listed }: { after: number[]; listed: number }) {
+  const { packets, next } = pastRows.value;
+  const turn = (to: number[]) => {
+    close();
+    pages.value = { ...pages.value, after: to };
+  };
+  return (
+    <div class="table-tools" data-testid="unit-pages">
+      <button type="button" disabled={after.length < 2} onClick={() => turn(after.slice(0, -1))}>‹ earlier</button>
+      <button type="button" disabled={next === 0} onClick={() => turn([...after, next])}>later ›</button>
+      <span role="status">{pageWords(after.length - 1, SHOWN, packets.length, next !== 0)}{listed < packets.length && `; ${listed} of them had been heard by then`}</span>
+    </div>
+  );
+}
+
 export function Packets() {
   const moving = replay.value?.playing === true;
   const past = moving ? undefined : pastRange.value;
+  const name = wanted.value;
+  const now = pages.value;
+  const after = now.of === past && now.name === name ? now.after : [0];
+  const begin = after.at(-1);
   useEffect(() => {
-    pastRows.value = [];
+    pages.value = { of: past, name, after };
+    pastRows.value = { packets: [], next: 0 };
     held.value = undefined;
     const run = store.value;
     if (!past || !run) return;
     const { from, to } = replay.value ? { from: past.to - 10, to: past.to } : past;
-    void askPackets(`from=${run.entrySclk + from}&to=${run.entrySclk + to}&limit=${SHOWN}`).then((rows) => {
-      if (pastRange.value === past) pastRows.value = rows;
+    const only = name === undefined ? '' : `&name=${encodeURIComponent(name)}`;
+    let current = true;
+    void askPackets(`from=${run.entrySclk + from}&to=${run.entrySclk + to}&limit=${SHOWN}&after=${begin}${only}`).then((rows) => {
+      if (current) pastRows.value = rows;
     });
-  }, [past]);
+    return () => {
+      current = false;
+    };
+  }, [past, name, begin]);
   const run = runNow();
   if (!run) return null;
   if (moving) return <p class="none" data-testid="packets-not-replayed">▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.</p>;
@@ -241,18 +271,20 @@ export function Packets() {
   const since = top === undefined ? 0 : run.units.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value)).length;
   return (
     <div class="table-box">
+      {past && <p class="not-past">▲ Counts are of the whole run; the units are those of the past that is shown.</p>}
       <Links whole={past !== undefined} />
       {(wanted.value !== undefined || since > 0) && (
         <div class="table-tools">
-          {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of the {past ? `${SHOWN} listed` : 'newest held'} <button type="button" onClick={() => {
+          {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of {past ? 'all of the range' : 'the newest held'} <button type="button" onClick={() => {
             wanted.value = undefined;
             close();
           }}>show all</button></span>}
           {since > 0 && <span class="status-caution" data-testid="list-held">▲ the list stands still while a packet is open: {since} came since</span>}
         </div>
       )}
+      {past && <Pages after={after} listed={held.value ? pastRows.value.packets.length : lines.length} />}
       <div class={`packets ${packet ? 'with-packet' : ''}`}>
-        <Streams />
+        <Streams whole={past !== undefined} />
         <Units run={run} lines={lines} />
         {packet && <Packet packet={packet} />}
       </div>

@@ -1,7 +1,9 @@
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
+import { heardOf } from '../timeline/heard';
 
 export interface PhaseStep {
   title: string;
@@ -18,10 +20,11 @@ interface Group {
   of: readonly string[];
   untilEntry?: string | undefined;
   predicted_e_s?: number | undefined;
+  from?: string | undefined;
 }
 
-/** The strip of phases. What the vehicle said last decides; before it said anything, all are ahead. */
-export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, cutoff: number): PhaseStep[] {
+/** The strip of phases. What the vehicle said last decides, in packets or, where it is further, by tone; before it said anything, all are ahead. */
+export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): PhaseStep[] {
   const channel = dictionary.pick(LAYOUT.phase);
   const labels = new Map(channel?.labels.map((label) => [Number(label.value), label.label]));
   const known = new Set(labels.values());
@@ -30,11 +33,15 @@ export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, 
     : [...known].map((label) => ({ title: inWords(label), of: [label] }));
   const groupOf = (label: string | undefined, e_s: number) => groups.findIndex((group) =>
     label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)));
-  const predicted = dictionary.reply.mission === LAYOUT.predictedFor;
+  const entryKnown = store?.entryKnown !== false;
+  const predicted = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
   const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);
-  const at = groupOf(label, seen_e_s);
+  const byPacket = groupOf(label, seen_e_s);
+  const toned = store && byTone(store, groups, plan, cutoff);
+  const isByTone = toned !== undefined && toned.group > byPacket;
+  const at = isByTone ? toned.group : byPacket;
   const since = new Map<number, number>();
   if (channel && store) {
     for (const series of [store.recorded.get(channel.id), store.live.get(channel.id)]) {
@@ -46,20 +53,31 @@ export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, 
       }
     }
   }
+  toned?.since.forEach((sclk, group) => isByTone && sclk !== undefined && !since.has(group) && since.set(group, sclk));
   return groups.map((group, index) => {
-    const start = since.get(index);
+    const start = entryKnown ? since.get(index) : undefined;
     const since_e_s = start === undefined || !store ? undefined : start - store.entrySclk;
     const next_e_s = predicted ? groups[index + 1]?.predicted_e_s : undefined;
     return {
       title: group.title,
       state: at < 0 || index > at ? 'ahead' : index === at ? 'now' : 'done',
-      detail: index === at && label !== undefined && inWords(label) !== group.title.toLowerCase() ? inWords(label) : '',
+      detail: index === at && isByTone ? '■ by tone' : index === at && label !== undefined && inWords(label) !== group.title.toLowerCase() ? inWords(label) : '',
       since_e_s,
       predicted_e_s: predicted ? group.predicted_e_s : undefined,
       part: index !== at || since_e_s === undefined || next_e_s === undefined ? undefined
         : Math.max(0, Math.min(1, (seen_e_s - since_e_s) / (next_e_s - since_e_s))),
     };
   });
+}
+
+/** The last phase whose timepoint, or one after it, is known by a tone; and since when each is known to have begun. */
+function byTone(store: RunStore, groups: readonly Group[], plan: readonly TimepointRow[], cutoff: number): { group: number; since: (number | undefined)[] } | undefined {
+  const heard = heardOf(store, plan, cutoff);
+  const last = plan.findLastIndex((row) => heard.get(row.id)?.by === 'tone');
+  if (last < 0) return undefined;
+  const begins = groups.map((group) => plan.findIndex((row) => row.name === group.from));
+  const since = begins.map((at) => (at < 0 || at > last ? undefined : heard.get(plan.slice(at).find((row) => heard.has(row.id))?.id ?? -1)?.triggered_sclk));
+  return { group: Math.max(0, begins.findLastIndex((at) => at >= 0 && at <= last)), since };
 }
 
 /** "parachute in 1 m 20 s", as far as it is predicted; "due since 4.0 s" when it should have come. */

@@ -1,5 +1,6 @@
 // From series to what a plot takes: one axis of time, the recording and real time beside each other.
 import type { Series } from '../run/series';
+import type { RunStore, Sample } from '../run/store';
 
 /**
  * [e_s, while UHF was silent, while it was live], cut to the range with a sample of margin. Both make one trace: what
@@ -12,30 +13,32 @@ export interface Silence {
   to: number;
 }
 
-const GAP_S = 6; // ours: longer without a sample is drawn as a gap; what is plotted comes at 1 Hz or faster
+export const GAP_S = 6; // ours: longer without a sample is drawn as a gap; what is plotted comes at 1 Hz or faster
 
+/** `pixels` wide: of the samples that share one, the least and the largest are drawn, so that no peak is lost. */
 export function align(
   recorded: Series | undefined, live: Series | undefined, silences: readonly Silence[], entry_sclk: number,
-  from_e_s: number, to_e_s: number, cutoff: number, per: number, most: number,
+  from_e_s: number, to_e_s: number, cutoff: number, per: number, pixels: number,
 ): Aligned {
   const from = from_e_s + entry_sclk;
   const to = Math.min(to_e_s + entry_sclk, cutoff);
+  const step_s = bucketOf((to_e_s - from_e_s) / pixels);
+  const edges = silences.flatMap((silence) => [silence.from + entry_sclk, silence.to + entry_sclk]).sort((one, other) => one - other);
   const aligned: Aligned = [[], [], []];
   const [xs, silent, lit] = aligned;
-  const a = part(recorded, from, to, cutoff, most);
-  const b = part(live, from, to, cutoff, most);
-  let last = NaN;
+  const a = thin(recorded, from, to, cutoff, step_s, edges, OF_RECORDED);
+  const b = thin(live, from, to, cutoff, step_s, edges, OF_LIVE);
+  let [i, j] = [0, 0];
+  let reached = NaN;
   let wasSilent = false;
-  while (a.i < a.end || b.i < b.end) {
-    const aSclk = a.i < a.end ? (a.series?.sclk[a.i] as number) : Infinity;
-    const bSclk = b.i < b.end ? (b.series?.sclk[b.i] as number) : Infinity;
-    const of = bSclk <= aSclk ? b : a;
-    const sclk = Math.min(aSclk, bSclk);
-    const e_s = sclk - entry_sclk;
-    const value = (of.series?.value[of.i] as number) / per;
-    const shown = Number.isNaN(value) ? null : value;
+  while (i < a.length || j < b.length) {
+    const of = i >= a.length || (j < b.length && (b.sclk[j] as number) <= (a.sclk[i] as number)) ? b : a;
+    const at = of === a ? i++ : j++;
+    const e_s = (of.sclk[at] as number) - entry_sclk;
+    const value = of.value[at] as number;
+    const shown = Number.isNaN(value) ? null : value / per;
     const isSilent = of === a && silences.some((silence) => e_s > silence.from && e_s < silence.to);
-    if (sclk - last > GAP_S) {
+    if ((of.since[at] as number) - reached > GAP_S) {
       xs.push(e_s - 1e-3);
       silent.push(null);
       lit.push(null);
@@ -46,16 +49,84 @@ export function align(
     lit.push(isSilent ? null : shown);
     if (isSilent && !wasSilent && lit.length > 1) silent[silent.length - 2] = lit[lit.length - 2] ?? null;
     wasSilent = isSilent;
-    last = sclk;
-    // The newest sample is always drawn, whatever the stride.
-    of.i = of.i + of.stride >= of.end && of.i < of.end - 1 ? of.end - 1 : of.i + of.stride;
+    if (!(reached > (of.until[at] as number))) reached = of.until[at] as number;
   }
   return aligned;
 }
 
-function part(series: Series | undefined, from: number, to: number, cutoff: number, most: number) {
-  if (!series) return { series, i: 0, end: 0, stride: 1 };
-  const i = Math.max(0, series.firstAfter(from) - 1);
+/** A power of two, so that a bucket stays as it is while the axis grows: a pixel to two. */
+function bucketOf(second_per_pixel: number): number {
+  return 2 ** Math.ceil(Math.log2(Math.max(second_per_pixel, 1e-6)));
+}
+
+/** The samples that are drawn, column by column. Two are kept for good: eight plots are thinned twenty times a second. */
+class Thinned {
+  length = 0;
+  sclk = new Float64Array(1 << 10);
+  value = new Float64Array(1 << 10);
+  /** The first and the last sample of the bucket each stands for: between the last of one and the first of the next there may be a gap. */
+  since = new Float64Array(1 << 10);
+  until = new Float64Array(1 << 10);
+
+  add(series: Series, index: number, since: number, until: number): void {
+    if (this.length === this.sclk.length) this.grow();
+    this.sclk[this.length] = series.sclk[index] as number;
+    this.value[this.length] = series.value[index] as number;
+    this.since[this.length] = since;
+    this.until[this.length] = until;
+    ++this.length;
+  }
+
+  private grow(): void {
+    for (const column of ['sclk', 'value', 'since', 'until'] as const) {
+      const larger = new Float64Array(this[column].length * 2);
+      larger.set(this[column]);
+      this[column] = larger;
+    }
+  }
+}
+const [OF_RECORDED, OF_LIVE] = [new Thinned(), new Thinned()];
+
+/** Of each bucket the least, the largest and the first that is undefined, in order of time; and the newest sample. A bucket ends at an edge, too. */
+function thin(series: Series | undefined, from: number, to: number, cutoff: number, step_s: number, edges: readonly number[], into: Thinned): Thinned {
+  into.length = 0;
+  if (!series) return into;
+  const { sclk, value } = series;
   const end = Math.min(series.length, series.firstAfter(to) + (cutoff < Infinity ? 0 : 1));
-  return { series, i, end, stride: Math.max(1, Math.floor((end - i) / most)) };
+  let edge = 0;
+  for (let i = Math.max(0, series.firstAfter(from) - 1); i < end;) {
+    const since = sclk[i] as number;
+    while (edge < edges.length && (edges[edge] as number) <= since) ++edge;
+    const ends = Math.min((Math.floor(since / step_s) + 1) * step_s, edges[edge] ?? Infinity);
+    let [least, largest, unknown] = [-1, -1, -1];
+    let [low, high] = [Infinity, -Infinity];
+    do {
+      const now = value[i] as number;
+      if (now < low) {
+        low = now;
+        least = i;
+      }
+      if (now > high) {
+        high = now;
+        largest = i;
+      }
+      if (now !== now && unknown < 0) unknown = i;
+      ++i;
+    } while (i < end && (sclk[i] as number) < ends);
+    const until = sclk[i - 1] as number;
+    const [one, other] = least < largest ? [least, largest] : [largest, least];
+    let last = -1;
+    for (const index of unknown < 0 ? [one, other] : unknown < one ? [unknown, one, other] : unknown < other ? [one, unknown, other] : [one, other, unknown]) {
+      if (index > last) into.add(series, (last = index), since, until);
+    }
+    if (i === end && last < i - 1) into.add(series, i - 1, since, until);
+  }
+  return into;
+}
+
+/** What was there at an instant: the newest sample by then; undefined in a gap, where none tells, and after what is shown. */
+export function readingAt(run: RunStore, channel: number, e_s: number, cutoff: number): Sample | undefined {
+  const sclk = run.entrySclk + e_s;
+  const sample = run.latest(channel, Math.min(cutoff, sclk));
+  return sample && sclk - sample.sclk <= GAP_S ? sample : undefined;
 }

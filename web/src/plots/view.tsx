@@ -1,21 +1,28 @@
 // Four plots over one axis of time, with one cursor. History and live are one trace; a gap stays a gap.
-import { useEffect, useRef } from 'preact/hooks';
+import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
-import { axisTime, timeStep } from '../draw/axis';
+import { axisNumber, shortStep, shortTime, ticks } from '../draw/axis';
+import { grownBy } from '../draw/canvas';
 import { onDraw } from '../draw/loop';
 import { palette } from '../draw/palette';
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../design/panel';
-import { cutoff, dictionary, namedChannels, store, tick } from '../run/session';
+import { SOURCES, silenceStatus } from '../design/status';
+import { cursor } from '../run/cursor';
+import { inWords } from '../run/dictionary';
+import { isWorst, limitsOver } from '../run/limits';
+import { namedChannels } from '../run/address';
+import { cutoff, dictionary, shownRun, tick } from '../run/session';
+import type { Series } from '../run/series';
+import { fromEntry } from '../run/time';
+import { whoseAt } from '../run/whose';
 import { outages, shortReason } from '../timeline/model';
 import { plotSpan } from '../run/window';
-import { align } from './model';
+import { align, readingAt } from './model';
 import type { Aligned } from './model';
 import './style.css';
-
-const sync = uPlot.sync('aeolis');
 
 interface Properties {
   title: string;
@@ -29,24 +36,20 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
   const colours = palette();
   const axis = { stroke: colours.dim, font: `11px ${colours.mono}`, grid: { stroke: colours.line, width: 1 }, ticks: { show: false } };
   return {
-    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 24, 0, 0],
-    cursor: { sync: { key: sync.key, setSeries: false }, drag: { x: false, y: false }, points: { show: false }, y: false },
+    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 20, 0, 0],
+    cursor: { show: false }, // ours is one for plots, tones and timeline
     scales: { x: { time: false } },
     axes: [
       {
         ...axis, size: 22, gap: 3,
-        splits: (_plot, _index, from, to) => {
-          const step = timeStep(to - from, Math.max(2, Math.floor(width / 90)));
-          const all: number[] = [];
-          for (let n = Math.ceil(from / step); n * step <= to; ++n) all.push(n * step);
-          return all;
-        },
+        splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, plot.over.clientWidth)),
         values: (plot, splits) => {
           const { min = 0, max = 1 } = plot.scales['x'] ?? {};
-          return splits.map((e_s) => axisTime(e_s, timeStep(max - min, Math.max(2, Math.floor(width / 90)))));
+          const step = shortStep(min, max, plot.over.clientWidth);
+          return splits.map((e_s) => shortTime(e_s, step));
         },
       },
-      { ...axis, size: 52, gap: 4, space: 26 },
+      { ...axis, size: 48, gap: 4, space: 26, values: (_plot, splits) => splits.map(axisNumber) },
     ],
     series: [
       {},
@@ -54,27 +57,27 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
       { stroke: colours.uhf, width: 1, points: { show: false } },
     ],
     hooks: {
-      drawClear: [(plot) => shadeSilence(plot)],
-      draw: [(plot) => limitLines(plot, channel, per)],
+      drawClear: [(plot) => shadeSilence(plot), (plot) => alarmBands(plot, channel, per)],
     },
   };
 }
 
 /** Where UHF was silent the plot says so by a shade, instead of a line that was never measured. */
 function shadeSilence(plot: uPlot): void {
-  const run = store.value;
+  const run = shownRun();
   if (!run) return;
   const { left, top, width, height } = plot.bbox;
   const now = Math.min(run.seenSclk, cutoff.value) - run.entrySclk;
   plot.ctx.save();
-  plot.ctx.fillStyle = palette().caution;
   for (const outage of outages(run, 'uhf_live', now, cutoff.value)) {
     const from = Math.max(left, plot.valToPos(outage.from, 'x', true));
     const to = Math.min(left + width, plot.valToPos(outage.to, 'x', true));
     if (to <= from) continue;
+    const { shape, token } = silenceStatus(outage.words);
+    plot.ctx.fillStyle = palette()[token];
     plot.ctx.globalAlpha = 0.1;
     plot.ctx.fillRect(from, top, to - from, height);
-    const words = shortReason(outage.words);
+    const words = `${shape} ${shortReason(outage.words)}`;
     plot.ctx.font = `${11 * (window.devicePixelRatio || 1)}px ${palette().sans}`;
     if (plot.ctx.measureText(words).width + 8 > to - from) continue;
     plot.ctx.globalAlpha = 1;
@@ -85,63 +88,116 @@ function shadeSilence(plot: uPlot): void {
   plot.ctx.restore();
 }
 
-function limitLines(plot: uPlot, channel: DictionaryChannel, per: number): void {
+/** What lies outside a limit, shaded while the limit held, under its name. The worst is named first: where there is no room for all, it is the one. */
+function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void {
+  const [run, words] = [shownRun(), dictionary.value];
+  const { min: from, max: to } = plot.scales['x'] ?? {};
+  if (!run || !words || from === undefined || to === undefined) return;
   const { left, top, width, height } = plot.bbox;
+  const [right, bottom] = [left + width, top + height];
   const colours = palette();
-  for (const limit of channel.limits) {
-    for (const bound of [limit.below, limit.above]) {
-      if (bound === undefined) continue;
-      const y = Math.round(plot.valToPos(bound / per, 'y', true)) + 0.5;
-      if (!(y > top && y < top + height)) continue;
-      plot.ctx.save();
-      plot.ctx.strokeStyle = limit.severity === 'critical' || limit.severity === 'severe' ? colours.alarm : colours.caution;
-      plot.ctx.setLineDash([4, 4]);
-      plot.ctx.beginPath();
-      plot.ctx.moveTo(left, y);
-      plot.ctx.lineTo(left + width, y);
-      plot.ctx.stroke();
-      plot.ctx.restore();
+  const ratio = window.devicePixelRatio || 1;
+  const { ctx } = plot;
+  const named: { words: string; x: number; y: number; room: number; colour: string }[] = [];
+  ctx.save();
+  for (const stretch of limitsOver(run, words, channel, run.entrySclk + from, Math.min(run.seenSclk, cutoff.value, run.entrySclk + to))) {
+    const x1 = Math.max(left, plot.valToPos(stretch.from_sclk - run.entrySclk, 'x', true));
+    const x2 = Math.min(right, plot.valToPos(stretch.to_sclk - run.entrySclk, 'x', true));
+    if (x2 - x1 < 1) continue;
+    for (const limit of stretch.limits) {
+      const colour = isWorst(limit.severity) ? colours.alarm : colours.caution;
+      for (const [bound, side] of [[limit.below, bottom], [limit.above, top]] as const) {
+        if (bound === undefined) continue;
+        const y = plot.valToPos(bound / per, 'y', true);
+        const above = side === top;
+        if (above ? y <= top : y >= bottom) continue; // it lies outside of what is drawn
+        const edge = Math.max(top, Math.min(bottom, y));
+        ctx.fillStyle = colour;
+        ctx.globalAlpha = 0.1;
+        ctx.fillRect(x1, Math.min(edge, side), x2 - x1, Math.abs(side - edge));
+        ctx.globalAlpha = 0.8;
+        ctx.fillRect(x1, Math.round(edge), x2 - x1, ratio);
+        const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context && limit.context ? `, ${inWords(stretch.context)}` : ''}`;
+        named.unshift({ words: name, x: x1, room: x2 - x1, y: above && edge - top > 13 * ratio ? edge - 3 * ratio : bottom - edge > 13 * ratio ? edge + 11 * ratio : edge - 3 * ratio, colour });
+      }
     }
   }
+  ctx.globalAlpha = 1;
+  ctx.font = `${10 * ratio}px ${colours.sans}`;
+  ctx.textAlign = 'left';
+  ctx.textBaseline = 'alphabetic';
+  const taken: [number, number, number][] = []; // left, right, line
+  for (const { words: whole, x, y, room, colour } of named.sort((one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm))) {
+    const short = ctx.measureText(whole).width < room - 6 * ratio ? whole : whole.split(',')[0] as string;
+    if (y - 9 * ratio < top || y > bottom) continue;
+    const wide = ctx.measureText(short).width;
+    const at = Math.max(left + 2, Math.min(right - wide - 2, x + 3));
+    if (taken.some(([from_px, to_px, line]) => at < to_px && at + wide > from_px && Math.abs(y - line) < 10 * ratio)) continue;
+    taken.push([at, at + wide, y]);
+    ctx.fillStyle = colour;
+    ctx.strokeStyle = colours.panel; // the lines of other limits do not strike it out; the trace, drawn later, does
+    ctx.lineWidth = 3 * ratio;
+    ctx.lineJoin = 'round';
+    ctx.strokeText(short, at, y);
+    ctx.fillText(short, at, y);
+  }
+  ctx.restore();
 }
 
 function Plot({ title, channel, unit, per, digits }: Properties) {
   const box = useRef<HTMLDivElement>(null);
-  useEffect(() => {
+  const mark = useRef<HTMLElement>(null);
+  const drawn = useRef<uPlot | undefined>(undefined);
+  useLayoutEffect(() => {
     const element = box.current;
     if (!element) return undefined;
     let plot: uPlot | undefined;
+    let placed: number | undefined;
+    const placeCursor = () => {
+      const [at, line] = [cursor.peek(), mark.current];
+      const { min = 0, max = 0 } = plot?.scales['x'] ?? {};
+      if (!plot || !line) return;
+      placed = at;
+      line.hidden = at === undefined || at < min || at > max;
+      if (!line.hidden) line.style.left = `${plot.over.offsetLeft + plot.valToPos(at as number, 'x')}px`;
+    };
     let shown = '';
+    let traces: (Series | undefined)[] = []; // as it was heard is a copy, which may have the version of the whole
     let shape = '';
     const stop = onDraw(() => {
       const width = element.clientWidth;
       const height = element.clientHeight;
-      if (width < 60 || height < 40) return;
-      const run = store.value;
+      if (width < 60 || height < 40) return undefined;
+      const run = shownRun();
       const recorded = run?.recorded.get(channel.id);
       const live = run?.live.get(channel.id);
       const span = plotSpan(run);
       const newShape = `${palette().name} ${channel.id}`;
       const key = `${run?.id} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
-      if (key === shown) return;
+      if (key === shown && traces[0] === recorded && traces[1] === live) return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
-      if (!plot || newShape !== shape) {
-        plot?.destroy();
-        shape = newShape;
-        plot = new uPlot(options(width, height, channel, per), [[], [], []], element);
-      } else if (plot.width !== width || plot.height !== height) {
-        plot.setSize({ width, height });
-      }
-      const data = run
-        ? align(recorded, live, outages(run, 'uhf_live', span.to, cutoff.value), run.entrySclk, span.from, span.to, cutoff.value, per, width * 2)
-        : ([[], [], []] as Aligned);
-      element.dataset['newest'] = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
-      plot.batch(() => {
-        plot?.setData(data as uPlot.AlignedData, false);
-        plot?.setScale('x', { min: span.from, max: span.to });
-        const [low, high] = bounds(data);
-        plot?.setScale('y', { min: low, max: high });
-      });
+      traces = [recorded, live];
+      return () => {
+        if (!plot || newShape !== shape) {
+          plot?.destroy();
+          shape = newShape;
+          plot = drawn.current = new uPlot(options(width, height, channel, per), [[], [], []], element);
+        } else if (plot.width !== width || plot.height !== height) {
+          plot.setSize({ width, height });
+        }
+        const data = run
+          ? align(recorded, live, outages(run, 'uhf_live', span.to, cutoff.value), run.entrySclk, span.from, span.to, cutoff.value, per, width)
+          : ([[], [], []] as Aligned);
+        element.dataset['holes'] = String(holesOf(data));
+        element.dataset['newest'] = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
+        plot.batch(() => {
+          plot?.setData(data as uPlot.AlignedData, false);
+          plot?.setScale('x', { min: span.from, max: span.to });
+          const [low, high] = bounds(data);
+          plot?.setScale('y', { min: low, max: high });
+        });
+        placeCursor();
+      };
     });
     return () => {
       stop();
@@ -150,17 +206,44 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   }, [channel.id, per]);
 
   void tick.value;
-  const now = store.value?.latest(channel.id, cutoff.value)?.value;
+  const run = shownRun();
+  const at = cursor.value;
+  const now = run?.latest(channel.id, cutoff.value)?.value;
+  const shown = at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value);
+  const value = at === undefined ? now : shown?.value;
+  const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter((each) => each !== false && each !== undefined);
+  const whose = run && whoseAt(run, channel.name, at === undefined ? run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity : run.entrySclk + at);
+  const name = title.toLowerCase();
   return (
-    <Panel name={`plot-${title.toLowerCase()}`} title={title} extra={
-      <span class="reading">
-        <output data-testid={`reading-${title.toLowerCase()}`}>{now === undefined || Number.isNaN(now) ? '—' : (now / per).toFixed(digits)}</output> {unit}
+    <Panel name={`plot-${name}`} title={title} extra={
+      <span class={`reading ${at === undefined ? '' : 'at-cursor'}`}>
+        {whose && <span class="whose" data-testid={`whose-${name}`}>{whose} </span>}
+        {at !== undefined ? <span class="cursor-time" data-testid={`cursor-${name}`}>{fromEntry(at, { tenths: true })} {shown && (shown.recorded ? SOURCES.recording : SOURCES.uhf).shape}</span>
+          : !whose && <span class="legend">{sources.map((each) => <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>{each.shape} <i>{each.word.split(/[ ,]/)[1]}</i> </span>)}</span>}
+        {' '}<output data-testid={`reading-${name}`}>{value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}</output> {unit}
       </span>
     }>
       {now === undefined && <span class="plot-empty">no {channel.name} has come yet</span>}
-      <div class={`plot ${now === undefined ? 'is-empty' : ''}`} ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`} />
+      <div class={`plot ${now === undefined ? 'is-empty' : ''}`} ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`}
+        onMouseMove={(event) => {
+          const plot = drawn.current;
+          if (plot) cursor.value = plot.posToVal((event.clientX - plot.over.getBoundingClientRect().left) / grownBy(plot.over), 'x');
+        }}
+        onMouseLeave={() => (cursor.value = undefined)}>
+        <i class="plot-cursor" ref={mark} hidden />
+      </div>
     </Panel>
   );
+}
+
+/** Nothing is a little less than nothing. */
+const reading = (value: number, digits: number): string => value.toFixed(digits).replace(/^-(?=0(\.0*)?$)/, '');
+
+/** Instants at which neither trace goes on: what looks on from outside cannot see a canvas. */
+function holesOf([x, silent, lit]: Aligned): number {
+  let holes = 0;
+  for (let i = 0; i < x.length; ++i) if (silent[i] === null && lit[i] === null) ++holes;
+  return holes;
 }
 
 function bounds(data: readonly (readonly (number | null | undefined)[])[]): [number, number] {

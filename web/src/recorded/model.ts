@@ -43,9 +43,9 @@ export function rangeProblem(from: number | undefined, to: number | undefined): 
 
 const rangeQuery = (names: readonly string[], from_sclk: number, to_sclk: number) => ({ names: names.join(','), from: String(from_sclk), to: String(to_sclk) });
 
-/** At most `size` points a channel. */
-export function seriesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number, size: number): string {
-  return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf' }).toString()}`;
+/** At most `size` points a channel; `live`: only of what came so. */
+export function seriesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number, size: number, live = false): string {
+  return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf', ...(live && { source: 'realtime' }) }).toString()}`;
 }
 
 /** Every sample of them, a line each. */

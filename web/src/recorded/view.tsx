@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
-import { ask, dictionary, pastRange, replay, runNow, store } from '../run/session';
+import { ask, dictionary, lookAtPast, replay, runNow, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { wordsFor } from '../run/api';
 import { download, save, sizeWords } from './download';
@@ -72,7 +72,7 @@ async function query(): Promise<void> {
     run.addRange(columnsOf(list), run.entrySclk + start, run.entrySclk + end);
     csvPath.value = `api/v1${samplesPath(run.id, names, run.entrySclk + start, run.entrySclk + end)}`;
     replay.value = undefined;
-    pastRange.value = { from: start, to: end };
+    lookAtPast({ from: start, to: end }, true);
     const samples = rows.value.reduce((sum, row) => sum + row.samples, 0);
     message.value = { good: true, text: `${samples} samples of ${rows.value.length} channels; every panel now shows this range` };
     summary.value = await ask<RecordingSummary>('recording', `/runs/${run.id}/recording`).catch(() => undefined);

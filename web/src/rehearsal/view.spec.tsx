@@ -1,5 +1,14 @@
-import { describe, expect, it } from 'vitest';
+// @vitest-environment happy-dom
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
+import { afterEach, beforeEach, describe, expect, it } from 'vitest';
+import { access } from '../access/model';
+import { pastRange, replay, runs, store, useForTest, watched } from '../run/session';
+import type { ToWorker } from '../stream/messages';
+import { aDictionary, aRun, aStore } from '../testing/fixtures';
+import { aServer } from '../testing/server';
 import { attainedText, nextPace } from './model';
+import { PaceBar, Rehearsal, changePace, togglePause } from './view';
 
 describe('the pace', () => {
   it('steps up to as fast as it goes, and down to one', () => {
@@ -7,5 +16,122 @@ describe('the pace', () => {
   });
   it('is told when it is not reached', () => {
     expect([attainedText(100, 99), attainedText(100, 42), attainedText(0, 512)]).toEqual(['', 'reaches 42×', 'reaches 512×']);
+  });
+});
+
+describe('a rehearsal', () => {
+  const server = aServer();
+  let root: HTMLElement;
+  let heard: ToWorker[];
+  const shown = (run = aRun()) => act(() => {
+    heard = [];
+    runs.value = [run];
+    useForTest(aStore([], run), aDictionary, (message) => void heard.push(message));
+    render(<><PaceBar /><Rehearsal /></>, root);
+  });
+  const button = (id: string) => root.querySelector<HTMLButtonElement>(`[data-testid="${id}"]`);
+  beforeEach(() => {
+    root = document.createElement('div');
+    document.body.append(root);
+    access.value = { state: 'open' };
+  });
+  afterEach(() => {
+    act(() => render(null, root));
+    root.remove();
+    runs.value = [];
+    watched.value = 0;
+    access.value = { state: 'asking' };
+  });
+  it('that is refused leaves on the screen what is looked at, and says why beside the button', async () => {
+    shown(aRun({ state: 'finished', outcome: 'touchdown' }));
+    watched.value = 1;
+    server.routes['POST /rehearsals'] = { status: 409, json: { error: 'run 2 is going on' } };
+    await act(async () => {
+      button('start-rehearsal')?.click();
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    });
+    expect([root.querySelector('[data-testid="rehearsal-problem"]')?.textContent, store.value?.id, watched.value]).toEqual(['✖ run 2 is going on', 1, 1]);
+    server.routes['POST /rehearsals'] = { status: 201, json: {} };
+    await act(async () => {
+      button('start-rehearsal')?.click();
+      await new Promise((resolve) => setTimeout(resolve, 20));
+    });
+    expect([watched.value, heard.map((each) => each.type)]).toEqual([0, ['watch']]);
+    expect(server.asked.at(-1)?.body).toEqual({ scenario: 'nominal', seed: '1', pace: 1 });
+  });
+  it('ends for everyone only by a second press in place; leaving the button takes the first one back', () => {
+    shown();
+    act(() => button('stop-rehearsal')?.click());
+    expect([heard, button('stop-rehearsal')?.textContent]).toEqual([[], '▲ press again: run 1 ends for everyone']);
+    act(() => void button('stop-rehearsal')?.dispatchEvent(new FocusEvent('blur')));
+    act(() => button('stop-rehearsal')?.click());
+    expect(heard).toEqual([]);
+    act(() => button('stop-rehearsal')?.click());
+    expect(heard).toEqual([{ type: 'control', control: { action: 'stop' } }]);
+  });
+  it('that is continued says what is known of how far it is, and can be left to itself: then nothing is shown unasked', async () => {
+    let answer = (_: object) => undefined as void;
+    server.routes['POST /rehearsals'] = () => new Promise((resolve) => (answer = resolve as typeof answer));
+    for (const leave of [true, false]) {
+      shown(aRun({ state: 'interrupted', lastSeq: 4711n }));
+      act(() => button('continue-1')?.click());
+      const bar = button('catching-up');
+      expect([bar?.querySelector('progress')?.hasAttribute('value'), bar?.textContent]).toEqual([false, expect.stringContaining('through its 4711 items')]);
+      if (leave) {
+        act(() => bar?.querySelector('button')?.click());
+        expect([button('catching-up'), root.textContent]).toEqual([null, expect.stringContaining('catches up by itself')]);
+      }
+      await act(async () => {
+        await new Promise((resolve) => setTimeout(resolve, 10));
+        answer({ status: 201, json: {} });
+        await new Promise((resolve) => setTimeout(resolve, 20));
+      });
+      expect([heard.map((each) => each.type), root.textContent?.includes('catches up by itself')]).toEqual([leave ? [] : ['watch'], false]);
+    }
+  });
+  it('is not ended, continued or started from a past view, and says nothing there of what came later', () => {
+    const clicks = () => root.querySelectorAll<HTMLButtonElement>('button').forEach((each) => !each.disabled && act(() => each.click()));
+    shown(aRun({ lastSeq: 4711n }));
+    expect(root.querySelector('[data-run="1"]')?.textContent).toContain('4711');
+    for (const [state, replayed] of [['running', false], ['interrupted', false], ['running', true]] as const) {
+      act(() => {
+        pastRange.value = { from: -100, to: 0 };
+        if (replayed) replay.value = { pace: 1, playing: false };
+      });
+      shown(aRun({ state, lastSeq: 4711n, outcome: 'impact' }));
+      const row = root.querySelector('[data-run="1"]')?.textContent;
+      expect(row).toContain('◧ past');
+      for (const now of [state, '4711', 'hit the ground']) expect(row).not.toContain(now);
+      expect([button('stop-rehearsal'), root.querySelector('[data-testid="instructor"]'), button('start-rehearsal')?.disabled]).toEqual([null, null, true]);
+      expect(root.textContent).toContain('from a past view nothing is started or ended');
+      clicks();
+      clicks();
+      expect([heard, server.asked.filter((each) => each.method !== 'GET')]).toEqual([[], []]);
+      act(() => void ([pastRange.value, replay.value] = [undefined, undefined]));
+    }
+  });
+  it('is never offered beside a real vehicle: no instructor, no end, no pace', () => {
+    shown(aRun({ venue: 'downlink' }));
+    expect([root.querySelector('[data-testid="instructor"]'), button('stop-rehearsal'), root.textContent?.includes('a real landing is followed')]).toEqual([null, null, true]);
+    changePace(1);
+    togglePause();
+    expect(heard).toEqual([]);
+    shown();
+    expect([root.querySelector('[data-testid="instructor"]'), button('stop-rehearsal')]).not.toContain(null);
+  });
+  it('that was cut off is offered to be continued, a real landing that was followed is not', () => {
+    shown(aRun({ state: 'interrupted' }));
+    expect(button('continue-1')?.textContent).toBe('continue');
+    shown(aRun({ state: 'interrupted', venue: 'downlink' }));
+    expect([button('continue-1'), root.querySelector('[data-run="1"]')?.textContent?.includes('▲ interrupted')]).toEqual([null, true]);
+  });
+  it('gives those who may not rehearse nothing to press, and its keys do nothing', () => {
+    act(() => void (access.value = { state: 'in', user: 'eve', role: 'observer', rights: ['watch'] }));
+    shown();
+    expect([...root.querySelectorAll<HTMLButtonElement>('button, select, input')].filter((each) => !each.disabled)).toEqual([]);
+    expect(root.textContent).toContain('need the right to rehearse; you are eve, observer');
+    changePace(1);
+    togglePause();
+    expect(heard).toEqual([]);
   });
 });

@@ -1,26 +1,33 @@
 // Rehearsals: pace and pause in one bar that is always there; which run is looked at, and new ones, in a panel.
 import { signal } from '@preact/signals';
+import { mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
+import { canContinue, isReal } from '../mode/model';
 import { changeReplayPace, playOrHold } from '../replay/model';
-import { control, modeNow, pastRange, replay, runNow, runs, scenarios, store, watch } from '../run/session';
+import { wordsFor } from '../run/api';
+import { control, modeNow, pastRange, replay, runNow, runs, scenarios, startRehearsal, store, watch } from '../run/session';
+import { InstructorDesk } from './desk';
 import { PACES, attainedText, nextPace, paceText } from './model';
+import { Review } from './review';
 import './style.css';
 
 export function changePace(direction: 1 | -1): void {
   if (replay.value) return changeReplayPace(direction);
   const run = store.value;
-  if (run?.going && !pastRange.value) control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
+  if (run && modeNow() === 'rehearsal' && mayRehearse()) control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
 }
 export function togglePause(): void {
   if (replay.value) return playOrHold();
   const run = store.value;
-  if (run?.going && !pastRange.value) control({ action: 'pause', pause: run.run.state !== 'paused' });
+  if (run && modeNow() === 'rehearsal' && mayRehearse()) control({ action: 'pause', pause: run.run.state !== 'paused' });
 }
 
 export function PaceBar() {
   const run = runNow();
   if (!run?.going || modeNow() !== 'rehearsal') return null;
   const paused = run.run.state === 'paused';
+  const attained = <span class="attained">{paused ? 'paused' : attainedText(run.run.pace, run.run.attainedPace)}</span>;
+  if (!mayRehearse()) return <div class="pace-bar" data-testid="pace-bar"><span>{paceText(run.run.pace)}</span>{attained}</div>;
   return (
     <div class="pace-bar" role="group" aria-label="pace of the rehearsal" data-testid="pace-bar">
       <button type="button" onClick={togglePause} data-testid="pause" title="key p">{paused ? '▶ go on' : '❚❚ pause'}</button>
@@ -30,58 +37,117 @@ export function PaceBar() {
         {[...new Set([...PACES, run.run.pace])].map((pace) => <option key={pace} value={String(pace)}>{paceText(pace)}</option>)}
       </select>
       <button type="button" onClick={() => changePace(1)} aria-label="faster" title="key +">+</button>
-      <span class="attained">{paused ? 'paused' : attainedText(run.run.pace, run.run.attainedPace)}</span>
+      {attained}
     </div>
   );
 }
 
 const scenario = signal('nominal');
 const seed = signal('1');
+/** What was asked for and is waited for. */
+const starting = signal<Parameters<typeof startRehearsal>[0] | undefined>(undefined);
+const left = signal('');
+const refused = signal('');
 
-function start(): void {
-  const number = Number(seed.value);
-  control({ action: 'start', scenario: scenario.value, seed: Number.isInteger(number) && number >= 0 ? number : 1, pace: 1 });
+async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void> {
+  if (starting.value) return;
+  starting.value = order;
+  refused.value = left.value = '';
+  try {
+    await startRehearsal(order, () => starting.value === order);
+  } catch (error) {
+    refused.value = wordsFor(error);
+  } finally {
+    if (starting.value === order) starting.value = undefined;
+    left.value = '';
+  }
+}
+
+/** A run that was cut off is flown again before it goes on; how far it is only the server knows. */
+function CatchingUp() {
+  const order = starting.value;
+  const run = order && 'continue_run' in order ? order.continue_run : undefined;
+  if (run === undefined) return left.value ? <p role="status">{left.value}</p> : null;
+  const items = runs.value.find((each) => Number(each.run) === run)?.lastSeq;
+  return (
+    <p role="status" data-testid="catching-up">
+      <progress aria-label={`run ${run} is flown again`} /> run {run} is flown again{items !== undefined && ` through its ${String(items)} items`}, each held against the archive; then it goes on{' '}
+      <button type="button" onClick={() => {
+        starting.value = undefined;
+        left.value = `Run ${run} catches up by itself, and stands in the list as running once it goes on.`;
+      }}>leave it alone</button>
+    </p>
+  );
+}
+
+const ending = signal(''); // the button that was pressed once, and of which run
+
+/** Everybody's landing ends by it: so it is pressed twice. */
+export function EndRun({ run, name, words }: { run: number; name: string; words: string }) {
+  const mine = `${name} ${run}`;
+  const sure = ending.value === mine;
+  return (
+    <button type="button" class={sure ? 'danger' : ''} data-testid={name} onBlur={() => (ending.value = '')}
+      onKeyDown={(event) => {
+        if (event.key !== 'Escape' || !sure) return;
+        ending.value = '';
+        event.stopPropagation();
+      }}
+      onClick={() => {
+        if (sure) control({ action: 'stop' });
+        ending.value = sure ? '' : mine;
+      }}>{sure ? `▲ press again: run ${run} ends for everyone` : words}</button>
+  );
 }
 
 export function Rehearsal() {
   const run = runNow();
+  const allowed = mayRehearse();
   const going = runs.value.find((other) => ['waiting', 'running', 'paused'].includes(other.state));
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);
+  const past = pastRange.value; // nothing is sent from there, and nothing there is of now
+  const blocked = !allowed || past !== undefined || going !== undefined || starting.value !== undefined;
   return (
     <div class="table-box" data-testid="rehearsal">
       <form class="table-tools" onSubmit={(event) => {
         event.preventDefault();
-        if (!badSeed) start();
+        if (!badSeed && !blocked) void begin({ scenario: scenario.value, seed: seed.value, pace: 1 });
       }}>
-        <label>scenario <select value={scenario.value} data-testid="scenario" onChange={(event) => (scenario.value = event.currentTarget.value)}>
+        <label>scenario <select value={scenario.value} data-testid="scenario" disabled={!allowed} onChange={(event) => (scenario.value = event.currentTarget.value)}>
           {names.map((each) => <option key={each.name} value={each.name} title={each.title}>{each.name}</option>)}
         </select></label>
-        <label>seed <input class="seed" value={seed.value} inputMode="numeric" aria-invalid={badSeed} onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
-        <button type="submit" disabled={badSeed || going !== undefined} data-testid="start-rehearsal">start a rehearsal</button>
-        {going && <button type="button" onClick={() => control({ action: 'stop' })} data-testid="stop-rehearsal">end run {String(going.run)}</button>}
-        <span>{badSeed ? '✖ a seed is a whole number' : going ? 'one is going on; end it to start another' : names.find((each) => each.name === scenario.value)?.title}</span>
+        <label>seed <input class="seed" value={seed.value} inputMode="numeric" disabled={!allowed} aria-invalid={badSeed} onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
+        <button type="submit" disabled={badSeed || blocked} data-testid="start-rehearsal">start a rehearsal</button>
+        {going && allowed && !past && !isReal(going) && <EndRun run={Number(going.run)} name="stop-rehearsal" words={`end run ${going.run}`} />}
+        <span>{!allowed ? `○ ${whyNotRehearse('starting and ending')}` : past ? '○ from a past view nothing is started or ended; Esc leaves it' : badSeed ? '✖ a seed is a whole number' : starting.value ? '… starting' : going ? (isReal(going) ? 'a real landing is followed; none is rehearsed beside it' : 'one is going on; end it to start another') : names.find((each) => each.name === scenario.value)?.title}</span>
       </form>
+      <CatchingUp />
+      {refused.value && <p role="alert" class="status-alarm" data-testid="rehearsal-problem">✖ {refused.value}</p>}
+      {going && run?.going && !isReal(run.run) && !past && <InstructorDesk />}
+      {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} aria-label="runs">
+        <Review />
         <table data-testid="run-list">
           <thead><tr><th>run</th><th>scenario</th><th class="number">seed</th><th>state</th><th>outcome</th><th>started</th><th class="number">items</th><th>show</th></tr></thead>
           <tbody>
             {runs.value.map((each) => {
               const shown = run?.id === Number(each.run);
-              const live = shown && run ? run.run : each;
+              const state = shown && past ? 'past' : shown && run ? run.run.state : each.state;
+              const now = shown && run ? run.run : each;
               return (
-                <tr key={String(each.run)} class={shown ? 'shown' : ''} data-run={String(each.run)} data-state={live.state}>
+                <tr key={String(each.run)} class={shown ? 'shown' : ''} data-run={String(each.run)} data-state={state}>
                   <td class="number">{String(each.run)}</td><td>{each.scenario}</td><td class="number">{String(each.seed)}</td>
-                  <td>{live.state === 'interrupted' ? '▲ ' : ''}{live.state}</td><td>{outcomeWords(live.outcome, live.state)}</td>
-                  <td>{each.started}</td><td class="number">{String(live.lastSeq)}</td>
+                  <td>{state === 'past' ? '◧ ' : state === 'interrupted' ? '▲ ' : ''}{state}</td><td>{state === 'past' ? '—' : outcomeWords(now.outcome, state)}</td>
+                  <td>{each.started}</td><td class="number">{state === 'past' ? '—' : String(now.lastSeq)}</td>
                   <td>
                     {shown ? '◀ shown ' : (
                       <button type="button" onClick={() => watch(['waiting', 'running', 'paused'].includes(each.state) ? 0 : Number(each.run))}>show</button>
                     )}
-                    {live.state === 'interrupted' && (
-                      <button type="button" disabled={going !== undefined} data-testid={`continue-${String(each.run)}`}
+                    {state === 'interrupted' && canContinue(each) && (
+                      <button type="button" disabled={blocked} data-testid={`continue-${String(each.run)}`}
                         title="flown again up to its last item, each held against the archive; then it goes on"
-                        onClick={() => control({ action: 'continue', run: Number(each.run), pace: 1 })}>continue</button>
+                        onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}>{starting.value ? 'catching up…' : 'continue'}</button>
                     )}
                   </td>
                 </tr>

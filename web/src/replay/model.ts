@@ -1,6 +1,7 @@
-// A replay: the run's past played again at a pace. Every panel shows what was known by then and nothing later.
+// A replay: the run's past played again at a pace. Every panel shows what had been heard by then and nothing later, or, where that is
+// asked for, what had happened by then with all that the recording tells of it.
 import { LAYOUT } from '../layout';
-import { backToLive, pastRange, replay, store } from '../run/session';
+import { backToLive, pastRange, replay, store, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 
 export const REPLAY_PACES = [1, 2, 5, 10, 20, 50] as const;
@@ -34,7 +35,13 @@ export function startReplay(): void {
   if (!run) return;
   const { from, to } = boundsOf(run);
   replay.value = { pace: 10, playing: true };
+  withRecording.value = false;
   seek(to > LAYOUT.window.from ? LAYOUT.window.from : from);
+}
+
+/** In any past view. */
+export function toggleRecording(): void {
+  if (pastRange.value) withRecording.value = !withRecording.value;
 }
 
 export function toggleReplay(): void {

@@ -1,8 +1,20 @@
 // The bar of a replay: where it is, how fast, and the way back.
-import { backToLive, pastRange, replay, runNow } from '../run/session';
+import { backToLive, cutoff, pastRange, replay, runNow, withRecording } from '../run/session';
 import { fromEntry } from '../run/time';
-import { boundsOf, changeReplayPace, playOrHold, seek } from './model';
+import { boundsOf, changeReplayPace, playOrHold, seek, toggleRecording } from './model';
 import './style.css';
+
+/** Two readings of the past, and which of them it is. */
+export function Reading() {
+  const notTold = withRecording.value ? [] : (runNow()?.notTold(cutoff.value) ?? []);
+  return (
+    <span class="reading-of-past">
+      <span data-testid="reading-of-past">{withRecording.value ? 'With the recording: what happened, known then or not.' : 'As it was heard then.'}</span>
+      {notTold.length > 0 && <span data-testid="not-told">▲ Too much came late to tell it all apart: {notTold.map(({ packet, units }) => `${units} units of ${packet}`).join(', ')} may be shown before they were heard.</span>}
+      <button type="button" onClick={toggleRecording}>{withRecording.value ? 'as heard then' : 'with the recording'} <kbd>w</kbd></button>
+    </span>
+  );
+}
 
 export function ReplayBar() {
   const run = runNow();
@@ -13,6 +25,7 @@ export function ReplayBar() {
   return (
     <div class="replay-bar" role="region" aria-label="replay" data-testid="replay-bar">
       <b>REPLAY {now.pace}×. Nothing here is live{run.going ? '; the run goes on' : ''}.</b>
+      <Reading />
       <button type="button" onClick={playOrHold} data-testid="replay-play" title="key p">{now.playing ? '❚❚ hold' : '▶ play'}</button>
       <button type="button" onClick={() => changeReplayPace(-1)} aria-label="replay slower" title="key −">−</button>
       <button type="button" onClick={() => changeReplayPace(1)} aria-label="replay faster" title="key +">+</button>

@@ -2,38 +2,60 @@
 // Nothing is ever sent twice: what failed is said to whoever asked, and asking again is theirs.
 import { signal } from '@preact/signals';
 
-/** The server's own words for why not, with the status that it gave; 0: no answer came, so whether it was taken is not known. */
+/**
+ * The server's own words for why not, with the status that it gave; 0: no answer came, or none that can be read, so whether it was taken is not known.
+ * `answer`: all that it said, where that is JSON.
+ */
 export class Refused extends Error {
-  constructor(readonly status: number, words: string) {
+  constructor(readonly status: number, words: string, readonly answer?: unknown) {
     super(words);
   }
 }
 
+/** Whether it may have been done all the same: without an answer, and where the server, or what stands before it, failed in the middle. */
+export const isOpen = (error: unknown): boolean => !(error instanceof Refused) || error.status === 0 || error.status >= 500;
+
 /** Counts answers that say: log in. */
 export const turnedAway = signal(0);
 
-export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path: string, body?: object): Promise<T> {
+const ANSWER_WITHIN_MS = 60_000; // ours: longer than any of these questions may take; whoever waits is told then
+
+/** `within_ms`: Infinity for what takes as long as it takes. */
+export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path: string, body?: object, within_ms = ANSWER_WITHIN_MS): Promise<T> {
+  const lost = (what: string) => new Refused(0, method === 'GET' ? what : `${what}: whether it was taken is not known`);
   let response: Response;
+  let text: string;
   try {
     response = await fetch(`/api/v1${path}`, {
       method, credentials: 'same-origin', cache: 'no-store',
       ...(body && { headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) }),
+      ...(Number.isFinite(within_ms) && { signal: AbortSignal.timeout(within_ms) }),
     });
-  } catch {
-    throw new Refused(0, method === 'GET' ? 'no answer' : 'no answer came: whether it was taken is not known');
+    text = await response.text(); // an answer may break off after its head
+  } catch (error) {
+    throw lost((error as Error).name === 'TimeoutError' ? `no answer came in ${within_ms / 1000} s` : 'no answer came');
   }
-  const text = await response.text();
-  if (response.ok) return (text === '' ? undefined : JSON.parse(text)) as T;
+  if (response.ok) {
+    try {
+      return (text === '' ? undefined : JSON.parse(text)) as T;
+    } catch {
+      throw lost('the answer cannot be read');
+    }
+  }
   if (response.status === 401 && path !== '/session') turnedAway.value += 1;
-  throw new Refused(response.status, wordsOf(text) || `${response.status} ${response.statusText}`);
+  throw new Refused(response.status, wordsOf(text) || `${response.status} ${response.statusText}`, readJson(text));
+}
+
+function readJson(text: string): unknown {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return undefined;
+  }
 }
 
 export function wordsOf(text: string): string {
-  try {
-    return (JSON.parse(text) as { error?: string }).error ?? text.slice(0, 300);
-  } catch {
-    return text.slice(0, 300); // not an answer of our API; its text says what it says
-  }
+  return (readJson(text) as { error?: string } | null | undefined)?.error ?? text.slice(0, 300); // what is no answer of our API says what it says
 }
 
 export const wordsFor = (error: unknown): string => (error instanceof Error ? error.message : String(error));

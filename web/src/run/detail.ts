@@ -4,8 +4,8 @@ import { effect } from '@preact/signals';
 import { seriesPath } from '../recorded/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
-import { ask, pastRange, plottedChannels, replay, store } from './session';
-import { choice, spanNow } from './window';
+import { ask, pastRange, plottedChannels, store, withRecording } from './session';
+import { zoomedTo } from './window';
 
 const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more takes longer to come than a step of zoom may
 const CHANNELS_A_QUESTION = 8; // several small questions are answered side by side
@@ -13,24 +13,19 @@ const CHANNELS_A_QUESTION = 8; // several small questions are answered side by s
 let wanted = '';
 let underWay = false;
 
-/** Only where someone has zoomed or panned: what follows the run is fine enough as it comes, a fixed range as fine as it was asked for. */
-function stretch(): { from: number; to: number } | undefined {
-  return (!pastRange.value || replay.value) && typeof choice.value === 'object' ? spanNow(store.value) : undefined;
-}
-
 async function refine(): Promise<void> {
   if (underWay) return;
   underWay = true;
   for (let done = ''; done !== wanted;) {
     done = wanted;
-    const [run, span] = [store.peek(), stretch()];
+    const [run, span, live] = [store.peek(), zoomedTo(), pastRange.value !== undefined && !withRecording.value];
     if (!run || !span) break;
     const [from, to] = [run.entrySclk + span.from, run.entrySclk + span.to];
     const names = plottedChannels();
     const questions = Array.from({ length: Math.ceil(names.length / CHANNELS_A_QUESTION) }, (_, i) => names.slice(i * CHANNELS_A_QUESTION, (i + 1) * CHANNELS_A_QUESTION));
     try {
       await Promise.all(questions.map(async (some) => {
-        const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS));
+        const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS, live));
         if (store.peek() !== run) return;
         performance.mark('aeolis-detail');
         // Live samples that came while the answer was on its way are newer than it, and stay.
@@ -45,8 +40,8 @@ async function refine(): Promise<void> {
 
 export function refineWhatIsLookedAt(): void {
   effect(() => {
-    const span = stretch();
-    wanted = span ? `${store.value?.id} ${span.from} ${span.to}` : '';
+    const span = zoomedTo(); // what follows the run is fine enough as it comes, a whole range as fine as it was asked for
+    wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${withRecording.value}` : '';
     if (span) void refine();
   });
 }

@@ -1,9 +1,9 @@
 import { create, toBinary } from '@bufbuild/protobuf';
-import { describe, expect, it } from 'vitest';
+import { describe, expect, it, vi } from 'vitest';
 import { ChannelSeriesListSchema } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { aServer } from '../testing/server';
-import { firstLook } from './first_look';
+import { askFirst, firstAnswers, firstLook } from './first_look';
 
 const server = aServer();
 const octets = toBinary(ChannelSeriesListSchema, create(ChannelSeriesListSchema, { channels: [{ id: 3, sclk: [1, 2], value: [5, NaN], source: [1, 2] }] }));
@@ -26,5 +26,16 @@ describe('the first look', () => {
     server.routes[asking(9, 'a')] = { octets: Uint8Array.of(0xff) };
     expect(await firstLook(runs([9, 'running']), 0, ['a'])).toBeUndefined();
     expect(await firstLook([], 0, ['a'])).toBeUndefined();
+  });
+  it('is asked for once before all else, and anew when it must be asked for again', async () => {
+    server.routes['GET /runs'] = { json: { runs: [{ run: '8', state: 'running' }] } };
+    askFirst();
+    const { runs: known } = firstAnswers();
+    expect(await known).toMatchObject([{ run: 8n }]);
+    await vi.waitFor(() => expect(server.asked.map(({ path }) => path.split('?')[0])).toEqual(['/runs', '/runs/8/channels']));
+    server.routes['GET /runs'] = { status: 401, json: { error: 'log in' } };
+    const again = firstAnswers();
+    await expect(again.runs).rejects.toThrow('log in');
+    expect(await again.look).toBeUndefined();
   });
 });

@@ -1,10 +1,11 @@
-// What is drawn, coarse, asked for before anything else is known, while the worker and its schema are still loading: someone waits for a
-// picture. The history that has no seam replaces it. Where it fails nothing is lost but that head start.
+// What is drawn, coarse, asked for before anything else is known, while the rest of the script, the worker and its schema are still loading:
+// someone waits for a picture. The history that has no seam replaces it. Where it fails nothing is lost but that head start.
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { columnsOf, readSeriesList } from '../stream/series_answer';
 import type { Column } from '../stream/messages';
-import { isGoing } from './start';
+import { namedChannels, wantedRun } from './address';
+import { askRuns, isGoing } from './start';
 
 const POINTS = 1000; // ours: of a channel
 
@@ -24,4 +25,23 @@ export async function firstLook(runs: readonly RunState[], wanted: number, named
   } catch {
     return undefined;
   }
+}
+
+export interface FirstAnswers {
+  runs: Promise<RunState[]>;
+  look: Promise<FirstLook | undefined>;
+}
+let asked: FirstAnswers | undefined;
+
+export function askFirst(): void {
+  const runs = askRuns();
+  asked = { runs, look: runs.then((all) => firstLook(all, wantedRun(), namedChannels()), () => undefined) };
+}
+
+/** What was asked before; once that was taken, it is asked anew. */
+export function firstAnswers(): FirstAnswers {
+  if (!asked) askFirst();
+  const answers = asked as FirstAnswers;
+  asked = undefined;
+  return answers;
 }

@@ -67,6 +67,16 @@ export class Series {
     return index < 0 ? undefined : { sclk: this.sclk[index] as number, value: this.value[index] as number };
   }
 
+  /** A copy without the samples of these instants; of the same version, for it is drawn in its place. */
+  without(instants: ReadonlySet<number>): Series {
+    const copy = new Series(this.limit);
+    copy.version = this.version;
+    for (let i = 0; i < this.length; ++i) {
+      if (!instants.has(this.sclk[i] as number)) copy.push(this.sclk[i] as number, this.value[i] as number);
+    }
+    return copy;
+  }
+
   private push(sclk: number, value: number): void {
     if (this.length === this.sclk.length) this.grow();
     this.sclk[this.length] = sclk;
@@ -105,8 +115,9 @@ export class Series {
       let least = from;
       let largest = from;
       for (let i = from + 1; i < from + 4; ++i) {
-        if ((this.value[i] as number) < (this.value[least] as number)) least = i;
-        if ((this.value[i] as number) > (this.value[largest] as number)) largest = i;
+        const value = this.value[i] as number;
+        if (value < (this.value[least] as number) || Number.isNaN(this.value[least])) least = i;
+        if (value > (this.value[largest] as number) || Number.isNaN(this.value[largest])) largest = i;
       }
       for (const i of least < largest ? [least, largest] : least > largest ? [largest, least] : [least]) {
         this.sclk[to] = this.sclk[i] as number;

@@ -7,10 +7,12 @@ import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { access, admitted, learnAccess, mayAct } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
-import { Refused, turnedAway, wordsFor } from './api';
+import { Refused, call, turnedAway, wordsFor } from './api';
 import { Dictionary } from './dictionary';
-import { firstLook } from './first_look';
+import { namedChannels, wantedRun } from './address';
+import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
+import { isSameRun } from './same';
 import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
 
@@ -27,14 +29,24 @@ export const scenarios = signal<{ name: string; title: string }[]>([]);
 export const watched = signal(0);
 /** Five times a second, when something has changed. Numbers on the screen follow this and nothing faster. */
 export const tick = signal(0);
-/** The run, read by a view: it is then shown again at each tick, for a store changes without becoming another. */
-export function runNow(): RunStore | undefined {
-  void tick.value;
-  return store.value;
-}
-
+/** Follows it a frame later: for tables so long that they take a frame of their own. */
+export const rowsTick = signal(0);
 /** A part of the run looked at as the past, in seconds from entry; undefined: not a past view. */
 export const pastRange = signal<{ from: number; to: number } | undefined>(undefined);
+/** Of a past view: with what only the recording told, or as it was heard then. */
+export const withRecording = signal(false);
+
+/** The run as every panel shows it. */
+export function shownRun(): RunStore | undefined {
+  const run = store.value;
+  return pastRange.value && !withRecording.value ? run?.asHeardBy(cutoff.value, packetOf) : run;
+}
+const packetOf = (channel: number): string | undefined => dictionary.value?.channel(channel)?.packet;
+/** The same, read by a view: it is then shown again at each tick, for a store changes without becoming another. */
+export function runNow(): RunStore | undefined {
+  void tick.value;
+  return shownRun();
+}
 
 export interface Notice {
   id: number;
@@ -64,9 +76,17 @@ export function modeNow(): Mode {
   return modeOf(store.value, pastRange.value !== undefined, replay.value !== undefined);
 }
 
+/** Of a mission that is only listened to. */
+export const hasNoCommands = (): boolean => dictionary.value?.commands.length === 0;
+
 /** Whether a command can be sent from what is shown. */
 export function takesCommands(): boolean {
-  return ['live', 'rehearsal'].includes(modeNow()) && mayAct();
+  return ['live', 'rehearsal'].includes(modeNow()) && mayAct() && !hasNoCommands();
+}
+
+export function lookAtPast(range: { from: number; to: number }, recorded: boolean): void {
+  withRecording.value = recorded;
+  pastRange.value = range;
 }
 
 export function backToLive(): void {
@@ -78,7 +98,7 @@ let lostAt_e_s = NaN; // when the connection broke, as the header showed it
 
 const ALARMS_EVERY_S = 5; // ours: what is shelved comes back without an item
 const FIRST_LOOK_MS = 500; // ours: what follows does not wait longer for it
-const HISTORY_CHANNELS = 512; // ours: with more, the table fills from the stream
+const SESSION_MS = 5000; // ours: a stream by which the server does not know this browser is worth more than none
 
 const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
@@ -88,6 +108,8 @@ let lastAsk = 0;
 let lastRequest = 0;
 const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
 const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
+/** Sent and given up on: what an answer that comes late is about. */
+const unanswered = new Map<number, string>();
 
 function post(message: ToWorker): void {
   if (worker) worker.postMessage(message);
@@ -103,19 +125,50 @@ export function ask<T>(question: Question, path: string): Promise<T> {
   });
 }
 
-export function control(action: ControlAction): void {
-  post({ type: 'control', control: action });
-  if (action.action === 'start') watch(0);
+/** Why nothing can be sent now; undefined where the server has said that this very run is what it has, and all of it is here. */
+function whyNotSent(): string | undefined {
+  const { state } = stream.value;
+  return state === 'live' ? undefined : state === 'catching_up' ? 'catching up: nothing was sent' : NOT_SENT;
 }
 
-/** Sends once. Rejects when nothing was sent, or when the connection was lost before an answer: then it is not known. */
+export function control(action: ControlAction): void {
+  const why = whyNotSent();
+  if (why === undefined) post({ type: 'control', control: action });
+  else notify(why);
+}
+
+/** Of the run that is shown, over HTTP. */
+export async function change<T>(path: string, body: object, within_ms?: number): Promise<T> {
+  const why = whyNotSent();
+  if (why === undefined) return call<T>('POST', path, body, within_ms);
+  await learnAccess().catch(() => undefined); // the end of a session ends the connection, too
+  throw new Refused(409, access.value.state === 'out' ? 'log in first' : why);
+}
+
+/** What is looked at stays until the new run is there, or the one that was cut off has caught up. Throws the server's words. */
+export async function startRehearsal(order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number }, isWaitedFor = () => true): Promise<void> {
+  await call('POST', '/rehearsals', order, Infinity); // one that was cut off is flown again as far as it had come before the answer is there
+  if (isWaitedFor()) watch(0);
+}
+
+const NOT_SENT = 'not connected: nothing was sent';
+const ANSWER_WITHIN_MS = 30_000; // ours: longer than any question of the server may take
+
+/** Sent, and no answer will come: it may have been taken or not. */
+export class OutcomeUnknown extends Error {}
+
+/** Sends once. Rejects when nothing was sent, and with OutcomeUnknown when it was and no answer came. Only the reply that bears its number is its answer. */
 export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
-  if (stream.value.state !== 'live' && stream.value.state !== 'catching_up') {
-    return Promise.reject(new Error('not connected: nothing was sent'));
-  }
+  const why = whyNotSent();
+  if (why !== undefined) return Promise.reject(new Error(why));
   const request = ++lastRequest;
   return new Promise((resolve, reject) => {
     requests.set(request, { resolve, reject });
+    setTimeout(() => {
+      if (!requests.delete(request)) return;
+      if (!intent.dryRun) unanswered.set(request, intent.command ?? `${intent.action} of command ${intent.number}`);
+      reject(new OutcomeUnknown(`no answer came in ${ANSWER_WITHIN_MS / 1000} s: whether it was taken is not known; the history below will say`));
+    }, ANSWER_WITHIN_MS);
     post({ type: 'command', request, run: store.value?.id ?? 0, intent });
   });
 }
@@ -136,10 +189,10 @@ export function watch(run: number): void {
 /** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
-  post({ type: 'refresh_history', all: !of.going });
+  post({ type: 'refresh_history', all: !of.going, live: false });
 }
 
-function onMessage(message: FromWorker): void {
+export function onMessage(message: FromWorker): void {
   switch (message.type) {
     case 'stream': {
       const before = stream.value.state;
@@ -148,7 +201,7 @@ function onMessage(message: FromWorker): void {
         void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
         for (const request of requests.values()) {
-          request.reject(new Error('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
+          request.reject(new OutcomeUnknown('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
         }
         requests.clear();
       }
@@ -157,8 +210,11 @@ function onMessage(message: FromWorker): void {
     case 'run':
       takeRun(message.run);
       break;
+    case 'other_archive':
+      takeOtherArchive();
+      break;
     case 'resumed':
-      if (store.value?.id === message.run) notify(resumedWords(message, store.value.run.state, lostAt_e_s));
+      if (store.value?.id === message.run) notify(resumedWords(message, store.value.run, lostAt_e_s));
       break;
     case 'batch':
       if (store.value?.id === message.batch.run) store.value.add(message.batch);
@@ -166,26 +222,29 @@ function onMessage(message: FromWorker): void {
     case 'history':
       if (store.value?.id === message.run) {
         wholeHistory.add(store.value);
-        store.value.addHistory(message.columns);
+        store.value.addHistory(message.columns, message.names);
       }
       break;
     case 'reply': {
       const request = Number(message.reply.request);
       requests.get(request)?.resolve(message.reply);
       requests.delete(request);
+      const { accepted, command, reason } = message.reply;
+      const late = unanswered.get(request);
+      if (late !== undefined) notify(`${late}: the answer has come late. ${accepted ? `It was taken${command > 0n ? ` as #${command}` : ''}.` : `It was refused: ${reason}; nothing was sent.`}`);
+      unanswered.delete(request);
       break;
     }
-    case 'refusal': {
-      // A refusal names no request; where one is under way it is the one that is meant.
-      const [first] = requests;
-      if (first) {
-        requests.delete(first[0]);
-        first[1].reject(new Error(message.reason));
-      } else {
-        notify(message.reason);
-      }
+    case 'not_sent':
+      requests.get(message.request)?.reject(new Error(NOT_SENT));
+      requests.delete(message.request);
       break;
-    }
+    case 'refusal':
+      notify(message.reason);
+      break;
+    case 'trouble':
+      notify(message.words);
+      break;
     case 'answer': {
       const question = asked.get(message.ask);
       asked.delete(message.ask);
@@ -199,10 +258,27 @@ function onMessage(message: FromWorker): void {
   }
 }
 
+const LEFT = 'aeolis-left'; // what is said once the page has begun anew
+
+/**
+ * The server has an archive in which what is shown never was. Everything here is of the old one, down to the dictionary: the page begins
+ * anew, and goes to the run that goes on.
+ */
+function takeOtherArchive(): void {
+  const run = store.value;
+  stream.value = { ...stream.value, state: 'catching_up' };
+  sessionStorage.setItem(LEFT, `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`);
+  const url = new URL(location.href);
+  url.searchParams.delete('run');
+  history.replaceState(null, '', url);
+  location.reload();
+}
+
 function takeRun(run: RunState | undefined): void {
   if (!run || run.run === 0n) return;
   const known = store.value;
   if (known?.id === Number(run.run)) {
+    if (!isSameRun(known.run, run)) return takeOtherArchive();
     known.update(run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
     const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
@@ -231,8 +307,12 @@ async function refreshTimepoints(): Promise<void> {
 }
 
 async function refreshRuns(): Promise<void> {
+  const [before, shown] = [runs.value, store.value];
   try {
-    runs.value = await askRuns();
+    const all = await askRuns();
+    const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
+    if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run))) return takeOtherArchive();
+    runs.value = all;
     const mine = runs.value.find((run) => Number(run.run) === store.value?.id);
     if (mine && store.value && !store.value.going) store.value.update(mine);
     // A run that began while the one we follow was already over, or lost with its server: go there.
@@ -248,11 +328,6 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
     await new Promise((resolve) => setTimeout(resolve, seconds * 1000));
     await what();
   }
-}
-
-/** Of the panel of plots at an address: ?panel=plots&channels=one,two. */
-export function namedChannels(): string[] {
-  return (new URLSearchParams(globalThis.location?.search).get('channels') ?? '').split(',').filter((name) => name !== '');
 }
 
 /** What is drawn over time: its history comes finer. */
@@ -271,18 +346,22 @@ function startWorker(): void {
 
 /** Learns the dictionary, chooses the run that is going on or the last one, takes a first look at it, and connects. */
 export async function begin(): Promise<void> {
-  const wanted = Number(new URL(location.href).searchParams.get('run') ?? 0);
+  const left = sessionStorage.getItem(LEFT);
+  if (left !== null) notify(left);
+  sessionStorage.removeItem(LEFT);
+  const wanted = wantedRun();
   let first: Promise<FirstLook | undefined> | undefined;
-  const startFrom = () => Promise.all([askDictionary(), askRuns().then((all) => {
-    first = firstLook(all, wanted, namedChannels());
-    return all;
-  })]);
+  const startFrom = () => {
+    const { runs, look } = firstAnswers();
+    first = look;
+    return Promise.all([runs, askDictionary()]);
+  };
   let knowing: Promise<void>;
   for (let attempt = 0; ; ++attempt) {
     try {
       knowing = learnAccess();
       knowing.catch(() => undefined); // looked at below
-      const [reply, all] = await startFrom().catch(async (error: unknown) => {
+      const [all, reply] = await startFrom().catch(async (error: unknown) => {
         if (!(error instanceof Refused) || error.status !== 401) throw error;
         await knowing.then(learnAccess); // what turned us away may not be all that it says
         await admitted();
@@ -305,13 +384,16 @@ export async function begin(): Promise<void> {
   knowing.catch((error: unknown) => notify(`the server does not say who you are: ${wordsFor(error)}`));
   const words = dictionary.value as Dictionary;
   const plotted = plottedChannels();
-  const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name)).slice(0, HISTORY_CHANNELS);
+  const others = words.channels.map((channel) => channel.name).filter((name) => !plotted.includes(name));
   const lookAt = runs.value.find((run) => (chosen === 0 ? isGoing(run) : Number(run.run) === chosen));
   takeRun(lookAt);
   const looked = first?.then((look) => {
     if (look && store.value?.id === look.run && !wholeHistory.has(store.value)) store.value.addHistory(look.columns);
   });
-  await Promise.race([looked, new Promise((resolve) => setTimeout(resolve, FIRST_LOOK_MS))]);
+  const passed = (ms: number) => new Promise((resolve) => setTimeout(resolve, ms));
+  const known = Promise.race([knowing.catch(() => undefined), passed(SESSION_MS)]);
+  await Promise.race([looked, passed(FIRST_LOOK_MS)]);
+  await known; // with the answer comes the cookie by which the stream's server knows this browser
   startWorker();
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
@@ -321,6 +403,14 @@ export async function begin(): Promise<void> {
     const isIn = access.value.state !== 'out';
     if (isIn && !wasIn) post({ type: 'reconnect' });
     wasIn = isIn;
+  });
+  // Thinned together with the recording, few of what came live are among the points: a past as it was heard has its own.
+  const askedLive = new WeakSet<RunStore>();
+  effect(() => {
+    const run = store.value;
+    if (!run || !pastRange.value || withRecording.value || askedLive.has(run)) return;
+    askedLive.add(run);
+    post({ type: 'refresh_history', all: true, live: true });
   });
   let told = -1;
   let since = 0;
@@ -339,8 +429,10 @@ export async function begin(): Promise<void> {
   });
 }
 
-/** For tests of views: a page without a worker. */
-export function useForTest(run: RunStore | undefined, words: Dictionary | undefined): void {
+/** For tests of views: a page without a worker, or with one that only `hears`; what it would say is given to onMessage. */
+export function useForTest(run: RunStore | undefined, words: Dictionary | undefined, hears?: (message: ToWorker) => void): void {
+  worker = hears && ({ postMessage: hears } as Worker);
+  stream.value = { ...stream.value, state: 'live' };
   store.value = run;
   dictionary.value = words;
   tick.value += 1;

@@ -7,9 +7,19 @@ import { call } from './api';
 export function typed(json: unknown, whole: ReadonlySet<string>): unknown {
   if (Array.isArray(json)) return json.map((each) => typed(each, whole));
   if (typeof json !== 'object' || json === null) return json;
-  return Object.fromEntries(Object.entries(json).map(([name, value]) => [
-    name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase()), typeof value === 'string' && whole.has(name) ? BigInt(value) : typed(value, whole),
-  ]));
+  const made: Record<string, unknown> = {};
+  for (const [name, value] of Object.entries(json)) {
+    made[typedName(name)] = typeof value === 'string' ? (whole.has(name) ? BigInt(value) : value) : typed(value, whole);
+  }
+  return made;
+}
+
+const typedNames = new Map<string, string>(); // a dictionary has few names, thousands of times; someone waits for a picture meanwhile
+
+function typedName(name: string): string {
+  let found = typedNames.get(name);
+  if (found === undefined) typedNames.set(name, (found = name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase())));
+  return found;
 }
 
 export const askDictionary = async (): Promise<DictionaryReply> => typed(await call('GET', '/dictionary'), new Set(['value'])) as DictionaryReply;

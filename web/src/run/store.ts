@@ -12,24 +12,31 @@ import { secondsOfDayOfYear } from './time';
 const EVENT_LIMIT = 20000;
 const UNIT_LIMIT = 400;
 const LINK_LIMIT = 5000;
+const LATE_S = 2; // ours: what is heard so much later than light takes was kept by an orbiter, or in a queue on board
+export const LATE_LIMIT = 1 << 14; // of a packet: what is older is forgotten, and notTold says so
 const ABOUT_ALARMS: ReadonlySet<string> = new Set(['alarm', 'staleness', 'alarmAction']);
 
 export interface Known<T> {
   seq: number;
   fact: T;
 }
-export interface EventRow extends Known<Event> {
+/** `ert`: when it was known on Earth, day of year. */
+export interface ToneRow extends Known<Tone> {
+  ert: string;
+}
+/** What the recording brings again. `heard_s`: when it came live, seconds since 1970; NaN: it did not. */
+interface Twin {
   live: boolean;
   recorded: boolean;
+  heard_s: number;
 }
-export interface ExplanationRow extends Known<Explanation> {
-  live: boolean;
-  recorded: boolean;
-}
+export interface EventRow extends Known<Event>, Twin {}
+export interface ExplanationRow extends Known<Explanation>, Twin {}
 export interface FiringPair {
   name: string;
   live?: TimepointFiring;
   recorded?: TimepointFiring;
+  heard_s?: number; // as of a twin
 }
 export interface CommandRow {
   command: number;
@@ -53,12 +60,28 @@ export interface Sample {
   recorded: boolean;
 }
 
+/** Texts of one form: day of year. */
+const later = (a: string, b: string): string => (a > b ? a : b);
+
+/** Channels as they were heard: each is looked at only when it is asked for. */
+class HeardSeries extends Map<number, Series> {
+  constructor(private readonly all: ReadonlyMap<number, Series>, private readonly heard: (channel: number, series: Series | undefined) => Series | undefined) {
+    super();
+  }
+  override get(channel: number): Series | undefined {
+    return this.heard(channel, this.all.get(channel));
+  }
+  override has(channel: number): boolean {
+    return this.all.has(channel);
+  }
+}
+
 export class RunStore {
   live = new Map<number, Series>();
   recorded = new Map<number, Series>();
   events: EventRow[] = [];
   explanations: ExplanationRow[] = [];
-  tones: Known<Tone>[] = [];
+  tones: ToneRow[] = [];
   firings = new Map<number, FiringPair>();
   commands = new Map<number, CommandRow>();
   links = new Map<string, Known<LinkChange>[]>();
@@ -68,12 +91,22 @@ export class RunStore {
   unitTotals = new Map<string, UnitTotals>();
   clocks: Clocks | undefined;
   completeThrough = 0;
+  /** Channels of which the history has come: where nothing is held of another, it may only not have been asked for yet. */
+  askedFor = new Set<string>();
   thinnedSinceHistory = false;
   /** Count what came about alarms, and about notes: whoever keeps their states asks again. */
   alarmsVersion = 0;
   notesVersion = 0;
   /** Of all samples, events and tones. */
   private newestSclk = -Infinity;
+  private newestErt = '';
+  private heard: { version: number; cutoff: number; run: RunStore } | undefined;
+  /** Of each packet, what came live, but late: SCLK of the unit, and of what else was heard then, which grows. */
+  private readonly late = new Map<string, { sclk: number[]; heard: number[] }>();
+  /** Of each packet, of how much that came late is not kept any more, from which SCLK on, and when the last of it was heard. */
+  private readonly lateForgotten = new Map<string, { units: number; from: number; heard: number }>();
+  private readonly heardSeries = new Map<number, { of: Series; version: number; key: string; series: Series }>();
+  private lastUnit = { ert: '', sclk: NaN };
   /** Counts what came with samples of what is drawn. */
   samplesDrawn = 0;
   /** Counts changes of anything. */
@@ -92,6 +125,10 @@ export class RunStore {
   get entrySclk(): number {
     return this.run.entrySclk;
   }
+  /** Of another mission that is followed nobody knows when it enters. */
+  get entryKnown(): boolean {
+    return this.run.entrySclk !== 0;
+  }
   /** Of what reaches Earth now. */
   get seenSclk(): number {
     return this.clocks?.seenSclk || this.clocks?.sclk || Math.max(this.run.startSclk, this.newestSclk);
@@ -101,8 +138,11 @@ export class RunStore {
   }
   /** SCLK of what was received at `ert`. The two run side by side, a light time apart, but for the drift of the clock on board. */
   sclkSeenAt(ert: string): number {
+    return this.sclkOf(secondsOfDayOfYear(ert));
+  }
+  private sclkOf(ert_s: number): number {
     const { sclk, ert: at } = this.instant;
-    return sclk + (secondsOfDayOfYear(ert) - secondsOfDayOfYear(at)) / (this.run.clock?.rate || 1);
+    return sclk + (ert_s - secondsOfDayOfYear(at)) / (this.run.clock?.rate || 1);
   }
   /** When, on Earth, what left the vehicle at `sclk` could be received; in seconds since 1970, NaN while nothing tells. */
   ertOf(sclk: number): number {
@@ -120,6 +160,50 @@ export class RunStore {
     return { sclk: event?.sclk ?? NaN, ert: event?.ert ?? '' };
   }
 
+  /** Whether what is dated `ert` was known on Earth when the vehicle was heard at `cutoff`. */
+  knownBy(ert: string, cutoff: number): boolean {
+    return cutoff === Infinity || !(this.sclkSeenAt(ert) > cutoff);
+  }
+  /** Tones that had been decided by then. */
+  tonesBy(cutoff: number): readonly ToneRow[] {
+    return cutoff === Infinity ? this.tones : this.tones.filter(({ fact, ert }) => fact.sclk <= cutoff && this.knownBy(ert, cutoff));
+  }
+  /**
+   * The same run as it had been heard when the vehicle was heard at `cutoff`: without what only the recording told, and without what an
+   * orbiter or a queue on board brought later. It is read, and never added to.
+   */
+  asHeardBy(cutoff: number, packetOf: (channel: number) => string | undefined): RunStore {
+    if (this.heard?.version === this.version && this.heard.cutoff === cutoff) return this.heard.run;
+    const until_s = cutoff === Infinity ? Infinity : this.ertOf(cutoff);
+    const was = <T extends Twin>(rows: readonly T[]) => rows.filter((row) => row.live && !(row.heard_s > until_s)).map((row) => ({ ...row, recorded: false }));
+    const firings = [...this.firings].flatMap(([id, { name, live: told, heard_s = NaN }]) => (told && !(heard_s > until_s) ? [[id, { name, live: told, heard_s }] as const] : []));
+    const run = Object.assign(Object.create(this) as RunStore, {
+      recorded: new Map<number, Series>(), live: this.liveBy(cutoff, packetOf), firings: new Map<number, FiringPair>(firings), events: was(this.events), explanations: was(this.explanations),
+    });
+    this.heard = { version: this.version, cutoff, run };
+    return run;
+  }
+
+  /** Without the samples of units that were under way at `cutoff`: made when they are asked for, and again when others are. */
+  private liveBy(cutoff: number, packetOf: (channel: number) => string | undefined): ReadonlyMap<number, Series> {
+    const underWay = new Map<string, { key: string; instants: Set<number> }>();
+    for (const [packet, { sclk, heard }] of this.late) {
+      const which = sclk.flatMap((at, i) => (at <= cutoff && (heard[i] as number) > cutoff ? [i] : []));
+      if (which.length > 0) underWay.set(packet, { key: `${which[0]} ${which.at(-1)} ${which.length}`, instants: new Set(which.map((i) => sclk[i] as number)) });
+    }
+    if (underWay.size === 0) return this.live;
+    const heard = (channel: number, series: Series | undefined): Series | undefined => {
+      const without = series && underWay.get(packetOf(channel) ?? '');
+      if (!without) return series;
+      const made = this.heardSeries.get(channel);
+      if (made?.of === series && made.version === series.version && made.key === without.key) return made.series;
+      const copy = series.without(without.instants);
+      this.heardSeries.set(channel, { of: series, version: series.version, key: without.key, series: copy });
+      return copy;
+    };
+    return new HeardSeries(this.live, heard);
+  }
+
   update(run: RunState): void {
     this.run = run;
     if (run.clocks) this.clocks = run.clocks;
@@ -132,6 +216,12 @@ export class RunStore {
     const recorded = this.recorded.get(id)?.at(cutoff);
     if (recorded && (!live || recorded.sclk >= live.sclk)) return { ...recorded, recorded: true };
     return live && { ...live, recorded: false };
+  }
+
+  /** Seconds between the samples that are held of a channel, on average; the series that has more of them counts. */
+  spacing(id: number): number {
+    const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) => (series && series.length > 1 ? [(series.newestSclk - (series.sclk[0] as number)) / (series.length - 1)] : []));
+    return spacings.length === 0 ? 0 : Math.min(...spacings);
   }
 
   add(batch: BatchOfFacts): void {
@@ -148,8 +238,10 @@ export class RunStore {
     if (this.events.length > EVENT_LIMIT) this.events.splice(0, this.events.length - EVENT_LIMIT);
   }
 
-  addHistory(columns: Column[]): void {
+  /** `names`: of the channels that were asked for; those without a column have no samples. */
+  addHistory(columns: Column[], names: readonly string[] = []): void {
     ++this.version;
+    for (const name of names) this.askedFor.add(name);
     ++this.samplesDrawn;
     for (const column of columns) {
       this.series(column).replaceBefore(column.sclk, column.value);
@@ -176,18 +268,21 @@ export class RunStore {
   }
 
   private addFact(item: Fact): void {
+    if (item.kind === 'event' || item.kind === 'unit') this.newestErt = later(this.newestErt, item.fact.ert);
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
-    if (ABOUT_ALARMS.has(item.kind)) ++this.alarmsVersion;
+    if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
     if (item.kind as string === 'note') ++this.notesVersion;
     switch (item.kind) {
       case 'event':
-        this.addTwin(this.events, item, (a, b) => a.id === b.id && a.text === b.text);
+        this.addTwin(this.events, item, item.fact.ert, (a, b) => a.id === b.id && a.text === b.text);
         break;
       case 'explanation':
-        this.addTwin(this.explanations, item, (a, b) => a.text === b.text && a.decision === b.decision);
+        // Its unit is the newest that came.
+        this.addTwin(this.explanations, item, this.newestErt, (a, b) => a.text === b.text && a.decision === b.decision);
         break;
       case 'tone':
-        this.tones.push(item);
+        // It is decided some time after its end: what came before it in the order of numbers was known by then.
+        this.tones.push({ ...item, ert: later(item.fact.ertEnd, this.newestErt) });
         break;
       case 'timepoint':
         this.addFiring(item.fact);
@@ -212,11 +307,17 @@ export class RunStore {
     }
   }
 
+  /** A lost link is an alarm: from when it is told so to when it is told anything else. */
+  private isAboutLoss(item: Fact): boolean {
+    return item.kind === 'link' && (item.fact.lost || this.links.get(item.fact.link)?.at(-1)?.fact.lost === true);
+  }
+
   /** Keeps `rows` in order of SCLK. What came live and again with the recording is one row that was seen twice. */
   private addTwin<T extends { sclk: number; source: number; duplicate: boolean }>(
-    rows: (Known<T> & { live: boolean; recorded: boolean })[], item: Known<T>, same: (a: T, b: T) => boolean,
+    rows: (Known<T> & Twin)[], item: Known<T>, ert: string, same: (a: T, b: T) => boolean,
   ): void {
     const recorded = item.fact.source === SOURCE_RECORDED;
+    const heard_s = recorded ? NaN : secondsOfDayOfYear(ert);
     let index = rows.length;
     while (index > 0 && (rows[index - 1] as Known<T>).fact.sclk > item.fact.sclk) --index;
     for (let i = index - 1; i >= 0; --i) {
@@ -224,17 +325,17 @@ export class RunStore {
       if (row.fact.sclk < item.fact.sclk) break;
       if (same(row.fact, item.fact) && (recorded ? !row.recorded : !row.live)) {
         if (recorded) row.recorded = true;
-        else row.live = true;
+        else [row.live, row.heard_s] = [true, heard_s];
         return;
       }
     }
-    rows.splice(index, 0, { seq: item.seq, fact: item.fact, live: !recorded, recorded });
+    rows.splice(index, 0, { seq: item.seq, fact: item.fact, live: !recorded, recorded, heard_s });
   }
 
   private addFiring(firing: TimepointFiring): void {
     const pair = this.firings.get(firing.timepoint) ?? { name: firing.name };
     if (firing.source === SOURCE_RECORDED) pair.recorded = firing;
-    else pair.live = firing;
+    else if (!pair.live) [pair.live, pair.heard_s] = [firing, secondsOfDayOfYear(this.newestErt)];
     this.firings.set(firing.timepoint, pair);
   }
 
@@ -255,7 +356,33 @@ export class RunStore {
     totals.octets += item.fact.octets;
     if (item.fact.duplicate) ++totals.duplicates;
     this.unitTotals.set(key, totals);
+    if (item.fact.source !== SOURCE_RECORDED && !item.fact.duplicate) this.judgeLate(item.fact);
     this.units.push(item);
     if (this.units.length > UNIT_LIMIT * 2) this.units.splice(0, UNIT_LIMIT);
+  }
+
+  private judgeLate(unit: Unit): void {
+    if (unit.ert !== this.lastUnit.ert) this.lastUnit = { ert: unit.ert, sclk: this.sclkSeenAt(unit.ert) };
+    const heard = this.lastUnit.sclk;
+    if (!(heard - unit.sclk > LATE_S)) return;
+    let late = this.late.get(unit.name);
+    if (!late) this.late.set(unit.name, (late = { sclk: [], heard: [] }));
+    if (late.sclk.length === LATE_LIMIT) this.forgetLate(unit.name, late);
+    late.sclk.push(unit.sclk);
+    late.heard.push(heard);
+  }
+
+  private forgetLate(packet: string, late: { sclk: number[]; heard: number[] }): void {
+    const half = LATE_LIMIT / 2;
+    const [sclk, heard] = [late.sclk.splice(0, half), late.heard.splice(0, half)];
+    const before = this.lateForgotten.get(packet);
+    this.lateForgotten.set(packet, {
+      units: (before?.units ?? 0) + half, from: Math.min(before?.from ?? Infinity, ...sclk), heard: Math.max(before?.heard ?? -Infinity, heard.at(-1) as number),
+    });
+  }
+
+  /** Packets of which it is not told any more what was still under way at `cutoff`: samples that were may be shown as heard then. */
+  notTold(cutoff: number): { packet: string; units: number }[] {
+    return [...this.lateForgotten].flatMap(([packet, { units, from, heard }]) => (from <= cutoff && heard > cutoff ? [{ packet, units }] : []));
   }
 }

@@ -12,14 +12,38 @@ export interface Span {
   to: number;
 }
 
+/** The stretch of a fixed range that was zoomed to. */
+const inRange = signal<{ of: Span; span: Span } | undefined>(undefined);
+const fixedRange = (): Span | undefined => (replay.value ? undefined : pastRange.value);
+
+/** What someone has zoomed or panned to; undefined where what is shown follows the run, or is a whole range. */
+export function zoomedTo(): Span | undefined {
+  const range = fixedRange();
+  if (range) return inRange.value?.of === range ? inRange.value.span : undefined;
+  return typeof choice.value === 'object' ? choice.value : undefined;
+}
+
+/** A fixed range is never left by it. */
+function look(from: number, to: number): void {
+  const range = fixedRange();
+  if (!range) {
+    choice.value = { from, to };
+    return;
+  }
+  const width = Math.min(to - from, range.to - range.from);
+  const begin = Math.min(Math.max(from, range.from), range.to - width);
+  inRange.value = { of: range, span: { from: begin, to: begin + width } };
+}
+
 export function spanNow(store: RunStore | undefined): Span {
-  if (pastRange.value && !replay.value) return pastRange.value;
+  const fixed = zoomedTo() ?? fixedRange();
+  if (fixed) return fixed;
   const wanted = choice.value;
-  if (typeof wanted === 'object') return wanted;
   const seen = pastRange.value?.to ?? store?.seenE ?? 0;
-  const begin = store ? store.run.startSclk - store.entrySclk : LAYOUT.window.from;
+  // What is seen on Earth when a run begins is a light time old.
+  const begin = store ? store.run.startSclk - store.entrySclk - store.run.lightTimeS : LAYOUT.window.from;
   if (wanted === 'run') return { from: Math.min(begin, LAYOUT.window.from), to: Math.max(LAYOUT.window.to, seen + 5) };
-  if (wanted === 'minute') return { from: seen - 60, to: seen + 15 };
+  if (wanted === 'minute' || store?.entryKnown === false) return { from: seen - 60, to: seen + 15 };
   // Before the vehicle comes near entry, what matters is the plan that begins with the approach.
   if (seen < LAYOUT.window.from) return { from: Math.max(begin, seen - 240), to: LAYOUT.window.to };
   return { from: LAYOUT.window.from, to: Math.max(LAYOUT.window.to, Math.min(seen + 5, LAYOUT.window.to + 120)) };
@@ -28,23 +52,21 @@ export function spanNow(store: RunStore | undefined): Span {
 /** Plots end a little after the newest sample, so that no half of them is empty. */
 export function plotSpan(store: RunStore | undefined): Span {
   const span = spanNow(store);
-  if ((pastRange.value && !replay.value) || typeof choice.value === 'object' || !store) return span;
+  if (zoomedTo() || fixedRange() || !store) return span;
   const to = Math.min(span.to, Math.max((pastRange.value?.to ?? store.seenE) + 8, span.from + 60));
   return { from: span.from, to };
 }
 
 export function zoom(store: RunStore | undefined, factor: number, around?: number): void {
-  if (pastRange.value && !replay.value) return;
   const { from, to } = spanNow(store);
-  const middle = around ?? Math.min(to, Math.max(from, store?.seenE ?? (from + to) / 2));
+  const middle = around ?? (fixedRange() ? (from + to) / 2 : Math.min(to, Math.max(from, store?.seenE ?? (from + to) / 2)));
   const width = Math.min(86400 * 3, Math.max(0.5, (to - from) * factor));
   const part = (middle - from) / (to - from);
-  choice.value = { from: middle - width * part, to: middle + width * (1 - part) };
+  look(middle - width * part, middle + width * (1 - part));
 }
 
 export function pan(store: RunStore | undefined, part: number): void {
-  if (pastRange.value && !replay.value) return;
   const { from, to } = spanNow(store);
   const by = (to - from) * part;
-  choice.value = { from: from + by, to: to + by };
+  look(from + by, to + by);
 }

@@ -3,9 +3,11 @@ import { signal } from '@preact/signals';
 import { openCommandLine } from '../commands/line';
 import { changePace, togglePause } from '../rehearsal/view';
 import { toggleGuide } from '../guide/model';
-import { toggleReplay } from '../replay/model';
+import { toggleRecording, toggleReplay } from '../replay/model';
 import { backToLive, dismissNotice, pastRange, store } from '../run/session';
-import { closeTimepoint, stepTimepoint } from '../timeline/view';
+import { closeCursor, stepCursor } from '../run/cursor';
+import { closeDetail, stepTimepoint, toggleAnchors } from '../timeline/view';
+import { focusTones } from '../tones/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
@@ -18,7 +20,7 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
   { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
   { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
-  { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint by plan, prediction at entry, tone, UHF and recording' },
+  { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint and event by plan, prediction at entry, tone, UHF and recording' },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
   { id: 'campaigns', title: 'Campaigns', key: 'd', words: 'campaigns of dispersed landings: start, watch the ellipse fill' },
@@ -51,6 +53,7 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['-', '−'], shown: '−', words: 'slower', act: () => changePace(-1) },
   { keys: ['p'], shown: 'p', words: 'pause and go on', act: togglePause },
   { keys: ['y'], shown: 'y', words: 'replay the landing; again: leave', act: toggleReplay },
+  { keys: ['w'], shown: 'w', words: 'in a past view: as heard then, or with the recording', act: toggleRecording },
   { keys: ['1'], shown: '1', words: 'show the landing', act: () => (choice.value = 'landing') },
   { keys: ['2'], shown: '2', words: 'show the last minute', act: () => (choice.value = 'minute') },
   { keys: ['3'], shown: '3', words: 'show the whole run', act: () => (choice.value = 'run') },
@@ -58,8 +61,12 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['['], shown: '[', words: 'zoom out', act: () => zoom(store.value, 2) },
   { keys: ['ArrowLeft'], shown: '←', words: 'earlier', act: () => pan(store.value, -0.25) },
   { keys: ['ArrowRight'], shown: '→', words: 'later', act: () => pan(store.value, 0.25) },
+  { keys: ['Shift+ArrowLeft'], shown: 'Shift ←', words: 'cursor in plots, tones and timeline: earlier', act: () => stepCursor(-1) },
+  { keys: ['Shift+ArrowRight'], shown: 'Shift →', words: 'cursor: later', act: () => stepCursor(1) },
   { keys: ['.'], shown: '.', words: 'next timepoint: state, offsets, why it fired or has not', act: () => stepTimepoint(1) },
   { keys: [','], shown: ',', words: 'timepoint before', act: () => stepTimepoint(-1) },
+  { keys: ['h'], shown: 'h', words: 'anchors: parent, offset, what defined each', act: toggleAnchors },
+  { keys: ['o'], shown: 'o', words: 'tones: ← → choose a symbol, its evidence and spectrum', act: focusTones },
   { keys: ['e'], shown: 'e', words: 'search the events', act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus() },
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
   { keys: ['g'], shown: 'g', words: 'the guide for a first landing', act: toggleGuide },
@@ -69,12 +76,19 @@ export const SHORTCUTS: Shortcut[] = [
     keys: ['Escape'], shown: 'Esc', words: 'close what is open, or leave a past view',
     act: () => {
       if (helpShown.value) helpShown.value = false;
-      else if (closeTimepoint()) return;
+      else if (closeCursor() || closeDetail()) return;
       else if (pastRange.value) backToLive();
       else dismissNotice();
     },
   },
 ];
+
+/** A key that is held down is pressed once: nothing is chosen, reviewed, sent or answered by its repeats. */
+export function ignoreHeldEnter(event: KeyboardEvent): void {
+  if (event.key !== 'Enter' || !event.repeat || (event.target as HTMLElement | null)?.matches('textarea')) return;
+  event.preventDefault();
+  event.stopPropagation();
+}
 
 export function onKey(event: KeyboardEvent): void {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
@@ -84,7 +98,8 @@ export function onKey(event: KeyboardEvent): void {
     if (event.key === 'Escape') target?.blur();
     return;
   }
-  const shortcut = SHORTCUTS.find((each) => each.keys.includes(event.key));
+  const key = event.shiftKey && event.key.startsWith('Arrow') ? `Shift+${event.key}` : event.key;
+  const shortcut = SHORTCUTS.find((each) => each.keys.includes(key));
   if (!shortcut) return;
   event.preventDefault();
   shortcut.act();

@@ -39,17 +39,18 @@ export type StreamState = 'connecting' | 'catching_up' | 'live' | 'lost';
 export type FromWorker =
   | { type: 'stream'; state: StreamState; attempt: number; gaps: number; serverVersion: string }
   | { type: 'run'; run: RunState | undefined; fresh: boolean }
+  | { type: 'other_archive' } // and there another run of the number that is shown
   | { type: 'resumed'; run: number; after: number; through: number; attempts: number }
   | { type: 'batch'; batch: BatchOfFacts }
-  | { type: 'history'; run: number; columns: Column[] }
+  | { type: 'history'; run: number; names: readonly string[]; columns: Column[] } // names: of all that were asked for, with samples or without
   | { type: 'reply'; reply: CommandReply }
-  | { type: 'refusal'; reason: string }
+  | { type: 'refusal'; reason: string } // by the server, of something that is no command: it is nobody's answer
+  | { type: 'not_sent'; request: number } // a command that never left the page
+  | { type: 'trouble'; words: string } // the worker's own
   | { type: 'answer'; ask: number; ok: true; value: unknown }
   | { type: 'answer'; ask: number; ok: false; error: string; status: number }; // 0: no answer came
 
 export type ControlAction =
-  | { action: 'start'; scenario: string; seed: number; pace: number }
-  | { action: 'continue'; run: number; pace: number } // one that was cut off
   | { action: 'pause'; pause: boolean }
   | { action: 'pace'; pace: number }
   | { action: 'stop' };
@@ -78,7 +79,7 @@ export type ToWorker =
   | { type: 'open'; run: number; packets: Record<number, number[]>; plotted: string[]; others: string[] }
   | { type: 'watch'; run: number }
   | { type: 'reconnect' } // at once: whoever was turned away has logged in
-  | { type: 'refresh_history'; all: boolean }
+  | { type: 'refresh_history'; all: boolean; live: boolean } // live: only what came so, as fine as if nothing else had come
   | { type: 'command'; request: number; run: number; intent: CommandIntent }
   | { type: 'control'; control: ControlAction }
   | { type: 'ask'; ask: number; question: Question; path: string };

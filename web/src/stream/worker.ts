@@ -1,5 +1,5 @@
 // Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
-// batches every 25 ms at most, on the average. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
+// batches every 25 ms at most, on the average, samples a little sooner. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
 //
 // A run is taken up in two steps. First everything that is not a sample, from the beginning; the answer is small.
 // Once that is complete, samples are subscribed from there on, and after the first live frame their history up to
@@ -11,13 +11,16 @@ import {
 } from '../gen/aeolis/v1/run_pb';
 import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { Pace } from '../run/pace';
+import { isSameRun } from '../run/same';
 import { ColumnCollector } from './columns';
 import type { Column, ControlAction, FromWorker, Question, StreamState, ToWorker } from './messages';
 import { SequenceCheck, backoffSeconds } from './sequence';
 import { columnsOf, readSeriesList } from './series_answer';
 
 const POST_EVERY_MS = 25;
+const POST_SAMPLES_EVERY_MS = 45; // what is drawn does not wait behind what is not; samples come every 50 ms
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
@@ -33,14 +36,16 @@ let attempt = 0;
 let retry: ReturnType<typeof setTimeout> | undefined;
 let wantedRun = 0;
 let currentRun = 0;
+let known: RunState | undefined; // the current run as it was told last
 let serverVersion = '';
 let check = new SequenceCheck();
 let packetOf = new Map<number, readonly number[]>();
 let plotted: string[] = [];
 let others: string[] = [];
 let collector = new ColumnCollector();
-let posting = false;
+let posting: { timer: ReturnType<typeof setTimeout>; at_ms: number } | undefined;
 const posts = new Pace(POST_EVERY_MS, 5);
+const samplePosts = new Pace(POST_SAMPLES_EVERY_MS, 5);
 let state: StreamState = 'connecting';
 let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
@@ -101,6 +106,7 @@ function connect(): void {
 /** Forget the run and take up another from its beginning. */
 function restart(run: number): void {
   currentRun = run;
+  known = undefined;
   lost = undefined;
   check = new SequenceCheck();
   collector = new ColumnCollector(packetOf);
@@ -109,12 +115,20 @@ function restart(run: number): void {
   historyDue = false;
 }
 
+/** The server that came back has another run of this number: nothing of it is taken for the one that is shown, and nothing is sent to it. */
+function leave(): void {
+  const its = socket;
+  socket = undefined;
+  its?.close();
+  post({ type: 'other_archive' });
+}
+
 function receive(bytes: Uint8Array): void {
   let message;
   try {
     message = fromBinary(ServerMessageSchema, bytes).message;
   } catch (error) {
-    post({ type: 'refusal', reason: `a message of the server could not be read: ${String(error)}` });
+    post({ type: 'trouble', words: `a message of the server could not be read: ${String(error)}` });
     return;
   }
   switch (message.case) {
@@ -128,8 +142,10 @@ function receive(bytes: Uint8Array): void {
         break;
       }
       if (run === 0) say('live');
+      if (run === currentRun && known && welcome.runState && !isSameRun(known, welcome.runState)) return leave();
       const fresh = run !== currentRun || step === 'facts';
       if (run !== currentRun) restart(run);
+      known = welcome.runState;
       stopAt = Number(welcome.lastSeq);
       post({ type: 'run', run: welcome.runState, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
@@ -174,17 +190,25 @@ function receiveBatch(batch: Batch): void {
     historyDue = false;
     void fetchHistory();
   }
-  if (!posting) {
-    posting = true;
-    setTimeout(flush, posts.wait(performance.now())); // at once after a pause
-  }
+  postSoon(batch.items.some(({ item }) => item.case === 'samples'));
+}
+
+/** At once after a pause. */
+function postSoon(samples: boolean): void {
+  const now = performance.now();
+  const wait_ms = Math.min(posts.wait(now), samples ? samplePosts.wait(now) : Infinity);
+  if (posting && posting.at_ms <= now + wait_ms) return;
+  clearTimeout(posting?.timer);
+  posting = { timer: setTimeout(flush, wait_ms), at_ms: now + wait_ms };
 }
 
 function flush(): void {
-  posting = false;
-  posts.took(performance.now());
+  posting = undefined;
+  const now = performance.now();
+  posts.took(now);
   if (collector.empty) return;
   const batch = collector.take();
+  if (batch.columns.length > 0) samplePosts.took(now);
   post({ type: 'batch', batch }, batch.columns);
 }
 
@@ -201,20 +225,20 @@ function goOnWithSamples(): void {
   }, 300);
 }
 
-async function fetchHistory(all = true): Promise<void> {
+async function fetchHistory(all = true, live = false): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
   try {
     for (const [names, points] of [[plotted, PLOTTED_POINTS], [all ? others : [], OTHER_POINTS]] as const) {
       for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
-        const some = names.slice(i, i + CHANNELS_A_QUESTION).map(encodeURIComponent).join(',');
-        const columns = columnsOf(await askSeries(`/runs/${run}/channels?names=${some}&points=${points}&format=protobuf`));
+        const some = names.slice(i, i + CHANNELS_A_QUESTION);
+        const columns = columnsOf(await askSeries(`/runs/${run}/channels?names=${some.map(encodeURIComponent).join(',')}&points=${points}&format=protobuf${live ? '&source=realtime' : ''}`));
         if (run !== currentRun) return;
-        post({ type: 'history', run, columns }, columns);
+        post({ type: 'history', run, names: some, columns }, columns);
       }
     }
   } catch (error) {
-    post({ type: 'refusal', reason: `history: ${error instanceof Error ? error.message : String(error)}` });
+    post({ type: 'trouble', words: `history: ${error instanceof Error ? error.message : String(error)}` });
   }
 }
 
@@ -269,16 +293,16 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       }
       break;
     case 'refresh_history':
-      void fetchHistory(message.all);
+      void fetchHistory(message.all, message.live);
       break;
     case 'command':
       if (!send({ case: 'command', value: { ...message.intent, run: BigInt(message.run), request: BigInt(message.request) } })) {
-        post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+        post({ type: 'not_sent', request: message.request });
       }
       break;
     case 'control':
       if (!send({ case: 'control', value: control(message.control) })) {
-        post({ type: 'refusal', reason: 'not connected: nothing was sent' });
+        post({ type: 'trouble', words: 'not connected: nothing was sent' });
       }
       break;
     case 'ask':
@@ -294,10 +318,6 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
 
 function control(wanted: ControlAction): MessageInitShape<typeof RehearsalControlSchema> {
   switch (wanted.action) {
-    case 'start':
-      return { action: { case: 'start', value: { scenario: wanted.scenario, seed: BigInt(wanted.seed), pace: wanted.pace } } };
-    case 'continue':
-      return { action: { case: 'start', value: { continueRun: BigInt(wanted.run), pace: wanted.pace } } };
     case 'pause':
       return { action: { case: 'pause', value: wanted.pause } };
     case 'pace':

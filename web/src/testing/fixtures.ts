@@ -26,7 +26,9 @@ export const aDictionary = new Dictionary(create(DictionaryReplySchema, {
     { id: 1, name: 'edl_phase', packet: 'Status', labels: [{ value: 0n, label: 'late_cruise' }, { value: 4n, label: 'range_control' }, { value: 9n, label: 'landed' }], expectedRateHz: 1 },
     { id: 2, name: 'next_desired_sclk', packet: 'Status', unit: 's', expectedRateHz: 1 },
     { id: 3, name: 'altitude_m', alias: 'GNC-0101', packet: 'Navigation', unit: 'm', limits: [{ severity: 'warning', above: 200000 }], expectedRateHz: 8 },
-    { id: 4, name: 'speed_mps', alias: 'GNC-0102', packet: 'Navigation', unit: 'm/s', expectedRateHz: 8 },
+    { id: 4, name: 'speed_mps', alias: 'GNC-0102', packet: 'Navigation', unit: 'm/s', expectedRateHz: 8, limits: [
+      { severity: 'watch', above: 6000 }, { severity: 'watch', above: 90, context: 'range_control' }, { severity: 'distress', above: 120, context: 'range_control' },
+    ] },
     { id: 5, name: 'parameters_received', packet: 'Status' },
   ],
   commands: [
@@ -38,7 +40,7 @@ export const aDictionary = new Dictionary(create(DictionaryReplySchema, {
         { name: 'parachute_speed_mps', unit: 'm/s', min: 380, max: 430, defaultValue: 405 },
       ],
     },
-    { opcode: 3, name: 'EDL_DO_EDL', significance: 'critical', preconditions: ['parameters received'], conditions: [{ channel: 5, comparison: '==', value: 1 }] },
+    { opcode: 3, name: 'EDL_DO_EDL', significance: 'critical', reasonForWarning: 'Starts the timeline', preconditions: ['parameters received'], conditions: [{ channel: 5, comparison: '==', value: 1 }] },
     { opcode: 4, name: 'EDL_SET_TIMEPOINT_OFFSET', significance: 'none', arguments: [{ name: 'timepoint', integer: true }] },
   ],
   tones: [{ id: 7, name: 'entry', meaning: 'Entry interface' }],
@@ -55,7 +57,7 @@ export function item(value: Item['item']): Item {
   return create(ItemSchema, { seq: BigInt(++seq), item: value });
 }
 export const event = (fields: MessageInitShape<typeof EventSchema>) => item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) });
-export const tone = (fields: MessageInitShape<typeof ToneSchema>) => item({ case: 'tone', value: create(ToneSchema, fields) });
+export const tone = (fields: MessageInitShape<typeof ToneSchema>) => item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ...fields }) });
 export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
   item({ case: 'timepoint', value: create(TimepointFiringSchema, { source: 1, verdict: 'completed', triggeredSclk: fields.firedSclk ?? 0, ...fields }) });
 export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) => item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });

@@ -1,8 +1,8 @@
 // A server of a few routes for tests: answers what is put in, keeps what was asked.
 import { afterEach, beforeEach, vi } from 'vitest';
 
-interface Said { status?: number; json?: unknown; octets?: Uint8Array }
-type Answer = Said | (() => Said);
+interface Said { status?: number; json?: unknown; octets?: Uint8Array | ReadableStream }
+type Answer = Said | (() => Said | Promise<Said>);
 
 export interface FakeServer {
   /** "GET /session" → what it answers. What is not there answers 404. */
@@ -20,7 +20,8 @@ export function aServer(): FakeServer {
       server.asked.push({ method, path, body: options.body === undefined ? undefined : JSON.parse(String(options.body)) });
       const found = server.routes[`${method} ${path}`];
       if (!found) return new Response('{"error":"no such route"}', { status: 404 });
-      const { status = 200, json, octets } = typeof found === 'function' ? found() : found;
+      const { status = 200, json, octets } = typeof found === 'function' ? await found() : found;
+      options.signal?.throwIfAborted();
       if (status === 0) throw new TypeError('Failed to fetch');
       return new Response((octets as BodyInit) ?? (json === undefined ? null : JSON.stringify(json)), { status });
     });

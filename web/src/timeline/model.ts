@@ -2,8 +2,11 @@
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { RunStore } from '../run/store';
-import type { TimepointFiring } from '../gen/aeolis/v1/items_pb';
+import type { Dictionary } from '../run/dictionary';
+import type { Explanation } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import { heardOf, lastHeard, speaksOf } from './heard';
+import type { Heard } from './heard';
 
 export interface Mark {
   e_s: number;
@@ -51,8 +54,7 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
     }
   }
   let before: number | undefined;
-  for (const { fact } of store.tones) {
-    if (fact.sclk > cutoff) break;
+  for (const { fact } of store.tonesBy(cutoff)) {
     if (fact.tone !== undefined && fact.tone !== before) {
       lanes.tones.push({
         e_s: fact.sclk - entry, id: fact.tone, name: fact.meaning || fact.name, important: false, bad: false,
@@ -98,52 +100,76 @@ export function shortReason(words: string): string {
   return words.split(/[,:;(]/)[0]?.trim() ?? words;
 }
 
-export function firedCount(store: RunStore, cutoff: number): number {
-  return [...store.firings.values()].filter(({ live, recorded }) => ((live ?? recorded)?.firedSclk ?? Infinity) <= cutoff && (live ?? recorded)).length;
+/** How many are known to have fired, and how many of them only by their tone. */
+export function firedCount(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { all: number; byTone: number } {
+  const heard = [...heardOf(store, plan, cutoff).values()];
+  return { all: heard.length, byTone: heard.filter((each) => each.by === 'tone').length };
 }
 
-export type PointState = 'fired' | 'timed out' | 'waiting for reply' | 'next' | 'pending' | 'undefined';
+const VERDICTS = { completed: 'fired', replied: 'fired', no_operation: 'fired', timed_out: 'timed out', failed: 'failed' } as const;
+
+/** "passed": nothing told of it, and one after it has fired. */
+export type PointState = (typeof VERDICTS)[keyof typeof VERDICTS] | 'passed' | 'waiting for reply' | 'next' | 'pending' | 'undefined';
 
 export interface PointDetail {
   row: TimepointRow;
   state: PointState;
+  /** Of one that has fired: which way it is known, and flight's own word for how it ended. */
+  by: Heard['by'] | undefined;
+  verdict: string;
   firedLive_e_s: number | undefined;
   firedRecorded_e_s: number | undefined;
+  tone_e_s: number | undefined;
   triggered_e_s: number | undefined;
-  why: string | undefined;
+  /** What flight said of this timepoint last: why it fired, or what it is held by. */
+  why: Explanation | undefined;
 }
 
 /** Why a timepoint fired or has not. */
-export function pointDetail(store: RunStore, plan: readonly TimepointRow[], id: number, cutoff: number): PointDetail | undefined {
+export function pointDetail(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], id: number, cutoff: number): PointDetail | undefined {
   const row = plan.find((candidate) => candidate.id === id);
   if (!row) return undefined;
   const pair = store.firings.get(id);
   const live = pair?.live && pair.live.firedSclk <= cutoff ? pair.live : undefined;
   const recorded = pair?.recorded && pair.recorded.firedSclk <= cutoff ? pair.recorded : undefined;
-  const known = live ?? recorded;
-  const next = nextTimepoint(store, plan, cutoff);
-  const anchored = row.anchor !== '' && row.plannedES === undefined;
-  const why = store.explanations.findLast(
-    ({ fact }) => fact.sclk <= cutoff && known !== undefined && Math.abs(fact.sclk - known.triggeredSclk) <= 1 / 32 &&
-      fact.conditions.length > 0);
+  const heard = heardOf(store, plan, cutoff);
+  const known = heard.get(id);
+  const e_s = (sclk: number | undefined) => (sclk === undefined ? undefined : sclk - store.entrySclk);
   return {
-    row,
-    state: known ? (GOOD.has(known.verdict) ? 'fired' : 'timed out') : next?.id === id ? 'next' : anchored ? 'undefined' : 'pending',
-    firedLive_e_s: live && live.firedSclk - store.entrySclk,
-    firedRecorded_e_s: recorded && recorded.firedSclk - store.entrySclk,
-    triggered_e_s: known && known.triggeredSclk - store.entrySclk,
-    why: why?.fact.text,
+    row, state: stateOf(store, dictionary, plan, row, heard, cutoff), by: known?.by, verdict: known?.verdict ?? '',
+    firedLive_e_s: e_s(live?.firedSclk), firedRecorded_e_s: e_s(recorded?.firedSclk),
+    tone_e_s: known?.by === 'tone' ? e_s(known.triggered_sclk) : undefined,
+    triggered_e_s: known?.by === 'tone' ? undefined : e_s(known?.triggered_sclk),
+    why: store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row))?.fact,
   };
+}
+
+function stateOf(
+  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], row: TimepointRow, heard: ReadonlyMap<number, Heard>, cutoff: number,
+): PointState {
+  const known = heard.get(row.id);
+  if (known) return VERDICTS[known.verdict as keyof typeof VERDICTS] ?? 'fired';
+  const [at, last] = [plan.indexOf(row), lastHeard(plan, heard)];
+  if (at <= last) return 'passed';
+  if (at === last + 1) return awaitsReply(store, dictionary, row, cutoff) ? 'waiting for reply' : 'next';
+  return row.anchor !== '' && row.plannedES === undefined && !predecessorAnchored(plan, at, last) ? 'undefined' : 'pending';
+}
+
+/** An anchor is found once a timepoint that hangs from it has been triggered. */
+function predecessorAnchored(plan: readonly TimepointRow[], at: number, last: number): boolean {
+  return plan.slice(0, last + 1).some((row) => row.anchor === plan[at]?.anchor);
+}
+
+/** By the vehicle's own word: its action was triggered and the reply is due. */
+function awaitsReply(store: RunStore, dictionary: Dictionary, row: TimepointRow, cutoff: number): boolean {
+  const [index, state] = [dictionary.pick(LAYOUT.currentTimepoint), dictionary.pick(LAYOUT.timepointState)];
+  const [now, told] = [index && store.latest(index.id, cutoff), state && store.latest(state.id, cutoff)];
+  return state !== undefined && now?.value === row.id && told !== undefined && dictionary.label(state, told.value) === 'waiting_reply';
 }
 
 /** The first timepoint, in the order of the timeline, after the last one known to have fired. */
 export function nextTimepoint(store: RunStore, plan: readonly TimepointRow[], cutoff: number): TimepointRow | undefined {
-  const firedBy = (firing: TimepointFiring | undefined) => firing !== undefined && firing.firedSclk <= cutoff;
-  const last = plan.findLastIndex((row) => {
-    const pair = store.firings.get(row.id);
-    return firedBy(pair?.live) || firedBy(pair?.recorded);
-  });
-  return plan[last + 1];
+  return plan[lastHeard(plan, heardOf(store, plan, cutoff)) + 1];
 }
 
 export const title = inWords;

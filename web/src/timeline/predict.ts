@@ -1,8 +1,10 @@
 // When each timepoint is predicted, from what is known now: the plan, moved by every anchor that was heard of, by UHF, recording
 // or tone; and what a command in the form would move.
 import { LAYOUT } from '../layout';
+import { SOURCES } from '../design/status';
 import type { AnchorRow, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
+import { heardOf } from './heard';
 
 /** Times in seconds from entry. */
 export interface Prediction {
@@ -29,8 +31,8 @@ export type Anchors = readonly (readonly [name: string, e_s: number])[];
  */
 export function predictions(store: RunStore, plan: readonly TimepointRow[], anchors: Anchors, cutoff: number, changes: readonly Change[] = []): Prediction[] {
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
-  const heard = heardOf(store, plan, cutoff);
-  const { before, after } = anchorTimes(plan, anchors, heard, now, new Map(changes.flatMap(({ anchor }) => (anchor ? [[anchor.name, anchor] as const] : []))));
+  const heard = triggeredOf(store, plan, cutoff);
+  const { before, after } = anchorTimes(plan, anchors, heard, now, changesOfAnchors(changes));
   const all: Prediction[] = [];
   let previous: number | undefined;
   for (const row of plan) {
@@ -46,21 +48,32 @@ export function predictions(store: RunStore, plan: readonly TimepointRow[], anch
   return all;
 }
 
-/** When what has fired was triggered: UHF and recording say it, else a tone that only one timepoint asks for. */
-function heardOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Map<number, number> {
-  const heard = new Map<number, number>();
-  const asked = new Map<string, number>();
-  for (const row of plan) asked.set(row.tone, (asked.get(row.tone) ?? 0) + 1);
-  for (const row of plan) {
-    const pair = store.firings.get(row.id);
-    const firing = [pair?.live, pair?.recorded].find((each) => each !== undefined && each.firedSclk <= cutoff);
-    const tone = firing || row.tone === '' || asked.get(row.tone) !== 1 ? undefined
-      : store.tones.find(({ fact }) => fact.name === row.tone && fact.sclk <= cutoff)?.fact;
-    const sclk = firing?.triggeredSclk ?? tone?.sclk;
-    if (sclk !== undefined) heard.set(row.id, sclk - store.entrySclk);
-  }
-  return heard;
+/** When each anchor is, as it is known or predicted now, in seconds from entry. */
+export function anchorsNow(store: RunStore, plan: readonly TimepointRow[], anchors: Anchors, cutoff: number, changes: readonly Change[] = []): Map<string, number> {
+  const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
+  return anchorTimes(plan, anchors, triggeredOf(store, plan, cutoff), now, changesOfAnchors(changes)).after;
 }
+
+/** The anchors that something on board has found, each by the first timepoint of it that was heard of: a timepoint can be later than its anchor says, never earlier. */
+export function anchorsFound(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Map<string, { e_s: number; name: string; how: string }> {
+  const found = new Map<string, { e_s: number; name: string; how: string }>();
+  const heard = heardOf(store, plan, cutoff);
+  for (const row of plan) {
+    const told = heard.get(row.id);
+    if (!told || row.anchor === '' || row.desiredOffsetS === undefined) continue;
+    const e_s = told.triggered_sclk - store.entrySclk - row.desiredOffsetS;
+    if (e_s >= (found.get(row.anchor)?.e_s ?? Infinity)) continue;
+    found.set(row.anchor, { e_s, name: row.name, how: SOURCES[told.by].word });
+  }
+  return found;
+}
+
+/** When what was heard of was triggered, in seconds from entry. */
+function triggeredOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Map<number, number> {
+  return new Map([...heardOf(store, plan, cutoff)].map(([id, each]) => [id, each.triggered_sclk - store.entrySclk]));
+}
+
+const changesOfAnchors = (changes: readonly Change[]) => new Map(changes.flatMap(({ anchor }) => (anchor ? [[anchor.name, anchor] as const] : [])));
 
 /** `before`: as each was predicted until it was heard of; `after`: as it is known or predicted now. */
 function anchorTimes(

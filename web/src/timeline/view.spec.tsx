@@ -1,6 +1,11 @@
 import { describe, expect, it } from 'vitest';
-import { aPlan, aStore, firing, link, tone } from '../testing/fixtures';
-import { lanesOf, nextTimepoint, outages, pointDetail } from './model';
+import { aDictionary, aPlan, aStore, explanation, firing, link, samples, tone } from '../testing/fixtures';
+import { create } from '@bufbuild/protobuf';
+import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
+import { DictionaryReplySchema } from '../gen/aeolis/v1/run_pb';
+import { Dictionary } from '../run/dictionary';
+import { silenceStatus } from '../design/status';
+import { firedCount, lanesOf, nextTimepoint, outages, pointDetail } from './model';
 
 describe('the timeline', () => {
   it('has no plan for a timepoint whose anchor is undefined', () => {
@@ -16,14 +21,51 @@ describe('the timeline', () => {
     ]);
     expect(outages(store, 'uhf_live', -100, Infinity)).toEqual([{ from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma' }]);
   });
+  it('shows a silence that nothing predicted as an alarm, as its link does', () => {
+    expect(['unexplained: no pass ends now', 'ground fault: the station is silent', 'plasma'].map((reason) => silenceStatus(reason).token)).toEqual(['alarm', 'alarm', 'caution']);
+  });
   it('shows nothing later than the past view', () => {
     const store = aStore([firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 })]);
     expect(lanesOf(store, aPlan, 600).live.map((mark) => mark.name)).toEqual(['coolant_vent']);
     expect(nextTimepoint(store, aPlan, 600)?.name).toBe('entry_interface');
     expect(nextTimepoint(store, aPlan, Infinity)?.name).toBe('parachute_deploy');
   });
-  it('says what state a timepoint is in', () => {
-    const store = aStore([firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict: 'timed_out' })]);
-    expect([0, 1, 2].map((id) => pointDetail(store, aPlan, id, Infinity)?.state)).toEqual(['timed out', 'next', 'undefined']);
+  it('says what state a timepoint is in, each verdict with its own word', () => {
+    const states = (...items: Parameters<typeof aStore>[0] & object) => [0, 1, 2].map((id) => pointDetail(aStore(items), aDictionary, aPlan, id, Infinity)?.state);
+    const vent = (verdict: string) => firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict });
+    expect(states(vent('timed_out'))).toEqual(['timed out', 'next', 'undefined']);
+    expect([states(vent('failed'))[0], states(vent('replied'))[0], states(vent('no_operation'))[0]]).toEqual(['failed', 'fired', 'fired']);
+    expect(states(firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }))).toEqual(['passed', 'fired', 'next']);
+  });
+  it('says that a reply is waited for by the vehicle’s own word, of its current timepoint only', () => {
+    const words = new Dictionary(create(DictionaryReplySchema, { channels: [
+      { id: 11, name: 'timepoint_index', packet: 'Timeline' }, { id: 12, name: 'timepoint_state', packet: 'Timeline', labels: [{ value: 0n, label: 'pending' }, { value: 2n, label: 'waiting_reply' }] },
+    ] }));
+    const state = (index: number, told: number) => pointDetail(aStore([samples(899, { 11: index, 12: told })]), words, aPlan, 0, Infinity)?.state;
+    expect([state(0, 2), state(0, 0), state(1, 2)]).toEqual(['waiting for reply', 'next', 'next']);
+  });
+  it('has of a timepoint what flight said of it, and not what it said of another at that moment', () => {
+    const told = (decision: string, text: string) => explanation({ sclk: 890, decision, verdict: 'fired', text, conditions: [create(ConditionSchema, { quantity: 'speed_mps', value: 404, comparison: '<=', bound: 405, holds: true })] });
+    const store = aStore([firing({ timepoint: 2, name: 'parachute_deploy', firedSclk: 890 }), told('parachute_deploy', 'the mortar'), told('tone', 'a tone')]);
+    expect(pointDetail(store, aDictionary, aPlan, 2, Infinity)?.why?.text).toBe('the mortar');
+    expect(pointDetail(store, aDictionary, aPlan, 1, Infinity)?.why).toBeUndefined();
+  });
+  it('counts what tones told where UHF is silent, goes on from there, and says so', () => {
+    const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
+    const store = aStore([firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
+    expect(firedCount(store, plan, Infinity)).toEqual({ all: 2, byTone: 1 });
+    expect(nextTimepoint(store, plan, Infinity)?.name).toBe('parachute_deploy');
+    expect(pointDetail(store, aDictionary, plan, 1, Infinity)).toMatchObject({ state: 'fired', by: 'tone', tone_e_s: -110, verdict: '' });
+  });
+  it('as it was heard has nothing that only the recording told, and a tone once it was decided', () => {
+    const store = aStore([
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 600, source: 2 }), samples(600, { 3: 1, 4: 1 }, 2),
+      tone({ sclk: 640, tone: 29, name: 'entry_interface', ertEnd: '2012-219T04:55:50.0' }), // SCLK 650
+    ]);
+    const heard = store.asHeardBy(Infinity, () => undefined);
+    expect(lanesOf(store, aPlan, 645).recorded.length).toBe(1);
+    expect([lanesOf(heard, aPlan, 645).recorded.length, firedCount(heard, aPlan, 645).all, heard.latest(3)]).toEqual([0, 1, undefined]);
+    expect([645, 655].map((cutoff) => lanesOf(heard, aPlan, cutoff).tones.length)).toEqual([0, 1]);
+    expect(heard.entrySclk).toBe(store.entrySclk);
   });
 });

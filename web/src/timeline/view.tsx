@@ -5,12 +5,16 @@ import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import { LAYOUT } from '../layout';
-import { cutoff, pastRange, replay, runNow, store, tick, timepoints } from '../run/session';
+import { cutoff, dictionary, pastRange, replay, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
+import { cursor } from '../run/cursor';
 import { fromEntry } from '../run/time';
 import { choice, pan, spanNow, zoom } from '../run/window';
 import type { Choice } from '../run/window';
-import { moved, predicted } from './now';
+import { anchorLines, moved, predicted } from './now';
+import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
+import { conditionLine, conditions, noteWords } from '../waiting/model';
+import type { Line } from '../waiting/model';
 import { firedCount, isImportant, lanesOf, nextTimepoint, pointDetail, shortReason, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
@@ -21,20 +25,32 @@ const CLOSE_UP_S = 180; // ours: in a shorter stretch every timepoint has room f
 const LABELS = 42; // two rows of names at least
 const LANES = ['plan', 'predicted', 'by tone', 'by UHF, live', 'by recording'] as const;
 const selected = signal<number | undefined>(undefined);
+const anchorsShown = signal(false);
+
+export function toggleAnchors(): void {
+  anchorsShown.value = !anchorsShown.value;
+  if (!anchorsShown.value) return;
+  selected.value = undefined; // they stand in the same place
+  requestAnimationFrame(() => document.querySelector<HTMLElement>('[data-testid="anchors"]')?.focus());
+}
 
 /** By keyboard: the timepoint after or before the one that is shown; from nothing, the next that the vehicle waits for. */
 export function stepTimepoint(direction: 1 | -1): void {
   const plan = timepoints.value;
   const at = plan.findIndex((row) => row.id === selected.value);
-  const run = store.value;
+  const run = shownRun();
   const next = run && nextTimepoint(run, plan, cutoff.value);
   const to = at >= 0 ? plan[at + direction] : next ?? plan[plan.length - 1];
-  if (to) selected.value = to.id;
+  if (to) select(to.id);
 }
-export function closeTimepoint(): boolean {
-  const open = selected.value !== undefined;
-  selected.value = undefined;
+export function closeDetail(): boolean {
+  const open = selected.value !== undefined || anchorsShown.value;
+  select(undefined);
   return open;
+}
+function select(id: number | undefined): void {
+  selected.value = id;
+  anchorsShown.value = false;
 }
 
 /** What is shown; while a command in the form would move something of the landing, the landing. */
@@ -48,7 +64,7 @@ function shown(run: RunStore | undefined): { from: number; to: number } {
 let hits: { x: number; y: number; id: number }[] = [];
 
 function drawTimeline({ context: c, width, height, colours }: Surface): void {
-  const run = store.value;
+  const run = shownRun();
   const { from, to } = shown(run);
   const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
   const lane_px = Math.max(16, Math.min(25, (height - TOP - LABELS) / LANES.length));
@@ -56,7 +72,8 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   const bottom = TOP + lane_px * LANES.length;
   hits = [];
 
-  const cursor = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag stands where labels would
+  const now_px = run ? x(pastRange.value?.to ?? run.seenE) : -1000; // its flag stands where labels would
+  const pointed_px = cursor.value === undefined ? -1000 : x(cursor.value);
   const step = timeStep(to - from, Math.floor((width - GUTTER) / 90));
   c.textAlign = 'center';
   c.textBaseline = 'middle';
@@ -65,7 +82,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
     c.strokeStyle = e_s === 0 ? colours.edge : colours.line;
     line(c, Math.round(x(e_s)) + 0.5, TOP - 6, Math.round(x(e_s)) + 0.5, bottom);
     c.fillStyle = colours.dim;
-    if (Math.abs(x(e_s) - cursor) > 58) c.fillText(axisTime(e_s, step), x(e_s), 11);
+    if ([now_px, pointed_px].every((px) => Math.abs(x(e_s) - px) > 58)) c.fillText(axisTime(e_s, step), x(e_s), 11);
   }
   c.font = `12.5px ${colours.sans}`;
   c.textAlign = 'left';
@@ -98,7 +115,8 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   const chosen = hits.filter((hit) => hit.id === selected.value);
   for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
-  cursors(c, run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8, run.going);
+  cursors(c, pastRange.value?.to ?? run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8, run.going);
+  if (cursor.value !== undefined) flag(c, x(cursor.value), fromEntry(cursor.value, { tenths: true }), colours.accent, colours.page, bottom, width - 8);
   c.restore();
 }
 
@@ -111,14 +129,16 @@ function drawOutages(
       const left = Math.max(GUTTER, x(outage.from));
       const right = Math.min(width - 14, x(outage.to));
       if (right < GUTTER || left > width || right - left < 2) continue;
+      const { shape, token } = silenceStatus(outage.words);
+      const colour = colours[token];
       c.fillStyle = colours.panel;
       c.fillRect(left, y(lane) - 8, right - left, 16);
       c.save();
       c.globalAlpha = 0.2;
-      c.fillStyle = colours.caution;
+      c.fillStyle = colour;
       c.fillRect(left, y(lane) - 8, right - left, 16);
       c.restore();
-      c.strokeStyle = colours.caution;
+      c.strokeStyle = colour;
       c.setLineDash([3, 3]);
       c.strokeRect(left + 0.5, y(lane) - 7.5, right - left - 1, 15);
       c.setLineDash([]);
@@ -126,14 +146,21 @@ function drawOutages(
       c.beginPath();
       c.rect(left, y(lane) - 8, right - left, 16);
       c.clip();
-      c.fillStyle = colours.caution;
+      c.fillStyle = colour;
       c.textAlign = 'left';
       c.font = `11px ${colours.sans}`;
-      const words = c.measureText(outage.words).width + 12 < right - left ? outage.words : shortReason(outage.words);
-      if (right - left > 40) c.fillText(words, left + 6, y(lane) + 0.5);
+      const words = [`${shape} ${outage.words}`, `${shape} ${shortReason(outage.words)}`].find((each) => c.measureText(each).width + 8 <= right - left);
+      c.fillText(words ?? cutOff(c, `${shape} ${shortReason(outage.words)}`, right - left - 8), left + 5, y(lane) + 0.5);
       c.restore();
     }
   }
+}
+
+/** As much of `words` as there is room for, and that it is not all. */
+function cutOff(c: CanvasRenderingContext2D, words: string, room: number): string {
+  let length = words.length;
+  while (length > 0 && c.measureText(`${words.slice(0, length)}…`).width > room) --length;
+  return length > 2 ? `${words.slice(0, length).trimEnd()}…` : '';
 }
 
 /** What is still to come in the colour of what comes next; behind it, as it was predicted; and where a command in the form would move it. */
@@ -171,7 +198,7 @@ function labels(
   c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number, height: number,
   colours: Surface['colours'],
 ): void {
-  const { from, to } = shown(store.value);
+  const { from, to } = shown(shownRun());
   const closeUp = to - from <= CLOSE_UP_S;
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
@@ -203,13 +230,13 @@ function cursors(
   c: CanvasRenderingContext2D, seen: number, lightTime: number, x: (e: number) => number, bottom: number,
   colours: Surface['colours'], right: number, going: boolean,
 ): void {
-  if (lightTime > 0) flag(c, x(seen + lightTime), 'at Mars', colours.dim, colours.page, bottom, right);
-  const past = pastRange.value;
-  flag(c, x(past ? past.to : seen), replay.value ? 'replayed to' : past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
+  const past = pastRange.value; // then both flags stand where they stood
+  if (lightTime > 0) flag(c, x(seen + lightTime), past ? 'then at Mars' : 'at Mars', colours.dim, colours.page, bottom, right);
+  flag(c, x(seen), replay.value ? 'replayed to' : past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
 }
 
 function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number, right: number): void {
-  if (px < GUTTER - 6) return;
+  if (px < GUTTER - 6 || px > right + 10) return; // a stretch that was zoomed to may end before it
   c.strokeStyle = colour;
   line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
   c.font = 'bold 11px sans-serif';
@@ -265,55 +292,116 @@ function triangle(c: CanvasRenderingContext2D, x: number, y: number, colour: str
   c.fill();
 }
 
-function select(px: number, py: number): void {
+function selectAt(px: number, py: number): void {
   let best: (typeof hits)[number] | undefined;
   for (const hit of hits) {
     const distance = Math.hypot(hit.x - px, hit.y - py);
     if (distance < 14 && (!best || distance < Math.hypot(best.x - px, best.y - py))) best = hit;
   }
-  selected.value = best?.id;
+  select(best?.id);
 }
+
+function timeAt(px: number, width: number): number {
+  const { from, to } = shown(shownRun());
+  return from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from);
+}
+const within = (px: number, width: number) => (px < GUTTER ? undefined : timeAt(px, width));
 
 const CHOICES: [Choice & string, string, string][] = [
   ['landing', 'landing', '1'], ['minute', 'last minute', '2'], ['run', 'whole run', '3'],
 ];
 
+const BY = { uhf: SOURCES.uhf, recording: SOURCES.recording, tone: SOURCES.tone } as const;
+
+function Conditions({ lines }: { lines: readonly Line[] }) {
+  if (lines.length === 0) return null;
+  return (
+    <ul class="point-conditions" aria-label="its conditions">
+      {lines.map((line) => (
+        <li key={line.words} class={held(line.holds)}>
+          <span title={STATUS[held(line.holds)].word}>{STATUS[held(line.holds)].shape}</span> {line.words} <output>{line.value}</output>
+        </li>
+      ))}
+    </ul>
+  );
+}
+
 function Detail() {
   const run = runNow();
-  const id = selected.value;
-  if (!run || id === undefined) return null;
-  const detail = pointDetail(run, timepoints.value, id, cutoff.value);
+  const [id, words] = [selected.value, dictionary.value];
+  if (!run || !words || id === undefined) return null;
+  const detail = pointDetail(run, words, timepoints.value, id, cutoff.value);
   if (!detail) return null;
-  const { row } = detail;
+  const { row, why } = detail;
   const foreseen = predicted.value.find((each) => each.id === id);
   const offset = (value: number | undefined) => (value === undefined ? 'undefined' : `${value} s`);
+  const at = (e_s: number) => fromEntry(e_s, { tenths: true });
+  const isOver = detail.by !== undefined || detail.state === 'passed';
+  // Of what has fired, what flight looked at then; of what has not, its conditions as they stand now.
+  const lines = !isOver ? conditions(run, words, timepoints.value, row, cutoff.value, predicted.value) : why?.verdict === 'fired' ? why.conditions.map(conditionLine) : [];
   return (
     <div class="point" data-testid="timepoint-detail">
-      <b>{title(row.name)}</b> <span class={`state state-${detail.state.replaceAll(' ', '-')}`}>{detail.state}</span>
-      <button type="button" class="quiet" onClick={() => (selected.value = undefined)} aria-label="close">×</button>
+      <b>{title(row.name)}</b> <span class={`state state-${detail.state.replaceAll(' ', '-')}`}>{detail.state}{detail.by && `, ${BY[detail.by].shape} ${BY[detail.by].word}`}</span>
+      <button type="button" class="quiet" onClick={() => select(undefined)} aria-label="close">×</button>
       <dl>
         <dt>desired</dt><dd>{offset(row.desiredOffsetS)} after {row.anchor || 'the one before'}</dd>
         <dt>minimum</dt><dd>{offset(row.minimumOffsetS)} after the one before</dd>
-        {foreseen && <><dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt><dd>{fromEntry(foreseen.e_s, { tenths: true })}</dd></>}
-        {row.plannedES !== undefined && <><dt>planned</dt><dd>{fromEntry(row.plannedES, { tenths: true })}</dd></>}
-        {detail.triggered_e_s !== undefined && <><dt>triggered</dt><dd>{fromEntry(detail.triggered_e_s, { tenths: true })}</dd></>}
-        {detail.firedLive_e_s !== undefined && <><dt>fired, by UHF</dt><dd>{fromEntry(detail.firedLive_e_s, { tenths: true })}</dd></>}
-        {detail.firedRecorded_e_s !== undefined && <><dt>fired, by recording</dt><dd>{fromEntry(detail.firedRecorded_e_s, { tenths: true })}</dd></>}
+        {foreseen && <><dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt><dd>{at(foreseen.e_s)}</dd></>}
+        {row.plannedES !== undefined && <><dt>planned</dt><dd>{at(row.plannedES)}</dd></>}
+        {detail.triggered_e_s !== undefined && <><dt>triggered</dt><dd>{at(detail.triggered_e_s)}</dd></>}
+        {detail.tone_e_s !== undefined && <><dt>its tone began</dt><dd>{at(detail.tone_e_s)}</dd></>}
+        {detail.firedLive_e_s !== undefined && <><dt>fired, by UHF</dt><dd>{at(detail.firedLive_e_s)}</dd></>}
+        {detail.firedRecorded_e_s !== undefined && <><dt>fired, by recording</dt><dd>{at(detail.firedRecorded_e_s)}</dd></>}
+        {ENDS[detail.verdict] && <><dt>how it ended</dt><dd>{ENDS[detail.verdict]}</dd></>}
         {row.tone && <><dt>tone</dt><dd>{row.tone}</dd></>}
       </dl>
-      {detail.why && <p class="why">why: {detail.why}</p>}
-      {row.note && <p>{row.note}</p>}
+      {detail.state === 'passed' && <p>Nothing told of it; one after it has fired, so it is past.</p>}
+      <Conditions lines={lines} />
+      {why && <p class="why">why: {why.text}</p>}
+      {row.note && <p>{noteWords(row.note)}</p>}
+    </div>
+  );
+}
+
+/** Flight's own verdicts, in words. */
+const ENDS: Record<string, string> = {
+  completed: 'done; no reply was asked for', replied: 'the reply came', timed_out: 'the reply did not come in time', no_operation: 'nothing was to be done', failed: 'its action could not be done',
+};
+
+const ANCHOR_SHAPES = { defined: '✓', predicted: '◌', undefined: '?' } as const;
+
+function AnchorTree() {
+  if (!anchorsShown.value) return null;
+  const lines = anchorLines.value;
+  return (
+    <div class="point anchors" data-testid="anchors" role="region" aria-label="anchors" tabIndex={0}>
+      <b>Anchors</b> that timepoints hang from <button type="button" class="quiet" onClick={() => (anchorsShown.value = false)} aria-label="close">×</button>
+      {lines.length === 0 && <p>no anchors have come yet</p>}
+      <table>
+        <thead><tr><th>anchor</th><th class="number">offset from parent</th><th class="number">is at</th><th>state, by</th></tr></thead>
+        <tbody>
+          {lines.map((line) => (
+            <tr key={line.id} data-anchor={line.name} class={line.state === 'defined' ? '' : 'status-dim'}>
+              <td style={{ paddingLeft: `${line.depth * 14}px` }}>{line.depth > 0 && '└ '}{title(line.name)}</td>
+              <td class="number">{line.parent === '' ? '' : line.offset_s === undefined ? 'undefined' : `${line.offset_s} s`}</td>
+              <td class="number">{line.e_s === undefined ? '—' : fromEntry(line.e_s, { tenths: true })}</td>
+              <td>{ANCHOR_SHAPES[line.state]} {line.state}: {line.by}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
     </div>
   );
 }
 
 export function Timeline() {
   const run = runNow();
-  const fired = run ? firedCount(run, cutoff.value) : 0;
+  const fired = run ? firedCount(run, timepoints.value, cutoff.value) : { all: 0, byTone: 0 };
   return (
     <Panel name="timeline" title="Timeline" extra={
       <>
-        <span data-testid="timepoints-fired">{fired} of {timepoints.value.length} timepoints fired</span>
+        <span data-testid="timepoints-fired">{fired.all} of {timepoints.value.length} timepoints fired{fired.byTone > 0 && `, ■ ${fired.byTone} by tone`}</span>
+        <button type="button" aria-pressed={anchorsShown.value} title="key h" onClick={toggleAnchors}>anchors</button>
         <span class="choices" role="group" aria-label="Stretch of time">
           {CHOICES.map(([id, words, key]) => (
             <button type="button" key={id} aria-pressed={choice.value === id} disabled={pastRange.value !== undefined && !replay.value}
@@ -329,17 +417,18 @@ export function Timeline() {
       <Canvas
         label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
         keyOf={() => {
-          const span = shown(store.value);
-          return `${store.value?.id} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${JSON.stringify(moved.value)}`;
+          const span = shown(shownRun());
+          return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)}`;
         }}
         draw={drawTimeline}
-        onPoint={select}
+        onPoint={selectAt}
+        onHover={(px, width) => (cursor.value = px === undefined ? undefined : within(px, width))}
         onWheel={(px, width, delta) => {
-          const { from, to } = shown(store.value);
-          zoom(store.value, delta > 0 ? 1.25 : 0.8, from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from));
+          zoom(shownRun(), delta > 0 ? 1.25 : 0.8, timeAt(px, width));
         }}
       />
       <Detail />
+      <AnchorTree />
     </Panel>
   );
 }

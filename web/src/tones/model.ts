@@ -13,8 +13,7 @@ const SYMBOL_S = 10; // R31: one tone for 10 s
 
 export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
   const bars: ToneBar[] = [];
-  for (const { fact } of store.tones) {
-    if (fact.sclk > cutoff) break;
+  for (const { fact } of store.tonesBy(cutoff)) {
     const span = secondsOfDayOfYear(fact.ertEnd) - secondsOfDayOfYear(fact.ertStart);
     const from = fact.sclk - store.entrySclk;
     bars.push({
@@ -25,7 +24,21 @@ export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
 }
 
 export function latestTone(store: RunStore, cutoff: number): Tone | undefined {
-  return store.tones.findLast(({ fact }) => fact.sclk <= cutoff)?.fact;
+  return store.tonesBy(cutoff).at(-1)?.fact;
+}
+
+/** The symbol at `sclk`, or the newest by `cutoff` where none is chosen or the chosen one came later than that. */
+export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number | undefined): Tone | undefined {
+  const chosen = chosen_sclk === undefined || chosen_sclk > cutoff ? undefined : store.tonesBy(cutoff).find(({ fact }) => fact.sclk === chosen_sclk)?.fact;
+  return chosen ?? latestTone(store, cutoff);
+}
+
+/** Of the symbol before or after that of `sclk`, its SCLK; undefined after the newest: that is no choice, it moves on. */
+export function neighbour(store: RunStore, cutoff: number, sclk: number | undefined, direction: 1 | -1): number | undefined {
+  const all = store.tonesBy(cutoff).map(({ fact }) => fact.sclk);
+  const at = sclk === undefined ? all.length - 1 : all.indexOf(sclk);
+  const to = Math.max(0, at + direction);
+  return to >= all.length - 1 ? undefined : all[to];
 }
 
 /** The title in words: what the vehicle says now. */

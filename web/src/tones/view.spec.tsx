@@ -1,6 +1,10 @@
+// @vitest-environment happy-dom
 import { describe, expect, it } from 'vitest';
 import { aStore, tone } from '../testing/fixtures';
-import { bestTones, latestTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import type { Palette } from '../draw/palette';
+import type { Tone } from '../gen/aeolis/v1/items_pb';
+import { drawSpectrum } from './view';
+import { bestTones, latestTone, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
 
 describe('tones', () => {
   it('say an erasure as an erasure', () => {
@@ -25,5 +29,22 @@ describe('tones', () => {
     expect(bestTones(latest)).toBe('42: 0.9900 · 7: 0.0040');
     expect(toneEvidence(latest)).toContain('▨ coasting, 20.5 dB-Hz');
     expect(toneSpectrum(latestTone(aStore([tone({ sclk: 700, tone: 7 })]), Infinity))).toEqual([]);
+  });
+  it('show the whole spectrum, also above the tones that came, with the number of the runner-up', () => {
+    const words: string[] = [];
+    const bars: number[] = [];
+    const context = { fillText: (text: string) => words.push(text), fillRect: (_x: number, y: number, _wide: number, high: number) => void (high < 3 && bars.push(y)) };
+    const spectrum = new Uint8Array(128).fill(60);
+    [spectrum[21], spectrum[61]] = [110, 100];
+    drawSpectrum({ context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette }, tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item.value as Tone, 200);
+    expect([bars.length, Math.min(...bars) > 20, Math.max(...bars) < 200]).toEqual([128, true, true]);
+    expect(words).toEqual(expect.arrayContaining(['0', '255', '42', '123']));
+  });
+  it('can be looked at one by one, and move on with the newest where none is chosen', () => {
+    const store = aStore([700, 710, 720].map((sclk) => tone({ sclk, tone: sclk / 10 })));
+    expect([undefined, 720, 710, 700].map((sclk) => neighbour(store, Infinity, sclk, -1))).toEqual([710, 710, 700, 700]);
+    expect([700, 710, undefined].map((sclk) => neighbour(store, Infinity, sclk, 1))).toEqual([710, undefined, undefined]);
+    expect([undefined, 700, 710].map((sclk) => shownTone(store, Infinity, sclk)?.tone)).toEqual([72, 70, 71]);
+    expect(shownTone(store, 705, 710)?.tone).toBe(70);
   });
 });

@@ -1,42 +1,92 @@
 // The strip of tones: 256 high, 10 s wide each.
+import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
-import { cutoff, store, tick } from '../run/session';
+import type { Tone } from '../gen/aeolis/v1/items_pb';
+import { cursor } from '../run/cursor';
+import { cutoff, shownRun, tick } from '../run/session';
+import { fromEntry } from '../run/time';
 import { plotSpan } from '../run/window';
-import { bestTones, latestTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import { bestTones, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
 import './style.css';
 
 const LEFT = 42;
-const SPECTRUM = 76; // wide, at the right, where there is one
+const SPECTRUM = 106; // wide, at the right, where there is one
+const TONES = 256;
 const LOUDEST_DB = 30;
 const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came need
 
-/** What the receiver saw of the last symbol: beside the strip, each tone at its height in it. */
-function drawSpectrum({ context: c, width, colours }: Surface, y: (tone: number) => number): void {
-  const tone = store.value && latestTone(store.value, cutoff.value);
-  const left = width - SPECTRUM;
-  const right = width - 12;
-  for (const { tone: low, level_db } of toneSpectrum(tone)) {
-    const decided = tone?.tone !== undefined && (tone.tone & ~1) === low;
-    const long = (Math.max(0, Math.min(LOUDEST_DB, level_db)) / LOUDEST_DB) * (right - left);
-    const thick = decided ? 2 : 1;
-    c.fillStyle = decided ? colours.tone : colours.dim;
-    c.fillRect(left, y(low + 0.5) - thick / 2, Math.max(1, long), thick);
-  }
-  c.fillStyle = colours.dim;
+/** The symbol that is looked at, of one run; undefined: the newest. */
+const choice = signal<{ run: number; sclk: number } | undefined>(undefined);
+const chosenSclk = () => (choice.value?.run === shownRun()?.id ? choice.value?.sclk : undefined);
+function toneNow(): Tone | undefined {
+  const run = shownRun();
+  return run && shownTone(run, cutoff.value, chosenSclk());
+}
+function look(sclk: number | undefined): void {
+  const run = shownRun();
+  choice.value = sclk === undefined || !run ? undefined : { run: run.id, sclk };
+}
+
+export function focusTones(): void {
+  document.querySelector<HTMLElement>('[data-testid="tone-symbols"]')?.focus();
+}
+
+function onKey(event: KeyboardEvent): void {
+  const run = shownRun();
+  const direction = { ArrowLeft: -1, ArrowRight: 1 }[event.key] as 1 | -1 | undefined;
+  if (event.key === 'Escape' && chosenSclk() !== undefined) look(undefined);
+  else if (run && direction && !event.shiftKey) look(neighbour(run, cutoff.value, toneNow()?.sclk, direction));
+  else return;
+  event.preventDefault();
+}
+
+let scale: { from: number; to: number; width: number } | undefined; // of the strip, as it was drawn last
+const timeAt = (px: number) => scale && scale.from + ((px - LEFT) / (scale.width - LEFT - 12)) * (scale.to - scale.from);
+
+function choose(px: number): void {
+  const [run, e_s] = [shownRun(), timeAt(px)];
+  if (!run || e_s === undefined) return;
+  const bars = toneBars(run, cutoff.value);
+  const at = bars.findLastIndex((bar) => bar.from_e_s <= e_s);
+  look(at < 0 || at === bars.length - 1 ? undefined : run.tonesBy(cutoff.value)[at]?.fact.sclk);
+}
+
+/** What the receiver saw of the symbol that is looked at, beside the strip: all 256 that were weighed, on a scale of their own; the decided one and the runner-up by number. */
+export function drawSpectrum({ context: c, width, colours }: Pick<Surface, 'context' | 'width' | 'colours'>, tone: Tone | undefined, bottom: number): void {
+  const y = (index: number) => bottom - (index / TONES) * (bottom - 22);
+  const [left, right] = [width - SPECTRUM + 30, width - 12];
+  const numbered = [tone?.tone, tone?.runnerUp].filter((each) => each !== undefined);
   c.font = `10px ${colours.mono}`;
+  c.textBaseline = 'middle';
+  c.fillStyle = colours.dim;
+  c.fillRect(left - 2, y(TONES), 1, bottom - y(TONES));
   c.textAlign = 'right';
+  for (const each of [0, 64, 128, 192, TONES - 1]) c.fillText(String(each), left - 6, y(each));
   c.fillText(`${LOUDEST_DB} dB`, right, 10);
+  for (const { tone: low, level_db } of toneSpectrum(tone)) {
+    const long = (Math.max(0, Math.min(LOUDEST_DB, level_db)) / LOUDEST_DB) * (right - left);
+    const which = numbered.find((each) => (each & ~1) === low);
+    const thick = which === undefined ? 1 : 2;
+    c.fillStyle = which === undefined ? colours.dim : which === tone?.tone ? colours.tone : colours.text;
+    c.fillRect(left, y(low + 0.5) - thick / 2, Math.max(1, long), thick);
+    if (which === undefined) continue;
+    const room = right - left - long > 24;
+    c.textAlign = room ? 'left' : 'right';
+    c.fillText(String(which), room ? left + long + 4 : right, y(low + 0.5) + (room ? 0 : -8));
+  }
 }
 
 function draw(surface: Surface): void {
   const { context: c, height, colours } = surface;
-  const run = store.value;
-  const heard = toneSpectrum(run && latestTone(run, cutoff.value)).length > 0;
+  const run = shownRun();
+  const looked = toneNow();
+  const heard = toneSpectrum(looked).length > 0;
   const width = surface.width - (heard ? SPECTRUM : 0);
   const { from, to } = plotSpan(run);
+  scale = { from, to, width };
   const bottom = height - 20;
   const x = (e_s: number) => LEFT + ((e_s - from) / (to - from)) * (width - LEFT - 12);
   const bars = run ? toneBars(run, cutoff.value) : [];
@@ -64,10 +114,14 @@ function draw(surface: Surface): void {
   c.rect(LEFT, 0, width - LEFT - 10, height);
   c.clip();
   let labelled = -Infinity;
-  const lastLeft = x(bars[bars.length - 1]?.from_e_s ?? to);
+  const lastLeft = looked && run ? x(looked.sclk - run.entrySclk) : x(to);
   bars.forEach((bar, index) => {
     const left = x(bar.from_e_s);
     const wide = Math.max(2, x(bar.to_e_s) - left - 1);
+    if (run?.tones[index]?.fact === looked && chosenSclk() !== undefined) {
+      c.strokeStyle = colours.text;
+      c.strokeRect(left - 2.5, y(bar.tone ?? high / 2) - 6.5, wide + 5, 13);
+    }
     if (bar.tone === undefined) {
       // An erasure: an empty dashed box in the middle, never nothing.
       c.strokeStyle = colours.dim;
@@ -76,13 +130,13 @@ function draw(surface: Surface): void {
       c.setLineDash([]);
       return;
     }
-    const last = index === bars.length - 1;
+    const last = run?.tones[index]?.fact === looked;
     c.globalAlpha = last ? 1 : 0.35 + 0.4 * Math.min(1, Math.max(0, bar.likelihood));
     c.fillStyle = colours.tone;
     c.fillRect(left, y(bar.tone) - 3.5, wide, 7);
     c.globalAlpha = 1;
     const before = bars[index - 1];
-    const room = last || (left > labelled + 4 && left < lastLeft - 24);
+    const room = last || (left > labelled + 4 && (left < lastLeft - 24 || left > lastLeft + 24));
     if (last || (before?.tone !== bar.tone && room)) {
       labelled = left + c.measureText(String(bar.tone)).width;
       c.fillStyle = last ? colours.text : colours.dim;
@@ -91,26 +145,34 @@ function draw(surface: Surface): void {
       c.fillText(String(bar.tone), left, y(bar.tone) - 12);
     }
   });
+  if (cursor.value !== undefined) {
+    c.fillStyle = colours.accent;
+    c.fillRect(Math.round(x(cursor.value)), 0, 1, bottom);
+  }
   c.restore();
-  if (!heard) return;
-  c.save();
-  c.beginPath();
-  c.rect(surface.width - SPECTRUM, 0, SPECTRUM, bottom + 4); // tones above the strip's are not shown
-  c.clip();
-  drawSpectrum(surface, y);
-  c.restore();
+  if (heard) drawSpectrum(surface, looked, bottom);
 }
 
 export function Tones() {
   void tick.value;
-  const tone = store.value && latestTone(store.value, cutoff.value);
+  const [run, tone] = [shownRun(), toneNow()];
+  const back = tone !== undefined && tone.sclk === chosenSclk();
   return (
-    <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>}>
-      <p class="tone-evidence" data-testid="tone-evidence" title={bestTones(tone)}>{toneEvidence(tone)}</p>
-      <Canvas label={toneTitle(tone)} testId="tone-canvas" draw={draw} keyOf={() => {
-        const span = plotSpan(store.value);
-        return `${store.value?.id} ${store.value?.tones.length} ${Math.round(span.from * 2)} ${Math.round(span.to * 2)} ${cutoff.value}`;
-      }} />
+    <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>} extra={
+      back && run && tone && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
+    }>
+      <p class="tone-evidence" data-testid="tone-evidence">
+        {back && run && tone && <b>at {fromEntry(tone.sclk - run.entrySclk)} · </b>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
+      </p>
+      <div class="tone-symbols" data-testid="tone-symbols" role="group" aria-label="symbols: ← → choose one" tabIndex={0} onKeyDown={onKey}>
+        <Canvas label={toneTitle(tone)} testId="tone-canvas" draw={draw} onPoint={choose}
+          onHover={(px) => (cursor.value = px === undefined || px < LEFT ? undefined : timeAt(px))}
+          keyOf={() => {
+            const strip = shownRun();
+            const span = plotSpan(strip);
+            return `${strip?.id} ${strip?.tones.length} ${Math.round(span.from * 2)} ${Math.round(span.to * 2)} ${cutoff.value} ${chosenSclk()} ${cursor.value}`;
+          }} />
+      </div>
     </Panel>
   );
 }

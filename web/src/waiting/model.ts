@@ -2,14 +2,17 @@
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { outcomeWords } from '../clocks/model';
-import { preconditionsOf } from '../commands/model';
+import { compare, preconditionsOf } from '../commands/model';
 import type { Precondition } from '../commands/model';
 import { LAYOUT } from '../layout';
+import { canContinue } from '../mode/model';
 import { inWords, numberText } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';
-import type { RunStore } from '../run/store';
+import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry } from '../run/time';
+import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
+import type { Prediction } from '../timeline/predict';
 
 /** holds: yes, no, or not known. */
 export interface Line {
@@ -22,43 +25,71 @@ export interface Waiting {
   title: string;
   words: string;
   lines: Line[];
+  /** What comes before it and has no name that people wait for, with when. */
+  before?: Line | undefined;
+  beforeName?: string;
+  /** The last that was heard of, where only a tone told it. */
+  byTone?: string;
+  /** How much of the recording has come down while nothing else is waited for, 0 … 1. */
+  coming?: number;
+  /** What is to be typed. */
+  type?: string;
 }
 
 const RELATIONS: Record<string, string> = { '<=': '≤', '==': '=', '>=': '≥', '!=': '≠' };
+const UNITS: Record<string, string> = { mps2: 'm/s²', mps: 'm/s', dps: '°/s', deg: '°', s: 's', m: 'm', N: 'N', kg: 'kg', Pa: 'Pa', g: 'g' };
 
-export function conditionLine(condition: Condition): Line {
-  const relation = RELATIONS[condition.comparison] ?? condition.comparison;
-  return {
-    words: `${inWords(condition.quantity)} ${relation} ${numberText(condition.bound)}`,
-    value: numberText(condition.value),
-    holds: condition.holds,
-  };
+/** A quantity's name ends in its unit: "speed_mps" is "speed", in m/s. */
+function quantityWords(quantity: string): { words: string; unit: string } {
+  const at = quantity.lastIndexOf('_');
+  const unit = UNITS[quantity.slice(at + 1)];
+  return unit === undefined || at < 0 ? { words: inWords(quantity), unit: '' } : { words: inWords(quantity.slice(0, at)), unit: ` ${unit}` };
+}
+
+export function conditionLine({ quantity, value, comparison, bound, holds }: Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>): Line {
+  const { words, unit } = quantityWords(quantity);
+  return { words: `${words} ${RELATIONS[comparison] ?? comparison} ${numberText(bound)}${unit}`, value: `${numberText(value)}${unit}`, holds };
+}
+
+/** What the vehicle does next that people wait for: the next named moment; where none is left, the next timepoint. */
+export function waitedFor(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { main: TimepointRow; first: TimepointRow } | undefined {
+  const first = nextTimepoint(store, plan, cutoff);
+  return first && { first, main: plan.slice(plan.indexOf(first)).find((row) => isImportant(row.name)) ?? first };
 }
 
 export function waitingFor(
-  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number,
+  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number, predicted: readonly Prediction[] = [],
 ): Waiting {
   if (!store.going && cutoff === Infinity) return ended(store);
-  const begun = [...store.firings.values()].some((pair) => pair.live || pair.recorded);
-  const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1]) !== undefined;
-  if (!begun && !accepted) return beginning(store, dictionary);
-  const next = nextTimepoint(store, plan, cutoff);
-  if (!next) {
+  const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1], cutoff) !== undefined;
+  const heard = heardOf(store, plan, cutoff);
+  const last = plan[lastHeard(plan, heard)];
+  if (!last && !accepted) return beginning(store, dictionary, cutoff);
+  const waited = waitedFor(store, plan, cutoff);
+  if (!waited) {
     return {
       kind: 'waiting', title: 'The timeline is complete',
-      words: store.run.relayProgress > 0 && store.run.relayProgress < 1
+      words: cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1
         ? `The recording is coming down: ${Math.round(store.run.relayProgress * 100)} %` : 'Every timepoint has fired.',
       lines: [],
+      ...(cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1 && { coming: store.run.relayProgress }),
     };
   }
-  return { kind: 'waiting', title: `Waiting for ${inWords(next.name)}`, words: next.note, lines: conditions(store, dictionary, next, cutoff) };
+  const { main, first } = waited;
+  const lastWas = last && heard.get(last.id);
+  return {
+    kind: 'waiting', title: `Waiting for ${inWords(main.name)}`, words: noteWords(main.note),
+    lines: conditions(store, dictionary, plan, main, cutoff, predicted),
+    // By tone nobody tells of what has none: it may have fired.
+    ...(first !== main && lastWas?.by !== 'tone' && { before: conditions(store, dictionary, plan, first, cutoff, predicted)[0], beforeName: inWords(first.name) }),
+    ...(last && lastWas?.by === 'tone' && { byTone: `${inWords(last.name)}, ${fromEntry(lastWas.triggered_sclk - store.entrySclk)}` }),
+  };
 }
 
-/** The named moment after the one that is waited for, when that one itself has no name that people know. */
-export function thenNamed(store: RunStore, plan: readonly TimepointRow[], cutoff: number): string | undefined {
-  const next = nextTimepoint(store, plan, cutoff);
-  if (!next || isImportant(next.name)) return undefined;
-  return plan.slice(plan.indexOf(next)).find((row) => isImportant(row.name))?.name;
+/** A note of the plan as a sentence. */
+export function noteWords(note: string): string {
+  const words = LAYOUT.noteMarks.reduce((text, mark) => text.replace(mark, ''), note).trim();
+  return /[^.!?…]$/.test(words) ? `${words}.` : words;
 }
 
 function ended(store: RunStore): Waiting {
@@ -67,7 +98,7 @@ function ended(store: RunStore): Waiting {
   return {
     kind: 'ended',
     title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
-    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state === 'interrupted' ? 'The server stopped in mid-run; the panel Runs continues it from here.' : complete}`,
+    words: `This run: ${outcomeWords(run.outcome, run.state)}. ${run.state !== 'interrupted' ? complete : canContinue(run) ? 'The server stopped in mid-run; the panel Runs continues it from here.' : 'It cannot be continued: what is followed after it is another run.'}`,
     lines: [],
   };
 }
@@ -75,75 +106,122 @@ function ended(store: RunStore): Waiting {
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
 /** By which word of the vehicle a step is known to be done: its answer to the command, or the tone that says so. */
-export function stepEvidence(store: RunStore, step: FirstStep | undefined): string | undefined {
+export function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Infinity): string | undefined {
   if (!step) return undefined;
   for (const row of store.commands.values()) {
-    const stage = ['verified', 'executed'].find((name) => row.stages.get(name)?.at(-1)?.status === 'ok');
+    const stage = ['verified', 'executed'].find((name) => lastWord(store, row, name, cutoff)?.status === 'ok');
     if (row.name === step.command && stage !== undefined) return stage;
   }
-  const tone = store.tones.find(({ fact }) => fact.name === step.tone);
-  return tone && `by tone ${tone.fact.tone}`;
+  const tone = store.tonesBy(cutoff).find(({ fact }) => fact.name === step.tone)?.fact;
+  return tone && `by tone ${tone.tone}`;
 }
+
+/** What was said last of a stage, as it was known then. */
+const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: number) =>
+  row.stages.get(stage)?.findLast((word) => store.knownBy(word.at, cutoff));
 
 /**
  * What the vehicle's own status still says against a step that comes next: it would be refused. A status that never came is no
  * reason to wait, for flight decides by what it knows.
  */
-export function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep): Precondition | undefined {
+export function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep, cutoff = Infinity): Precondition | undefined {
   const command = dictionary.command(step.command);
-  return command && preconditionsOf(command, dictionary, store).find((condition) => condition.holds === false);
+  return command && preconditionsOf(command, dictionary, store, cutoff).find((condition) => condition.holds === false);
 }
 
-function beginning(store: RunStore, dictionary: Dictionary): Waiting {
-  const steps = LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
-  const missing = steps.find((step) => stepEvidence(store, step) === undefined && sending(store, step) === undefined);
-  const against = missing && steps.indexOf(missing) > 0 && stepEvidence(store, steps[steps.indexOf(missing) - 1]) !== undefined
-    ? statusAgainst(store, dictionary, missing) : undefined;
+/** `state`: there is nothing under way, it waits on the ground, or it has left. */
+export interface Missing {
+  number: number;
+  step: FirstStep;
+  state: 'unsent' | 'on_ground' | 'sent';
+  evidence: string; // for how far it has come
+  against: Precondition | undefined;
+}
+
+/** The first of the commands that begin a landing which the vehicle has not said to be done. */
+export function missingStep(store: RunStore, dictionary: Dictionary, cutoff = Infinity): Missing | undefined {
+  const steps = firstSteps(dictionary);
+  const number = steps.findIndex((step) => stepEvidence(store, step, cutoff) === undefined);
+  const step = steps[number];
+  if (!step) return undefined;
+  const { state, evidence } = progress(store, step, cutoff);
+  return { number, step, state, evidence, against: number > 0 && state === 'unsent' ? statusAgainst(store, dictionary, step, cutoff) : undefined };
+}
+
+const firstSteps = (dictionary: Dictionary) => LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
+
+const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.';
+
+function beginning(store: RunStore, dictionary: Dictionary, cutoff: number): Waiting {
+  const missing = missingStep(store, dictionary, cutoff);
+  if (!missing) return listening(store, dictionary);
+  const { step, state, evidence, against } = missing;
+  const past = cutoff !== Infinity; // then there was something to be pressed
+  const [title, words] = against ? ['Waiting for the vehicle’s status', `“${step.words}” is refused until it says so.`]
+    : state === 'sent' ? ['Sent. Waiting for the vehicle’s answer', ANSWERS]
+    : state === 'on_ground' ? [`“${step.words}” waits on the ground`, `It has not left yet: it ${evidence}.`]
+    : [past ? `“${step.words}” had not been sent` : `Press / and type “${step.words}”`, `It ${step.why}.`];
   return {
-    kind: 'begin',
-    title: against ? 'Waiting for the vehicle’s status' : missing ? `Press / and type “${missing.words}”` : 'Sent. Waiting for the vehicle’s answer',
-    words: against ? `“${missing?.words}” is refused until it says so.` : missing ? `It ${missing.why}.` : 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.',
-    lines: [...steps.map((step) => {
-      const evidence = stepEvidence(store, step);
-      return { words: step.words, value: evidence ?? sending(store, step) ?? failure(store, step) ?? 'to be sent', holds: evidence !== undefined };
+    kind: 'begin', title, words,
+    ...(state === 'unsent' && !against && !past && { type: step.words }),
+    lines: [...firstSteps(dictionary).map((each) => {
+      const done = stepEvidence(store, each, cutoff);
+      return { words: each.words, value: done ?? progress(store, each, cutoff).evidence, holds: done !== undefined };
     }), ...(against ? [{ words: against.words, value: against.value, holds: against.holds }] : [])],
   };
 }
 
-const newest = (store: RunStore, step: FirstStep) => [...store.commands.values()].findLast((row) => row.name === step.command);
-
-function failure(store: RunStore, step: FirstStep): string | undefined {
-  const failed = [...(newest(store, step)?.stages.values() ?? [])].map((words) => words.at(-1)).find((stage) => stage?.status === 'failed');
-  return failed && `failed: ${failed.evidence}`;
+/** Of a mission whose commands are not here: there is nothing to be pressed, only to be heard. */
+function listening(store: RunStore, dictionary: Dictionary): Waiting {
+  return {
+    kind: 'waiting', title: store.unitTotals.size + store.live.size > 0 ? 'Listening' : 'Nothing has come yet', lines: [],
+    words: dictionary.commands.length === 0 ? 'This venue has no commands here.' : 'This venue has none of the commands that begin a landing.',
+  };
 }
 
-function sending(store: RunStore, step: FirstStep): string | undefined {
-  return newest(store, step) && failure(store, step) === undefined ? 'sent' : undefined;
+/** How far the newest of a step that had been heard of by then has come, with what says so. */
+function progress(store: RunStore, step: FirstStep, cutoff: number): Pick<Missing, 'state' | 'evidence'> {
+  const words = (row: CommandRow) => [...row.stages.keys()].flatMap((stage) => lastWord(store, row, stage, cutoff) ?? []);
+  const row = [...store.commands.values()].findLast((each) => each.name === step.command && words(each).length > 0);
+  const failed = row && words(row).find((word) => word.status === 'failed');
+  if (failed) return { state: 'unsent', evidence: failed.evidence.startsWith('cancelled') ? failed.evidence : `failed: ${failed.evidence}` };
+  if (!row) return { state: 'unsent', evidence: 'to be sent' };
+  const released = lastWord(store, row, 'released', cutoff);
+  if (released?.status !== 'pending') return { state: 'sent', evidence: 'sent' };
+  return { state: 'on_ground', evidence: released.needsApproval ? 'waits for a second person' : released.held ? 'is held until it is released' : 'waits to leave' };
 }
 
-function conditions(store: RunStore, dictionary: Dictionary, next: TimepointRow, cutoff: number): Line[] {
+/** Of a timepoint that has not fired: its times, then what flight says that it compares, each with its newest value. */
+export function conditions(
+  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], row: TimepointRow, cutoff: number, predicted: readonly Prediction[],
+): Line[] {
   const now = Math.min(store.seenSclk, cutoff);
-  const lines: Line[] = [];
-  const time = (names: readonly string[]): number | undefined => {
+  const value = (names: readonly string[]): number | undefined => {
     const channel = dictionary.pick(names);
     const sample = channel && store.latest(channel.id, cutoff);
     return sample?.value;
   };
-  const current = time(LAYOUT.currentTimepoint);
-  // The vehicle's own times only count while it speaks of the same timepoint.
-  const itsOwn = current === undefined || current === next.id;
-  const desired = itsOwn ? time(LAYOUT.nextDesired) : undefined;
-  const minimum = itsOwn ? time(LAYOUT.nextMinimum) : undefined;
-  const base = next.anchor ? inWords(next.anchor) : 'the one before';
+  // The vehicle's own times only count while it speaks of this timepoint.
+  const current = value(LAYOUT.currentTimepoint);
+  const itsOwn = current === undefined ? nextTimepoint(store, plan, cutoff) === row : current === row.id;
+  const foreseen = predicted.find((each) => each.id === row.id && !each.fired);
+  const desired = itsOwn ? value(LAYOUT.nextDesired) : undefined;
+  const minimum = itsOwn ? value(LAYOUT.nextMinimum) : undefined;
+  const base = row.anchor ? inWords(row.anchor) : 'the one before';
   // An anchor that GNC starts has no time in the plan: what is waited for is the vehicle's own word.
-  const declared = next.anchor !== '' && next.desiredOffsetS === 0 && next.plannedES === undefined;
-  const words = declared ? `the vehicle declares “${base}”` : `${offsetWords(next.desiredOffsetS)} ${base}`;
-  lines.push(timeLine(words, desired, now, store.entrySclk));
-  if (next.minimumOffsetS !== undefined && next.minimumOffsetS > 0 && next.anchor !== '') {
-    lines.push(timeLine(`${offsetWords(next.minimumOffsetS)} the one before`, minimum, now, store.entrySclk));
+  const declared = row.anchor !== '' && row.desiredOffsetS === 0 && row.plannedES === undefined;
+  const words = declared ? `the vehicle declares “${base}”` : row.anchor === '' && row.desiredOffsetS === 0 ? 'with the one before' : `${offsetWords(row.desiredOffsetS)} ${base}`;
+  const lines = [timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk)];
+  if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
+    lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} the one before`, minimum, undefined, now, store.entrySclk));
   }
-  const held = latestHeld(store, cutoff);
-  if (held) lines.push(...held.conditions.map(conditionLine));
+  const held = latestHeld(store, row, cutoff);
+  if (held) return [...lines, ...held.conditions.map(conditionLine)];
+  for (const watch of LAYOUT.watches) {
+    const [is, bound] = [value([watch.channel]), value([watch.bound])];
+    if (watch.timepoint !== row.name || is === undefined || bound === undefined || Number.isNaN(is) || Number.isNaN(bound)) continue;
+    lines.push(conditionLine({ quantity: watch.channel, value: is, comparison: watch.comparison, bound, holds: compare(is, watch.comparison, bound) }));
+  }
   return lines;
 }
 
@@ -153,20 +231,20 @@ function offsetWords(offset_s: number | undefined): string {
   return offset_s < 0 ? `${numberText(-offset_s)} s before` : `${numberText(offset_s)} s after`;
 }
 
-function timeLine(words: string, due_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
-  if (due_sclk === undefined) return { words, value: 'no word yet', holds: undefined };
-  if (Number.isNaN(due_sclk)) return { words, value: 'not yet', holds: false };
-  const left = due_sclk - now_sclk;
-  return {
-    words, value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`,
-    holds: left <= 0,
-  };
+/** `due`: by the vehicle's word, NaN while it has none itself; `foreseen`: by the timeline's rule over predicted anchors. */
+function timeLine(words: string, due_sclk: number | undefined, foreseen_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
+  const told = due_sclk !== undefined && !Number.isNaN(due_sclk);
+  const left = (told ? due_sclk : foreseen_sclk ?? NaN) - now_sclk;
+  if (told) return { words, value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`, holds: left <= 0 };
+  if (left > 0) return { words, value: `≈ in ${duration(left)}`, holds: false };
+  return due_sclk === undefined && foreseen_sclk === undefined ? { words, value: 'no word yet', holds: undefined } : { words, value: 'not yet', holds: false };
 }
 
 const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now
 
-function latestHeld(store: RunStore, cutoff: number): Explanation | undefined {
+/** What flight says that this timepoint, and no other, is held by. */
+function latestHeld(store: RunStore, row: TimepointRow, cutoff: number): Explanation | undefined {
   const now = Math.min(store.seenSclk, cutoff);
-  const row = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0);
-  return row && row.fact.verdict === 'held' && now - row.fact.sclk < FRESH_S ? row.fact : undefined;
+  const told = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row))?.fact;
+  return told?.verdict === 'held' && now - told.sclk < FRESH_S ? told : undefined;
 }

@@ -1,8 +1,17 @@
+// @vitest-environment happy-dom
 import { create } from '@bufbuild/protobuf';
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
+import { access } from '../access/model';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
+import { TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
+import { Dictionary } from '../run/dictionary';
 import { aDictionary, aPlan, aRun, aStore, explanation, firing, samples, stage, tone } from '../testing/fixtures';
-import { waitingFor } from './model';
+import { timepoints, useForTest } from '../run/session';
+import type { ToWorker } from '../stream/messages';
+import { noteWords, waitingFor } from './model';
+import { WaitingFor } from './view';
 
 const commanded = [
   stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'executed', status: 'ok' }),
@@ -13,6 +22,15 @@ describe('waiting for', () => {
   it('tells a newcomer what to press first, and then what next', () => {
     expect(waitingFor(aStore(), aDictionary, aPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
     expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+  });
+  it('says what the plan notes as a sentence, for more may follow', () => {
+    const words = (note: string) => {
+      const plan = aPlan.map((row) => ({ ...row, note }));
+      return waitingFor(aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 174 })]), aDictionary, plan, Infinity).words;
+    };
+    expect(['Tone only (L)', 'GNC says when.', ''].map(words)).toEqual(['Tone only.', 'GNC says when.', '']);
+    expect(noteWords('Cables are cut before it (order H; time L)')).toBe('Cables are cut before it.');
+    expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
     const waiting = waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]), aDictionary, aPlan, Infinity);
@@ -26,9 +44,40 @@ describe('waiting for', () => {
     expect(waiting.title).toContain('Waiting for the vehicle');
     expect(waiting.lines.map((line) => [line.value, line.holds])).toEqual([['by tone 5', true], ['sent', false]]);
   });
+  it('does not call sent what still waits on the ground, and says for what', () => {
+    const on = (fields: object) => waitingFor(aStore([
+      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok' }), stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'released', status: 'pending', ...fields }),
+    ]), aDictionary, aPlan, Infinity);
+    expect([on({ needsApproval: true, askedBy: 'ann' }), on({ held: true }), on({})].map(({ title, lines }) => [title, lines[0]?.value])).toEqual([
+      ['“set edl parameters” waits on the ground', 'waits for a second person'], ['“set edl parameters” waits on the ground', 'is held until it is released'], ['“set edl parameters” waits on the ground', 'waits to leave'],
+    ]);
+    expect(on({ status: 'ok' }).lines[0]?.value).toBe('sent');
+  });
   it('says why a command failed', () => {
     const store = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' })]);
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]?.value).toContain('bad_argument');
+  });
+  it('has typed what is missing: the first command again where it was cancelled, nothing while one waits or is under way', () => {
+    const said = (stageName: string, status: string, evidence = '') => stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: stageName, status, evidence, held: status === 'pending' });
+    const now = (...words: ReturnType<typeof said>[]) => waitingFor(aStore(words), aDictionary, aPlan, Infinity);
+    expect(now().type).toBe('set edl parameters');
+    const held = said('released', 'pending', 'held by Ada');
+    expect(now(held)).toMatchObject({ title: '“set edl parameters” waits on the ground', words: 'It has not left yet: it is held until it is released.' });
+    expect(now(held, said('released', 'failed', 'cancelled by Ada'))).toMatchObject({ type: 'set edl parameters', lines: [{ value: 'cancelled by Ada', holds: false }, { value: 'to be sent' }] });
+    const sent = [held, said('released', 'ok'), said('radiated', 'ok')];
+    expect(now(...sent).title).toBe('Sent. Waiting for the vehicle’s answer');
+    expect([now(held).type, now(...sent).type]).toEqual([undefined, undefined]);
+    expect(now(...sent, said('executed', 'ok')).type).toBe('do edl');
+  });
+  it('says of a mission whose commands are not here that there is nothing to press', () => {
+    const listening = (dictionary: typeof aDictionary, items: Parameters<typeof aStore>[0] = []) => {
+      const { title, words, type, lines } = waitingFor(aStore(items), dictionary, [], Infinity);
+      return [title, words, type, lines];
+    };
+    const without = (commands: typeof aDictionary.commands) => new Dictionary({ ...aDictionary.reply, commands });
+    expect(listening(without([]))).toEqual(['Nothing has come yet', 'This venue has no commands here.', undefined, []]);
+    expect(listening(without([]), [samples(899, { 3: 1 })])[0]).toBe('Listening');
+    expect(listening(without(aDictionary.commands.slice(0, 1)))[1]).toBe('This venue has none of the commands that begin a landing.');
   });
   it('names the next timepoint and when it is due by the vehicle’s own word', () => {
     const store = aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 880 }), samples(899, { 1: 0, 2: 1000, 5: 1 })]);
@@ -43,10 +92,67 @@ describe('waiting for', () => {
   it('shows the condition that is missing, as flight explained it', () => {
     const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: '<=', bound: 405, holds: false });
     const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] })]);
-    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({ words: 'speed mps ≤ 405', value: '450', holds: false });
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({ words: 'speed ≤ 405 m/s', value: '450 m/s', holds: false });
+  });
+  it('takes no other decision’s conditions for its own', () => {
+    const condition = create(ConditionSchema, { quantity: 'drag_mps2', value: 1.8, comparison: '>=', bound: 1.96, holds: false });
+    const words = (decision: string, text = '') => waitingFor(aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+      explanation({ sclk: 899, decision, verdict: 'held', text, conditions: [condition] })]), aDictionary, aPlan, Infinity).lines.map((line) => line.words);
+    const own = ['the vehicle declares “parachute”', 'drag ≥ 1.960 m/s²'];
+    expect(words('heading_alignment')).toEqual(own.slice(0, 1));
+    expect(words('timepoint', 'timepoint entry_interface held: …')).toEqual(own.slice(0, 1));
+    for (const each of [words('parachute'), words('parachute_deploy'), words('timepoint', 'timepoint parachute_deploy held: …')]) expect(each).toEqual(own);
+  });
+  it('has the next moment that people wait for as its title, and what comes before it as the small line', () => {
+    const plan = [...aPlan.slice(0, 2), create(TimepointRowSchema, { id: 7, name: 'heartbeat_range_control', anchor: 'entry', desiredOffsetS: 20, note: 'Tone only (L)', plannedES: 20 }), ...aPlan.slice(2)];
+    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
+    const waiting = waitingFor(store, aDictionary, plan, Infinity, [{ id: 7, name: '', e_s: 20, fired: false }, { id: 2, name: '', e_s: 255, fired: false }]);
+    expect(waiting).toMatchObject({ title: 'Waiting for parachute deploy', words: 'GNC says when.', beforeName: 'heartbeat range control', before: { words: '20 s after entry', value: '≈ in 2 m 00 s' } });
+    expect(waiting.lines).toEqual([{ words: 'the vehicle declares “parachute”', value: '≈ in 5 m 55 s', holds: false }]);
+  });
+  it('knows by tone what has fired where UHF is silent, and says that it is by tone', () => {
+    const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
+    const store = aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
+    expect(waitingFor(store, aDictionary, plan, Infinity)).toMatchObject({ title: 'Waiting for parachute deploy', byTone: 'entry interface, E−01:50' });
+    expect(waitingFor(aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface', likelihood: 0.3 })]), aDictionary, plan, Infinity).title).toBe('Waiting for coolant vent');
+  });
+  it('in a past view has the commands as they were known then, and asks for nothing to be pressed', () => {
+    const words = (at: string) => [stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', at }), stage({ command: 1n, stage: 'executed', status: 'ok', at })];
+    const past = (cutoff: number) => waitingFor(aStore(words('2012-219T04:59:00.0')), aDictionary, aPlan, cutoff); // 60 s ago: SCLK 840
+    expect([past(830).title, past(830).lines[0]?.value]).toEqual(['“set edl parameters” had not been sent', 'to be sent']);
+    expect([past(850).title, past(850).lines[0]?.value]).toEqual(['“do edl” had not been sent', 'executed']);
   });
   it('ends with the outcome', () => {
     expect(waitingFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 })), aDictionary, aPlan, Infinity).title).toBe('Landed');
-    expect(waitingFor(aStore([], aRun({ state: 'interrupted' })), aDictionary, aPlan, Infinity).title).toBe('Interrupted');
+    const cutOff = (venue: string) => waitingFor(aStore([], aRun({ state: 'interrupted', venue })), aDictionary, aPlan, Infinity);
+    expect([cutOff('rehearsal').title, cutOff('rehearsal').words.includes('the panel Runs continues it'), cutOff('downlink').title, cutOff('downlink').words.includes('cannot be continued')]).toEqual(['Interrupted', true, 'Interrupted', true]);
+  });
+});
+
+describe('the recording’s way down', () => {
+  const down = [...commanded, ...aPlan.map((row) => firing({ timepoint: row.id, name: row.name, firedSclk: 890 }))];
+  const shown = (mode: Parameters<typeof aRun>[0]) => {
+    const root = document.createElement('div');
+    document.body.append(root);
+    const heard: ToWorker[] = [];
+    act(() => {
+      access.value = { state: 'open' };
+      timepoints.value = aPlan;
+      useForTest(aStore(down, aRun({ relayProgress: 0.25, ...mode })), aDictionary, (message) => void heard.push(message));
+      render(<WaitingFor />, root);
+    });
+    return { root, heard, button: root.querySelector<HTMLButtonElement>('[data-testid="stop-downlink"]') };
+  };
+  it('has a bar, and can be stopped by two presses, which ends the run with what has come', () => {
+    const { root, heard, button } = shown({});
+    expect([root.querySelector('progress')?.value, button?.textContent]).toEqual([0.25, 'stop here, with what has come']);
+    act(() => button?.click());
+    expect([heard, button?.textContent]).toEqual([[], '▲ press again: run 1 ends for everyone']);
+    act(() => button?.click());
+    expect(heard).toEqual([{ type: 'control', control: { action: 'stop' } }]);
+  });
+  it('of a real vehicle is nobody’s to stop here', () => {
+    const { root, button } = shown({ venue: 'downlink' });
+    expect([root.querySelector('progress')?.value, button]).toEqual([0.25, null]);
   });
 });

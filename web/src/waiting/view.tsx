@@ -1,13 +1,13 @@
 import { STATUS, held } from '../design/status';
-import { LAYOUT } from '../layout';
 import { openCommandLine } from '../commands/line';
-import { cutoff, dictionary, runNow, store, takesCommands, timepoints } from '../run/session';
+import { mayRehearse } from '../access/model';
+import { EndRun } from '../rehearsal/view';
+import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/session';
 import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
-import { inWords } from '../run/dictionary';
-import { thenNamed, waitingFor } from './model';
+import { predicted } from '../timeline/now';
+import { waitingFor } from './model';
 import './style.css';
-
 
 export function WaitingFor() {
   const run = runNow();
@@ -22,13 +22,12 @@ export function WaitingFor() {
       </section>
     );
   }
-  const waiting = waitingFor(run, words, timepoints.value, cutoff.value);
-  const then = waiting.kind === 'waiting' ? thenNamed(run, timepoints.value, cutoff.value) : undefined;
+  const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
   return (
     <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting" aria-live="polite">
       <ModeMark />
       <h2>{waiting.title}</h2>
-      <p>{waiting.words}{then && <> Then <b>{inWords(then)}</b>.</>}</p>
+      <p>{waiting.words}</p>
       <ul>
         {waiting.lines.map((line) => (
           <li key={line.words} class={held(line.holds)}>
@@ -38,15 +37,15 @@ export function WaitingFor() {
           </li>
         ))}
       </ul>
-      {waiting.kind === 'begin' && takesCommands() && (
-        <button type="button" class="primary" onClick={() => openCommandLine(firstMissing())}>Open the command line <kbd>/</kbd></button>
+      {waiting.before && <p class="before" data-testid="waiting-before">First <b>{waiting.beforeName}</b>, {waiting.before.words}: <output>{waiting.before.value}</output></p>}
+      {waiting.byTone && <p class="by-tone" data-testid="waiting-by-tone">■ by tone, the last that was heard of: {waiting.byTone}</p>}
+      {waiting.coming !== undefined && (
+        <p><progress max={1} value={waiting.coming} aria-label="of the recording" />{' '}
+          {modeNow() === 'rehearsal' && mayRehearse() && <EndRun run={run.id} name="stop-downlink" words="stop here, with what has come" />}</p>
+      )}
+      {waiting.type !== undefined && takesCommands() && (
+        <button type="button" class="primary" onClick={() => openCommandLine(waiting.type)}>Open the command line <kbd>/</kbd></button>
       )}
     </section>
   );
-}
-
-function firstMissing(): string {
-  const run = store.value;
-  const step = LAYOUT.firstSteps.find((each) => run && ![...run.commands.values()].some((row) => row.name === each.command));
-  return step?.words ?? '';
 }

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+
+namespace aeolis::bench {
+
+/// What a benchmark cannot do without: else it says so and ends.
+inline void must(bool done, const char* what) {
+    if (done) return;
+    std::fprintf(stderr, "%s: %s failed\n", program_invocation_short_name, what);
+    std::exit(1);
+}
+
+} // namespace aeolis::bench

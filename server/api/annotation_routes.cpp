@@ -1,0 +1,66 @@
+#include "server/api/annotations.hpp"
+#include "server/api/api.hpp"
+#include "server/api/json.hpp"
+#include "server/api/query_text.hpp"
+#include "server/archive/items.hpp"
+
+// What people add to a run, however old: notes, and what they do about alarms. Answered once it is durable.
+namespace aeolis::server {
+namespace {
+
+/// Answers with the item that something became, once it is durable.
+std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
+    return [respond](const Result<archive::Annotation>& annotation) {
+        respond(annotation ? json_response(archive::to_item(*annotation), 201) : error_response(503, annotation.error()));
+    };
+}
+
+/// What is asked for, by whom: with accounts nobody writes in another's name.
+template <typename Request>
+Result<Request> request_of(const Asked& asked) {
+    Request wanted;
+    if (const auto parsed = from_json(asked.request.body, wanted); !parsed) return parsed.error();
+    if (asked.who.accounts) wanted.set_by(asked.who.user);
+    return wanted;
+}
+
+} // namespace
+
+void Api::annotate(const Asked& asked, Annotating annotating) {
+    const auto question = [this, annotating = std::move(annotating), clock = clock(), respond = asked.respond](
+                              archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
+        const auto newest = reader.newest_ert(id);
+        if (!newest) return error_response(500, newest.error());
+        auto made = annotating(reader, id, clock(id).value_or(*newest));
+        if (auto* refused = std::get_if<HttpResponse>(&made)) return std::move(*refused);
+        if (parts_.pipeline.annotate(id, std::get<archive::Annotation>(std::move(made)), added(respond))) return {};
+        return error_response(503, "too much waits to be stored: try again");
+    };
+    ask(asked, {}, question, Haste::at_once);
+}
+
+void Api::post_note(const Asked& asked) {
+    const auto wanted = request_of<v1::NoteRequest>(asked);
+    if (!wanted) return asked.respond(error_response(400, wanted.error()));
+    annotate(asked, [wanted = *wanted](archive::Reader&, archive::RunId, Ert now) -> Annotated {
+        auto note = note_of(wanted, wanted.by(), now);
+        if (!note) return error_response(422, note.error());
+        return std::move(*note);
+    });
+}
+
+void Api::post_alarm(const Asked& asked) {
+    const auto wanted = request_of<v1::AlarmRequest>(asked);
+    if (!wanted) return asked.respond(error_response(400, wanted.error()));
+    annotate(asked, [this, wanted = *wanted](archive::Reader& reader, archive::RunId id, Ert now) -> Annotated {
+        const auto links = reader.links();
+        if (!links) return error_response(500, links.error());
+        auto action = alarm_action_of(wanted, parts_.dictionary, *links, wanted.by(), now);
+        if (!action) return error_response(422, action.error());
+        const auto act = telemetry::alarm_act(action->action);
+        if (const auto may = reader.may(id, action->alarm, *act, action->at); !may) return error_response(409, may.error());
+        return std::move(*action);
+    });
+}
+
+} // namespace aeolis::server

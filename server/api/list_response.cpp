@@ -1,0 +1,116 @@
+#include "server/api/list_response.hpp"
+
+#include "server/api/api.hpp"
+#include "server/api/csv_text.hpp"
+#include "server/api/json.hpp"
+#include "server/api/json_object.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/reflection.h>
+#include <google/protobuf/text_format.h>
+
+namespace aeolis::server {
+namespace {
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+
+struct Column {
+    std::string name;
+    std::vector<const FieldDescriptor*> path; ///< messages, then what has the value
+};
+
+bool is_message(const FieldDescriptor& field) {
+    return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
+}
+
+void add_columns(const Descriptor& row, const std::vector<std::string_view>& kinds, const Column& above, std::vector<Column>& columns) {
+    for (int i = 0; i < row.field_count(); ++i) {
+        const auto* field = row.field(i);
+        if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end()) continue;
+        Column column{above.name + (above.path.empty() ? "" : ".") + field->name(), above.path};
+        column.path.push_back(field);
+        if (is_message(*field) && !field->is_repeated())
+            add_columns(*field->message_type(), kinds, column, columns);
+        else
+            columns.push_back(std::move(column));
+    }
+}
+
+/// @param index  of a repeated field, else -1
+std::string value_text(const Message& message, const FieldDescriptor& field, int index) {
+    const auto& reflection = *message.GetReflection();
+    std::string text;
+    if (field.cpp_type() != FieldDescriptor::CPPTYPE_STRING) {
+        google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
+        return text;
+    }
+    text = index < 0 ? reflection.GetString(message, &field) : reflection.GetRepeatedString(message, &field, index);
+    if (field.type() != FieldDescriptor::TYPE_BYTES) return text;
+    std::string hexadecimal;
+    for (const char octet : text)
+        fmt::format_to(std::back_inserter(hexadecimal), "{:02x}", static_cast<unsigned char>(octet));
+    return hexadecimal;
+}
+
+std::string repeated_text(const Message& message, const FieldDescriptor& field) {
+    const auto& reflection = *message.GetReflection();
+    if (is_message(field)) return json_array(reflection.GetRepeatedFieldRef<Message>(message, &field), to_json);
+    std::string text;
+    for (int i = 0; i < reflection.FieldSize(message, &field); ++i)
+        text += (i == 0 ? "" : " ") + value_text(message, field, i);
+    return text;
+}
+
+std::string cell_text(const Message& row, const Column& column) {
+    const Message* message = &row;
+    for (std::size_t i = 0; i + 1 < column.path.size(); ++i) {
+        if (!message->GetReflection()->HasField(*message, column.path[i])) return {};
+        message = &message->GetReflection()->GetMessage(*message, column.path[i]);
+    }
+    const auto& field = *column.path.back();
+    if (field.is_repeated()) return repeated_text(*message, field);
+    if (field.has_presence() && !message->GetReflection()->HasField(*message, &field)) return {};
+    return value_text(*message, field, -1);
+}
+
+/// A line of the texts that `text_of` gives of each column.
+template <typename TextOf>
+void append_line(std::string& csv, const std::vector<Column>& columns, TextOf text_of) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+        csv += (i == 0 ? "" : ",") + csv_text(text_of(columns[i]));
+    csv += '\n';
+}
+
+} // namespace
+
+HttpResponse list_response(const QueryText& query, const Message& list, const Rows& rows) {
+    const auto& reflection = *list.GetReflection();
+    const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
+    const auto* next_after = list.GetDescriptor()->FindFieldByName("next_after");
+    const auto format = query.text("format").value_or("json");
+    HttpResponse response;
+    if (next_after != nullptr) response.next_after = std::to_string(reflection.GetUInt64(list, next_after));
+    if (format == "json") {
+        response.body = to_json(list);
+    } else if (format == "jsonl") {
+        response.content_type = "application/x-ndjson";
+        for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
+            response.body += to_json(row) + '\n';
+    } else if (format == "csv") {
+        response.content_type = "text/csv; charset=utf-8";
+        std::vector<Column> columns;
+        add_columns(*field->message_type(), rows.kinds, {}, columns);
+        append_line(response.body, columns, [](const Column& column) { return column.name; });
+        for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
+            append_line(response.body, columns, [&](const Column& column) { return cell_text(row, column); });
+    } else {
+        return error_response(400, fmt::format("format: '{}' is none of json, csv, jsonl", format));
+    }
+    return response;
+}
+
+} // namespace aeolis::server

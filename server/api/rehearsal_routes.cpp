@@ -1,0 +1,55 @@
+#include "server/api/api.hpp"
+#include "server/api/json.hpp"
+
+// The routes of rehearsals: starting one, its pace and its faults. The desk carries out and answers.
+namespace aeolis::server {
+namespace {
+
+// What cannot be done now may be asked again later; what makes no sense may not.
+RehearsalDesk::Began tell_begun(const Respond& respond, bool going_on) {
+    return [respond, refused = going_on ? 409U : 422U](const Result<v1::RunState>& state) {
+        respond(state ? json_response(*state, 201) : error_response(refused, state.error()));
+    };
+}
+
+} // namespace
+
+void sign(const Operator& who, v1::RehearsalControl& control) {
+    if (who.accounts && control.has_note()) control.mutable_note()->set_by(who.user);
+}
+
+void Api::list_rehearsals(const Asked& asked) {
+    v1::RunList list;
+    if (const auto state = current_run(); state.run() != 0) *list.add_runs() = state;
+    asked.respond(json_response(list));
+}
+
+void Api::current_rehearsal(const Asked& asked) {
+    const auto state = current_run();
+    asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up") : json_response(state));
+}
+
+void Api::start_rehearsal(const Asked& asked) {
+    v1::StartRehearsal start;
+    if (const auto parsed = from_json(asked.request.body, start); !parsed)
+        return asked.respond(error_response(400, parsed.error()));
+    if (const auto allowed = may_start(asked.who, parts_.dictionary, start); !allowed)
+        return asked.respond(error_response(403, allowed.error()));
+    parts_.desk.start(start, tell_begun(asked.respond, parts_.desk.going_on()));
+}
+
+void Api::control_rehearsal(const Asked& asked) {
+    v1::RehearsalControl control;
+    if (const auto parsed = from_json(asked.request.body, control); !parsed)
+        return asked.respond(error_response(400, parsed.error()));
+    if (const auto allowed = may_start(asked.who, parts_.dictionary, control.start()); !allowed)
+        return asked.respond(error_response(403, allowed.error()));
+    sign(asked.who, control);
+    const bool going_on = parts_.desk.going_on();
+    const bool starts = control.action_case() == v1::RehearsalControl::kStart;
+    const auto done = parts_.desk.control(control, tell_begun(asked.respond, going_on));
+    if (!done) return asked.respond(error_response(going_on ? 422 : 409, done.error()));
+    if (!starts) asked.respond(json_response(current_run(), 202));
+}
+
+} // namespace aeolis::server

@@ -1,0 +1,102 @@
+#include "server/api/state_at.hpp"
+
+#include "server/archive/items.hpp"
+
+#include <map>
+#include <string>
+
+namespace aeolis::server {
+namespace {
+
+/// The newest of each.
+template <typename Name>
+using Newest = std::map<Name, v1::Item>;
+
+struct Cut {
+    std::optional<Sclk> on_board;
+    std::optional<Ert> on_earth;
+
+    bool leaves_out(double sclk_s) const { return on_board && sclk_s > on_board->seconds; }
+    bool leaves_out(const std::string& ert) const {
+        const auto when = ert_from_day_of_year(ert);
+        return on_earth && when && when->microseconds > on_earth->microseconds;
+    }
+};
+
+struct Stand {
+    Newest<std::string> links, alarms, timepoints;
+    Newest<std::uint64_t> commands;
+    std::optional<v1::Item> tone;
+
+    void take(const v1::Item& item, const Cut& cut) {
+        switch (item.item_case()) {
+        case v1::Item::kLink:
+            if (!cut.leaves_out(item.link().ert())) links.insert_or_assign(item.link().link(), item);
+            return;
+        case v1::Item::kCommandStage:
+            if (!cut.leaves_out(item.command_stage().at())) commands.insert_or_assign(item.command_stage().command(), item);
+            return;
+        case v1::Item::kAlarm:
+            if (!cut.leaves_out(item.alarm().sclk())) alarms.insert_or_assign("channel " + std::to_string(item.alarm().channel()), item);
+            return;
+        case v1::Item::kStaleness:
+            if (!cut.leaves_out(item.staleness().ert())) alarms.insert_or_assign("packet " + item.staleness().packet(), item);
+            return;
+        case v1::Item::kTimepoint: // each fires once; the live report of it comes first
+            if (!cut.leaves_out(item.timepoint().fired_sclk())) timepoints.try_emplace(item.timepoint().name(), item);
+            return;
+        case v1::Item::kTone:
+            if (!cut.leaves_out(item.tone().ert_end())) tone = item;
+            return;
+        default:
+            return;
+        }
+    }
+};
+
+bool stands(const v1::Item& alarm) {
+    return alarm.has_staleness() ? alarm.staleness().stale() : alarm.alarm().severity() != "none";
+}
+
+} // namespace
+
+Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary, std::optional<Sclk> at) {
+    const auto values = reader.latest(run, at);
+    if (!values) return values.error();
+    const auto state = reader.run(run);
+    if (!state) return state.error();
+    const auto cut = at ? Cut{at, archive::heard_at(*state, *at)} : Cut{};
+    Stand stand;
+    for (archive::Sequence after = 0;;) {
+        auto page = reader.items(run, after, archive::items_page_max, {.samples = false, .units = false});
+        if (!page) return page.error();
+        for (const auto& item : page->items)
+            stand.take(item, cut);
+        if (!page->more) break;
+        after = page->complete_through;
+    }
+    v1::StateAt answer;
+    for (const auto& value : *values) {
+        const auto& channel = dictionary.channels[value.channel.value];
+        auto& series = *answer.add_channels();
+        series.set_id(channel.id.value);
+        series.set_name(channel.name);
+        series.set_unit(channel.type.unit);
+        series.set_samples(1);
+        series.add_sclk(value.sclk.seconds);
+        series.add_value(value.value);
+        series.add_source(static_cast<v1::Source>(value.source));
+    }
+    for (auto& [name, item] : stand.links)
+        *answer.add_links() = std::move(item);
+    for (auto& [name, item] : stand.timepoints)
+        *answer.add_timepoints() = std::move(item);
+    for (auto& [name, item] : stand.commands)
+        *answer.add_commands() = std::move(item);
+    for (auto& [name, item] : stand.alarms)
+        if (stands(item)) *answer.add_alarms() = std::move(item);
+    if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);
+    return answer;
+}
+
+} // namespace aeolis::server

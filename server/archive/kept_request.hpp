@@ -1,0 +1,17 @@
+#pragma once
+
+#include "aeolis/v1/run.pb.h"
+
+#include <string>
+#include <variant>
+
+// What was asked of a run, as the table `requests` keeps it: Protobuf text, which whoever opens the file can read.
+namespace aeolis::archive {
+
+std::string kept_text(const google::protobuf::Message& request);
+
+/// None: it is neither of the two. A fault of an archive of before, which stands there bare, is an intervention like all others.
+using KeptRequest = std::variant<std::monostate, v1::CommandRequest, v1::Intervention>;
+KeptRequest kept_request(const std::string& text);
+
+} // namespace aeolis::archive

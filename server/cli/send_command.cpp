@@ -1,0 +1,72 @@
+#include "server/api/json.hpp"
+#include "server/cli/commands.hpp"
+#include "server/cli/shipped_paths.hpp"
+#include "server/net/http_client.hpp"
+
+#include "aeolis/v1/run.pb.h"
+
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+
+namespace aeolis::server {
+namespace {
+
+Result<v1::CommandSequence> sequence_of(const SendOptions& options) {
+    std::ifstream file{options.file, std::ios::binary};
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (!file) return Error{fmt::format("--file {}: it cannot be read", options.file.string())};
+    v1::CommandSequence sequence;
+    if (const auto parsed = from_json(text.str(), sequence); !parsed)
+        return Error{fmt::format("--file {}: {}", options.file.string(), parsed.error().message)};
+    if (options.dry_run) sequence.set_dry_run(true);
+    for (auto& command : *sequence.mutable_commands())
+        if (command.controller().empty()) command.set_controller(options.by);
+    return sequence;
+}
+
+std::string of_one(const v1::CommandReply& reply, bool only_checked) {
+    if (!reply.accepted()) return "refused: " + reply.reason();
+    std::string text = only_checked ? "would be taken" : fmt::format("is command {}", reply.command());
+    text += fmt::format(", {} octets", reply.octets().size() / 2);
+    if (!reply.arrives().empty()) text += fmt::format(", at the vehicle {} SCET", reply.arrives());
+    if (!reply.latest_useful().empty()) text += fmt::format(", to leave by {} ERT to be there before {}", reply.latest_useful(), reply.useful_before());
+    if (reply.needs_approval()) text += ", waits for a second person";
+    return text;
+}
+
+constexpr int exit_not_known = 3;
+
+/// The server may have taken all of the file or nothing.
+int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, const SendOptions& options) {
+    if (sequence.dry_run()) return failed("send: a dry run, nothing was sent: " + why);
+    return failed(fmt::format("send: {}: it is not known whether the commands were taken: look at the history before you send them again "
+                              "(GET /api/v1/runs/{}/commands, or the console's)", why, options.run ? std::to_string(*options.run) : "latest"),
+                  exit_not_known);
+}
+
+} // namespace
+
+int send(const SendOptions& options) {
+    const auto sequence = sequence_of(options);
+    if (!sequence) return failed("send: " + sequence.error().message, 2);
+    const HttpClient client{{.server = options.server, .token = options.token, .authorities = options.authorities}};
+    const auto answer = client.post(fmt::format("/api/v1/runs/{}/sequences", options.run ? std::to_string(*options.run) : "latest"), to_json(*sequence));
+    if (!answer) return failed("send: nothing was sent: " + answer.error().message);
+    if (!answer->lost.empty()) return perhaps_taken(*sequence, answer->lost, options);
+    v1::SequenceReply reply;
+    if (const auto parsed = from_json(answer->body, reply); !parsed) {
+        v1::ErrorReply refusal;
+        if (!from_json(answer->body, refusal)) return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status), options);
+        return failed(fmt::format("send: refused ({}): {}", answer->status, refusal.error()));
+    }
+    const bool only_checked = sequence->dry_run() || !reply.accepted();
+    for (int i = 0; i < reply.commands_size() && i < sequence->commands_size(); ++i)
+        fmt::print("{:>3}  {}  {}\n", i + 1, sequence->commands(i).command(), of_one(reply.commands(i), only_checked));
+    if (!reply.accepted()) return failed(fmt::format("send: nothing was sent: {}", reply.reason()));
+    if (sequence->dry_run()) fmt::print("a dry run: nothing was sent\n");
+    return 0;
+}
+
+} // namespace aeolis::server

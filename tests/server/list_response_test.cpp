@@ -1,0 +1,68 @@
+#include "server/api/list_response.hpp"
+
+#include "aeolis/v1/run.pb.h"
+#include "server/api/json.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace aeolis;
+using server::list_response;
+using server::QueryText;
+
+namespace {
+
+server::HttpResponse as(const char* format, const google::protobuf::Message& list, const server::Rows& rows) {
+    return list_response(*QueryText::parse(std::string{"format="} + format, {"format"}), list, rows);
+}
+
+v1::EventList two_events() {
+    v1::EventList list;
+    auto& first = *list.add_events();
+    first.set_seq(7);
+    first.mutable_event()->set_name("TOUCHDOWN");
+    first.mutable_event()->set_text("a \"quoted\", text\nof two lines");
+    first.mutable_event()->set_sclk(397000845.015625);
+    first.mutable_event()->set_source(v1::SOURCE_RECORDED);
+    list.add_events()->set_seq(UINT64_C(9007199254740993)); // one that no double holds
+    list.set_next_after(9);
+    return list;
+}
+
+} // namespace
+
+TEST_CASE("a list as CSV has a column a field by its path and a row a line, quoted by RFC 4180; what a row does not have is empty", "[http][export]") {
+    const auto csv = as("csv", two_events(), {"events", {"event"}});
+    CHECK(csv.content_type == "text/csv; charset=utf-8");
+    CHECK(csv.next_after == "9");
+    CHECK(csv.body == "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
+                      "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,SOURCE_RECORDED,false\n"
+                      "9007199254740993,,,,,,,,\n");
+    CHECK(as("csv", v1::EventList{}, {"events", {"event"}}).body.starts_with("seq,event.id,")); // a header also of no rows
+}
+
+TEST_CASE("a list as JSON lines has its rows as they are in the list, one a line", "[http][export]") {
+    const auto list = two_events();
+    const auto lines = as("jsonl", list, {"events", {"event"}});
+    CHECK(lines.content_type == "application/x-ndjson");
+    CHECK(lines.next_after == "9");
+    CHECK(lines.body == server::to_json(list.events(0)) + '\n' + server::to_json(list.events(1)) + '\n');
+    CHECK(as("json", list, {"events", {"event"}}).body == server::to_json(list));
+    CHECK(as("xml", list, {"events", {"event"}}).status == 400);
+}
+
+TEST_CASE("as CSV a repeated field is one cell: numbers and texts with blanks between, messages as JSON, octets hexadecimal", "[http][export]") {
+    v1::ToneList tones;
+    auto& tone = *tones.add_tones()->mutable_tone();
+    tone.set_spectrum(std::string{"\x00\xff", 2});
+    tone.add_best()->set_tone(29);
+    const auto csv = as("csv", tones, {"tones", {"tone"}}).body;
+    CHECK_THAT(csv, Catch::Contains("tone.tone,") && Catch::Contains(",00ff\n"));
+    CHECK_THAT(csv, Catch::Contains(R"("[{""tone"":29,""likelihood"":0}]")"));
+
+    v1::ChannelSeriesList series;
+    series.add_channels()->add_sclk(1.5);
+    series.mutable_channels(0)->add_sclk(2.0);
+    series.mutable_channels(0)->add_source(v1::SOURCE_REALTIME);
+    const auto columns = as("csv", series, {"channels"});
+    CHECK_THAT(columns.body, Catch::Contains(",1.5 2,,SOURCE_REALTIME,"));
+    CHECK(columns.next_after.empty()); // no pages
+}

@@ -1,0 +1,17 @@
+// Another run, or the past, is looked at: what was armed is taken back, for a name typed to one vehicle must never send to another.
+import { effect, untracked } from '@preact/signals';
+import { pastRange, store } from '../run/session';
+import { disarmFile } from './file';
+import { disarm } from './line';
+
+let run = store.peek()?.id;
+
+effect(() => {
+  const now = store.value?.id;
+  void pastRange.value;
+  untracked(() => {
+    disarm(now !== run);
+    run = now;
+    disarmFile();
+  });
+});

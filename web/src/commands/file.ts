@@ -1,0 +1,111 @@
+// The state of a command file: read, tried out while it is looked at, armed where it must be, sent once.
+import { computed, signal } from '@preact/signals';
+import { learnAccess } from '../access/model';
+import { Refused, isOpen, wordsFor } from '../run/api';
+import { change, dictionary, store } from '../run/session';
+import type { RunStore } from '../run/store';
+import { confirms, hazardousIn, readFile, sequenceOf } from './file_model';
+import type { SequenceAnswer } from './file_model';
+import { uplink } from './line';
+
+export const text = signal('');
+export const stage = signal<'review' | 'armed' | 'sending'>('review');
+export const typedNames = signal('');
+export const outcome = signal<{ good: boolean; text: string } | undefined>(undefined);
+
+export const file = computed(() => (text.value.trim() === '' ? undefined : readFile(text.value)));
+export const commands = computed(() => (file.value && 'commands' in file.value ? file.value.commands : []));
+export const hazardous = computed(() => (dictionary.value ? hazardousIn(commands.value, dictionary.value) : []));
+
+/** The ground's answer to exactly what is shown; `problem`: why there is none. */
+export const tried = signal<{ of: string; answer?: SequenceAnswer; problem?: string } | undefined>(undefined);
+const looks = signal(0); // counts beginnings to look at it: an answer is to one of them
+const key = () => JSON.stringify([looks.value, store.value?.id, uplink.value.controller, commands.value]);
+export const triedNow = computed(() => (tried.value?.of === key() ? tried.value : undefined));
+
+/** Nothing is read while one is sent: the answer is to what stands there. */
+export function read(typed: string): void {
+  if (stage.value === 'sending') return;
+  text.value = typed;
+  stage.value = 'review';
+  typedNames.value = '';
+  outcome.value = undefined;
+}
+
+const ANSWER_WITHIN_MS = 60_000; // ours: up to a hundred commands are encoded and checked one by one, after whatever else the gateway has to do
+
+const isAnswer = (answer: unknown): answer is SequenceAnswer => Array.isArray((answer as SequenceAnswer | null | undefined)?.commands);
+
+/** An answer that says no is an answer, too. */
+async function ask(run: RunStore, dryRun: boolean): Promise<SequenceAnswer> {
+  try {
+    const answer = await change<unknown>(`/runs/${run.id}/sequences`, sequenceOf(commands.value, hazardous.value, uplink.value.controller.trim(), dryRun), ANSWER_WITHIN_MS);
+    if (isAnswer(answer)) return answer;
+    throw new Refused(0, 'the answer cannot be read: whether it was taken is not known');
+  } catch (error) {
+    if (error instanceof Refused && error.status === 409 && isAnswer(error.answer)) return error.answer;
+    throw error;
+  }
+}
+
+let trying = false;
+
+/** One question at a time: while one is under way the next round asks. */
+export async function tryFile(): Promise<void> {
+  const run = store.value;
+  if (trying || !run || commands.value.length === 0 || stage.value === 'sending') return;
+  const of = key();
+  let found: Omit<NonNullable<typeof tried.value>, 'of'>;
+  trying = true;
+  try {
+    found = { answer: await ask(run, true) };
+  } catch (error) {
+    found = { problem: error instanceof Refused && error.status > 0 ? wordsFor(error) : 'the ground does not answer the dry run' };
+  } finally {
+    trying = false;
+  }
+  if (of === key()) tried.value = { of, ...found };
+}
+
+/** One step on: armed where something hazardous is in it, then sent. Only what the ground has said yes to. */
+export async function forwardFile(): Promise<void> {
+  const run = store.value;
+  if (stage.value === 'sending' || !run || !triedNow.value?.answer?.accepted) return;
+  if (hazardous.value.length > 0 && stage.value === 'review') {
+    stage.value = 'armed';
+    return;
+  }
+  if (stage.value === 'armed' && !confirms(typedNames.value, hazardous.value)) {
+    outcome.value = { good: false, text: `type ${hazardous.value.join(' ')} to confirm; nothing was sent` };
+    return;
+  }
+  stage.value = 'sending';
+  try {
+    const answer = await ask(run, false);
+    const numbers = answer.commands.map((each) => each.command);
+    outcome.value = answer.accepted
+      ? { good: true, text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}` }
+      : { good: false, text: `refused: ${answer.reason}; nothing was sent` };
+    if (answer.accepted) text.value = '';
+    else void learnAccess().catch(() => undefined); // as of one command: rights may have been taken away in the middle
+  } catch (error) {
+    const said = wordsFor(error);
+    const open = isOpen(error);
+    outcome.value = { good: false, text: !open ? `refused: ${said}; nothing was sent` : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say` };
+    if (open) text.value = ''; // the next Enter must not be a second one
+    else void learnAccess().catch(() => undefined);
+  }
+  stage.value = 'review';
+  typedNames.value = '';
+}
+
+export function backFile(): void {
+  if (stage.value === 'armed') stage.value = 'review';
+  typedNames.value = '';
+}
+
+/** As of one command: what the ground said was of one run as it stood then. */
+export function disarmFile(): void {
+  looks.value += 1;
+  backFile();
+}

@@ -1,0 +1,45 @@
+// @vitest-environment happy-dom
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
+import { expect, it, vi } from 'vitest';
+import { backToLive, lookAtPast, useForTest } from '../run/session';
+import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
+import { Plots } from './view';
+
+const { looks, sizes } = vi.hoisted(() => ({ looks: [] as (() => (() => void) | undefined)[], sizes: [] as number[] }));
+vi.mock('../draw/loop', () => ({ onDraw: (look: (typeof looks)[number]) => {
+  looks.push(look);
+  return () => undefined;
+} }));
+vi.mock('uplot', () => ({ default: class {
+  scales = {};
+  width = 300;
+  height = 300;
+  batch(change: () => void) {
+    change();
+  }
+  setData([x]: number[][]) {
+    sizes.push(x?.length ?? 0);
+  }
+  setScale() {}
+  destroy() {}
+} }));
+
+it('a plot of the past is drawn again when only what it knows of it changes, with the recording or as it was heard', () => {
+  const heard = (sclk: number, ert: string) => [unit({ name: 'Navigation', sclk, ert }), samples(sclk, { 3: sclk })];
+  // SCLK 900 is heard at 05:00:00; 912 came from an orbiter five minutes later.
+  useForTest(aStore([...heard(911, '2012-219T05:00:11.0'), ...heard(912, '2012-219T05:05:12.0'), ...heard(913, '2012-219T05:00:13.0')]), aDictionary);
+  for (const side of ['clientWidth', 'clientHeight']) vi.spyOn(HTMLElement.prototype, side as 'clientWidth', 'get').mockReturnValue(300);
+  const root = document.createElement('div');
+  act(() => render(<Plots />, root));
+  const drawn = (recorded: boolean) => {
+    lookAtPast({ from: -95, to: -80 }, recorded);
+    sizes.length = 0;
+    looks[0]?.()?.();
+    return [...sizes];
+  };
+  expect([drawn(true), drawn(true), drawn(false), drawn(true)]).toEqual([[3], [], [2], [3]]);
+  act(() => render(null, root));
+  backToLive();
+  vi.restoreAllMocks();
+});

@@ -1,0 +1,74 @@
+// What an instructor did to a rehearsal: what was broken, and what was written about it. Those who fly it are told when it is over.
+import { signal } from '@preact/signals';
+import { mayRehearse } from '../access/model';
+import { uplink } from '../commands/line';
+import { OCTETS } from '../notes/model';
+import { Refused, call, wordsFor } from '../run/api';
+import { change, store } from '../run/session';
+import type { RunStore } from '../run/store';
+
+/** As the API words it. */
+export interface Fault {
+  device_fault?: { device: string; unit: string; kind: string; duration_s: number };
+  system_fault?: { duration_s: number };
+  station_outage?: { duration_s: number };
+  computer_reset?: boolean;
+}
+export interface Intervention {
+  e_s: number; // at the vehicle
+  fault?: Fault;
+  note?: { text: string; by?: string };
+}
+
+export const interventions = signal<{ run: number; all: Intervention[] } | undefined>(undefined);
+export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
+export const busy = signal(false);
+
+export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] => (interventions.value?.run === run.id ? interventions.value.all : []);
+/** While it goes on only who may rehearse; of one that is over, or was cut off, everybody. */
+export const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
+
+/** Throws what the server says: without them there is no score. */
+export async function askInterventions(run: RunStore): Promise<readonly Intervention[]> {
+  const list = await call<{ interventions?: Intervention[] }>('GET', `/runs/${run.id}/interventions`);
+  if (store.value === run) interventions.value = { run: run.id, all: list.interventions ?? [] };
+  return list.interventions ?? [];
+}
+
+export async function refreshInterventions(): Promise<void> {
+  const run = store.value;
+  if (!run || !mayRead(run)) return;
+  try {
+    await askInterventions(run);
+  } catch (error) {
+    if (!(error instanceof Refused)) throw error; // what was known stays; the next round asks again
+  }
+}
+
+/** Asks for one thing once; true when it was taken. */
+async function intervene(what: object, done: string): Promise<boolean> {
+  if (busy.value) return false;
+  busy.value = true;
+  message.value = undefined;
+  try {
+    await change('/rehearsals/current', what);
+    message.value = { good: true, text: done };
+    await refreshInterventions();
+    return true;
+  } catch (error) {
+    message.value = { good: false, text: wordsFor(error) };
+    return false;
+  } finally {
+    busy.value = false;
+  }
+}
+
+export const inject = (fault: Fault): Promise<boolean> => intervene({ inject: fault }, 'injected: it begins with the next cycle');
+
+export function write(text: string): Promise<boolean> {
+  const octets = new TextEncoder().encode(text.trim()).length;
+  const bad = octets === 0 ? 'there is nothing to write down' : octets > OCTETS ? `it has ${octets} octets; a note has at most ${OCTETS}` : '';
+  if (!bad) return intervene({ note: { text: text.trim(), by: uplink.value.controller.trim() } }, 'kept for the review');
+  message.value = { good: false, text: bad };
+  return Promise.resolve(false);
+}

@@ -1,0 +1,134 @@
+// The review of a rehearsal that is over: facts first, then what the instructor did, then a score whose rule and terms stand beside it.
+import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import { outcomeWords } from '../clocks/model';
+import { isHazardous } from '../commands/model';
+import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
+import { LAYOUT } from '../layout';
+import { isReal } from '../mode/model';
+import { call, wordsFor } from '../run/api';
+import { ask, dictionary, pastRange, store, tick } from '../run/session';
+import type { RunStore } from '../run/store';
+import { fromEntry } from '../run/time';
+import { InterventionList } from './desk';
+import { askInterventions, ofRun } from './instructor';
+import { RULE, miss_m, score, scoreText, termWords } from './score';
+import type { AlarmChange, Landed, Score } from './score';
+
+const ALARM_CHANGES = 200_000; // ours, some 40 MB: no landing comes near it, and of a part no score is made
+
+const open = signal(false);
+const judged = signal<{ run: number; through: number; score: Score } | undefined>(undefined);
+const problem = signal('');
+const copied = signal<'done' | 'by hand' | undefined>(undefined);
+
+async function alarmChanges(run: number): Promise<AlarmChange[]> {
+  const all: AlarmChange[] = [];
+  for (let after = 0; ;) {
+    const list = await call<{ changes?: AlarmChange[]; next_after?: string }>('GET', `/runs/${run}/alarms${after > 0 ? `?after=${after}` : ''}`);
+    for (const change of list.changes ?? []) all.push(change);
+    const next = Number(list.next_after ?? 0);
+    if (next === 0) return all;
+    if (next <= after) throw new Error(`the server’s list of alarms does not go on after ${after}: no review is made of a part`);
+    if (all.length >= ALARM_CHANGES) throw new Error(`run ${run} has more than ${ALARM_CHANGES} changes of alarms: no review is made of a part`);
+    after = next;
+  }
+}
+
+async function landedOf(run: RunStore): Promise<Landed | undefined> {
+  const event = run.events.find((row) => row.fact.name === LAYOUT.landing.event)?.fact;
+  if (!event) return undefined;
+  const landed: Landed = { e_s: event.sclk - run.entrySclk, words: event.text, miss_m: undefined };
+  const { latitude_deg, longitude_deg, radius_m } = LAYOUT.landing.target;
+  const [latitude, longitude, radius] = [latitude_deg, longitude_deg, radius_m].map((name) => run.run.solution.find((each) => each.name === name)?.value);
+  if (latitude === undefined || longitude === undefined || radius === undefined) return landed;
+  const names = LAYOUT.landing.position.filter((name) => dictionary.value?.pick([name]));
+  if (names.length < LAYOUT.landing.position.length) return landed;
+  const { channels } = await call<{ channels: { value: number[] }[] }>('GET', `/runs/${run.id}/channels?names=${names.join(',')}&from=${event.sclk - 1}&to=${event.sclk}`);
+  const position = channels.map((channel) => channel.value.at(-1)).filter((value) => value !== undefined);
+  return position.length < names.length ? landed : { ...landed, miss_m: miss_m(position, latitude, longitude, radius) };
+}
+
+async function judge(run: RunStore): Promise<void> {
+  const words = dictionary.value;
+  const through = run.completeThrough;
+  try {
+    const [report, alarms, landed, interventions] = await Promise.all([ask<AsFlownReport>('report', `/runs/${run.id}/report`), alarmChanges(run.id), landedOf(run), askInterventions(run)]);
+    if (store.value !== run) return;
+    judged.value = { run: run.id, through, score: score({
+      outcome: outcomeWords(run.run.outcome, run.run.state), landed, report, alarms, interventions,
+      e_sOf: (ert) => run.sclkSeenAt(ert) - run.entrySclk,
+      channelName: (id) => words?.channel(id)?.name ?? `channel ${id}`,
+      isHazardous: (name) => {
+        const command = words?.command(name);
+        return command !== undefined && isHazardous(command);
+      },
+    }) };
+    problem.value = '';
+  } catch (error) {
+    problem.value = wordsFor(error);
+  }
+}
+
+function Copy({ text }: { text: string }) {
+  const copy = () => navigator.clipboard.writeText(text).then(() => (copied.value = 'done'));
+  return (
+    <>
+      <button type="button" data-testid="review-copy" onClick={() => void (navigator.clipboard ? copy() : Promise.reject(new Error())).catch(() => (copied.value = 'by hand'))}>copy as text</button>
+      <span role="status">{copied.value === 'done' ? ' ✓ copied' : copied.value === 'by hand' ? ' the browser lets no page copy here: take it from the field' : ''}</span>
+      {copied.value === 'by hand' && <textarea readOnly rows={6} aria-label="the review as text" data-testid="review-text" value={text} onFocus={(event) => event.currentTarget.select()} />}
+    </>
+  );
+}
+
+function Judged({ run, of }: { run: RunStore; of: Score }) {
+  const done = ofRun(run);
+  const notes = done.filter((each) => each.note);
+  const title = `Aeolis, review of run ${run.id}: ${run.run.scenario}, seed ${run.run.seed}, ${run.run.started}`;
+  return (
+    <>
+      <table data-testid="review-facts" aria-label="facts">
+        <tbody>{of.facts.map((fact, i) => <tr key={i} data-of={fact.of}>{fact.of === of.facts[i - 1]?.of ? <td /> : <th scope="row">{fact.of}</th>}<td class="number">{fact.e_s === undefined ? '' : fromEntry(fact.e_s, { tenths: true })}</td><td class="wraps">{fact.text}</td></tr>)}</tbody>
+      </table>
+      {notes.length > 0 && <><h3>The instructor wrote</h3><InterventionList of={notes} /></>}
+      <h3>Score: <output data-testid="review-score">{of.sum.toFixed(0)} of 100</output></h3>
+      <table data-testid="review-terms" aria-label="terms of the score">
+        <tbody>{of.terms.map((term) => <tr key={term.name}><th scope="row">{term.name}</th><td class="number">{termWords(term)}</td><td class="wraps">{term.why}</td></tr>)}</tbody>
+      </table>
+      <p class="status-dim">{RULE}</p>
+      <p><Copy text={scoreText(title, of, done)} /></p>
+    </>
+  );
+}
+
+function Opened({ run }: { run: RunStore }) {
+  void tick.value; // a store changes without becoming another
+  const whole = run.completeThrough >= Number(run.run.lastSeq); // before, what the page itself knows of the run has holes
+  useEffect(() => {
+    copied.value = undefined;
+    problem.value = '';
+    if (!whole) return;
+    if (judged.value?.run !== run.id || judged.value.through !== run.completeThrough) void judge(run);
+  }, [run.id, run.completeThrough, whole]);
+  const of = whole && judged.value?.run === run.id ? judged.value.score : undefined;
+  if (!of) return <p role="status">{problem.value ? `✖ ${problem.value}` : whole ? 'asking the archive…' : 'the run is still coming from the archive…'}</p>;
+  return (
+    <>
+      {pastRange.value && <p class="not-past">▲ The review is of the whole run, not of the past that the other panels show.</p>}
+      <Judged run={run} of={of} />
+    </>
+  );
+}
+
+/** Of a rehearsal that is over. */
+export function Review() {
+  void tick.value;
+  const run = store.value; // all of it, also where a past is shown as it was heard
+  if (run?.run.state !== 'finished' || isReal(run.run)) return null;
+  return (
+    <details class="rehearsal-review" data-testid="review" open={open.value} onToggle={(event) => (open.value = event.currentTarget.open)}>
+      <summary>Review of run {run.id}: what happened when, what the instructor did, a score</summary>
+      {open.value && <Opened run={run} />}
+    </details>
+  );
+}

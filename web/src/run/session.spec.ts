@@ -1,0 +1,116 @@
+// @vitest-environment happy-dom
+import { create } from '@bufbuild/protobuf';
+import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { choose, forward, line, message, step, tryOut, type } from '../commands/line';
+import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
+import type { RunState } from '../gen/aeolis/v1/run_pb';
+import type { CommandIntent, ToWorker } from '../stream/messages';
+import { aDictionary, aRun, aStore } from '../testing/fixtures';
+import { change, control, dismissNotice, notices, onMessage, sendCommand, store, useForTest } from './session';
+
+const soon = () => vi.advanceTimersByTimeAsync(0);
+
+describe('a server that does not answer', () => {
+  let sent: { request: number; intent: CommandIntent }[];
+  const answer = (request: number, fields: { accepted: boolean; command?: bigint; reason?: string; dryRun?: boolean }) =>
+    onMessage({ type: 'reply', reply: create(CommandReplySchema, { request: BigInt(request), ...fields }) });
+  beforeEach(() => {
+    vi.useFakeTimers();
+    sent = [];
+    dismissNotice();
+    useForTest(aStore(), aDictionary, (said: ToWorker) => said.type === 'command' && void sent.push(said));
+    onMessage({ type: 'stream', state: 'live', attempt: 0, gaps: 0, serverVersion: '' });
+  });
+  afterEach(() => void vi.useRealTimers());
+  /** Reviewed, with the ground's yes, and sent. */
+  const send = async () => {
+    type('no_op');
+    choose('NO_OP');
+    void tryOut();
+    answer(sent.at(-1)!.request, { accepted: true, dryRun: true });
+    await soon();
+    void forward();
+    await soon();
+    const last = sent.at(-1)!;
+    expect([last.intent.dryRun, step.value]).toEqual([undefined, 'sending']);
+    return last.request;
+  };
+  it('leaves a command not known, sends nothing again whatever is pressed, and is put right by an answer that comes late', async () => {
+    for (const [late, words] of [
+      [{ accepted: true, command: 7n }, 'NO_OP: the answer has come late. It was taken as #7.'],
+      [{ accepted: false, reason: 'no pass' }, 'NO_OP: the answer has come late. It was refused: no pass; nothing was sent.'],
+    ] as const) {
+      const request = await send();
+      const before = sent.length;
+      await vi.advanceTimersByTimeAsync(29_900);
+      expect(step.value).toBe('sending');
+      await vi.advanceTimersByTimeAsync(200);
+      expect([message.value?.good, message.value?.text]).toEqual([false, 'NO_OP: no answer came in 30 s: whether it was taken is not known; the history below will say']);
+      void forward();
+      void forward();
+      await soon();
+      expect([line.value, sent.length]).toEqual(['', before]);
+      answer(request, late);
+      expect(notices.value.at(-1)?.text).toBe(words);
+      answer(request, late);
+      expect(notices.value.filter((notice) => notice.text === words)).toHaveLength(1);
+    }
+  });
+  it('to what is only tried out is not told of later', async () => {
+    choose('NO_OP');
+    void tryOut();
+    await vi.advanceTimersByTimeAsync(31_000);
+    answer(sent.at(-1)!.request, { accepted: true, dryRun: true });
+    expect(notices.value).toEqual([]);
+  });
+});
+
+describe('a run', () => {
+  const one = { started: '2026-01-01T10:00:00Z', seed: 1n };
+  const state = (now: 'live' | 'catching_up' | 'lost') => onMessage({ type: 'stream', state: now, attempt: 0, gaps: 0, serverVersion: '' });
+  let heard: ToWorker[];
+  beforeEach(() => {
+    vi.spyOn(location, 'reload').mockImplementation(() => undefined);
+    vi.stubGlobal('fetch', vi.fn(async () => new Response('{}')));
+    sessionStorage.clear();
+    dismissNotice();
+    heard = [];
+    useForTest(aStore([], aRun(one)), aDictionary, (message) => void (message.type !== 'ask' && heard.push(message)));
+  });
+  afterEach(() => {
+    vi.restoreAllMocks();
+    vi.unstubAllGlobals();
+  });
+  const posted = () => vi.mocked(fetch).mock.calls.filter(([, how]) => how?.method !== 'GET');
+  const all = () => Promise.allSettled([sendCommand({ command: 'NO_OP' }), change('/runs/1/notes', { text: 'x' })].map((sent) => sent.catch((error: Error) => Promise.reject(error.message))));
+  it('is another one though it has the number of the one that is shown, if it was started at another time or with another seed', async () => {
+    const [shown, told] = [store.value, vi.mocked(location.reload)];
+    onMessage({ type: 'run', run: aRun({ ...one, pace: 7 }), fresh: false });
+    expect([told.mock.calls.length, store.value?.run.pace]).toEqual([0, 7]);
+    const others: Partial<RunState>[] = [{ started: '2026-01-02T10:00:00Z' }, { seed: 2n }];
+    for (const [i, other] of others.entries()) {
+      state('live');
+      onMessage({ type: 'run', run: aRun({ ...one, ...other, scenario: 'tones_only', $typeName: undefined } as never), fresh: false });
+      expect([told.mock.calls.length, store.value === shown, shown?.run.scenario]).toEqual([i + 1, true, 'nominal']);
+      expect(sessionStorage.getItem('aeolis-left')).toBe('The server has another archive now: run 1, nominal, which was shown here, is not in it.');
+      control({ action: 'stop' });
+      await all();
+      expect([heard, posted()]).toEqual([[], []]);
+    }
+    state('live');
+    onMessage({ type: 'other_archive' });
+    expect(told).toHaveBeenCalledTimes(3);
+  });
+  it('is sent nothing while the server has not said that it still has it: no command, no pace, no end, no note', async () => {
+    for (const [now, words] of [['catching_up', 'catching up: nothing was sent'], ['lost', 'not connected: nothing was sent']] as const) {
+      state(now);
+      control({ action: 'pace', pace: 100 });
+      control({ action: 'stop' });
+      expect(await all()).toEqual([{ status: 'rejected', reason: words }, { status: 'rejected', reason: words }]);
+      expect([heard, posted(), notices.value.at(-1)?.text]).toEqual([[], [], words]);
+    }
+    state('live');
+    control({ action: 'stop' });
+    expect(heard).toHaveLength(1);
+  });
+});
