@@ -208,6 +208,14 @@ v1::Item to_item(const NoteRecord& record) {
     return item;
 }
 
+std::vector<std::uint8_t> octets_of_hex(std::string_view hex) {
+    std::vector<std::uint8_t> octets;
+    const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
+    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+        octets.push_back(static_cast<std::uint8_t>(digit(hex[i]) << 4U | digit(hex[i + 1])));
+    return octets;
+}
+
 v1::ClockReply to_reply(const ClockCorrelation& clock) {
     v1::ClockReply reply;
     reply.set_version(clock.version);

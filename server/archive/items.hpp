@@ -5,7 +5,10 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 
+#include <cstdint>
 #include <span>
+#include <string_view>
+#include <vector>
 
 // Records as the schema's items: the same function when an item is published and when it is read back, so that a
 // client cannot tell the two apart.
@@ -26,6 +29,9 @@ v1::Item to_item(const AlarmRecord& record);
 v1::Item to_item(const StalenessRecord& record, const dictionary::Dictionary* dictionary);
 v1::Item to_item(const AlarmActionRecord& record);
 v1::Item to_item(const NoteRecord& record);
+
+/// Of the octets of a command as its history spells them: pairs of lower-case hexadecimal digits.
+std::vector<std::uint8_t> octets_of_hex(std::string_view hex);
 
 v1::ClockReply to_reply(const ClockCorrelation& clock);
 ClockCorrelation correlation_of(const v1::RunState& run);

@@ -41,14 +41,6 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
     });
 }
 
-std::vector<std::uint8_t> octets_of_hex(std::string_view hex) {
-    std::vector<std::uint8_t> octets;
-    const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
-    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-        octets.push_back(static_cast<std::uint8_t>(digit(hex[i]) << 4U | digit(hex[i + 1])));
-    return octets;
-}
-
 /// The prediction of entry interface: firings that UHF had told of by then, and changes of offsets that were executed.
 void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline, const v1::CommandList& commands,
                      const v1::RunState& run, v1::AsFlownReport& report) {

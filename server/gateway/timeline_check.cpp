@@ -3,6 +3,7 @@
 #include "commands/encoder.hpp"
 #include "commands/timeline_change.hpp"
 #include "dictionaries/analysis/timeline_analysis.hpp"
+#include "server/archive/items.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -15,14 +16,6 @@ bool failed(const v1::CommandHistory& command) {
     return std::ranges::any_of(command.stages(), [](const v1::Item& item) {
         return item.command_stage().status() == "failed" && item.command_stage().stage() != "verified";
     });
-}
-
-std::vector<std::uint8_t> octets_of(std::string_view hex) {
-    std::vector<std::uint8_t> octets;
-    const auto digit = [](char c) { return static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10); };
-    for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-        octets.push_back(static_cast<std::uint8_t>(digit(hex[i]) << 4U | digit(hex[i + 1])));
-    return octets;
 }
 
 std::string text_of(const dictionary::Dictionary& dictionary, const dictionary::ConstraintRow& row) {
@@ -56,7 +49,7 @@ struct ChangedTimeline {
     /// Nothing where it is of another dictionary.
     void change(const v1::CommandHistory& command) {
         const auto* const known = dictionary.command(command.name());
-        const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, octets_of(command.octets()));
+        const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, archive::octets_of_hex(command.octets()));
         if (arguments) change(command.name(), *arguments);
     }
 };
