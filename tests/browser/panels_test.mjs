@@ -701,3 +701,18 @@ test('the script is at most 150 kB, compressed', async () => {
     assert.ok(scripts.length >= 2 && sum > 1, 'no built scripts');
     assert.ok(sum <= SCRIPT_KB, `${sum.toFixed(1)} kB`);
 });
+
+test('the columns of the channels keep their places whatever stands in them', { timeout: 30_000 }, async () => {
+    const { page, problems } = await open(server.address, { width: 1000, height: 640 });
+    await page.goto(`${server.address}/?panel=channels`);
+    await waitFor(() => page.getByTestId('channel-altitude_m').innerText(), /\d/);
+    const places = () => page.locator('[data-testid=channel-table] th').evaluateAll((heads) => heads.map((head) => head.getBoundingClientRect().left));
+    const before = await places();
+    for (const filter of ['edl_phase', 'altitude_m', 'nothing is called so']) {
+        await page.getByTestId('channel-filter').fill(filter);
+        await waitFor(() => page.locator('[data-testid=channel-table] tbody tr').count(), (rows) => rows < 10);
+        assert.deepEqual(await places(), before, filter);
+    }
+    assert.deepEqual(problems, []);
+    await page.close();
+});

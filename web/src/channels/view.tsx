@@ -17,10 +17,10 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
   whenDue(place);
   const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, lost.value);
   return (
-    <tr class={`look-${row.look}`} title={row.text} data-testid={`channel-${row.name}`}>
+    <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`}>
       <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>
-      <td><span class="alias">{row.alias}</span> {row.name}{row.whose && <span class="alias">, {row.whose}</span>}</td>
-      <td class="number value">{row.value}</td>
+      <td title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}><span class="alias">{row.alias}</span> {row.name}{row.whose && <span class="alias">, {row.whose}</span>}</td>
+      <td class="number value" title={row.value}>{row.value}</td>
       <td>{row.unit}</td>
       <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ' ▣' : ''}</td>
       <td class="limits" title={row.allLimits}>{row.limits}</td>
@@ -42,7 +42,7 @@ export function Channels() {
           data-testid="channel-filter" onInput={(event) => (filter.value = event.currentTarget.value)} />
         <span>{channels.length} of {dictionary.value.channels.length} shown{total > channels.length ? `, ${total} match` : ''}</span>
       </div>
-      <div class="table-scroll" ref={box} tabIndex={0} aria-label="channels">
+      <div class="table-scroll channels-scroll" ref={box} tabIndex={0} aria-label="channels">
         <table class="channels" data-testid="channel-table">
           <thead><tr><th>state</th><th>channel</th><th class="number">value</th><th>unit</th><th class="number">age</th><th>limits</th></tr></thead>
           <tbody ref={rows}>{channels.map((channel, place) => <Row key={channel.id} channel={channel} place={place} />)}</tbody>
