@@ -24,7 +24,7 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
         </button>
       ))}</td>
       <td class="alarm-state">{alarm.state}{alarm.shelved_until && ` until ${alarm.shelved_until}`}{alarm.by && `, ${alarm.by}`}{alarm.note && <small> {alarm.note}</small>}</td>
-      <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.kind === 'link' ? (alarm.severity === 'none' ? 'explained' : 'lost') : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
+      <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.kind === 'link' ? (alarm.severity === 'none' ? 'over' : 'lost') : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
       <td>{alarm.limit || alarm.reason}</td>
       <td class="number">{alarm.sclk === undefined ? '' : fromEntry(alarm.sclk - entry_sclk)}</td>
     </tr>

@@ -31,7 +31,7 @@ export function clocksOf(store: RunStore, past: number | undefined): { entry: st
   return { entry: fromEntry(store.entryKnown ? e_s : NaN, { hours: true }), others };
 }
 
-/** Until when a command must leave Earth to come before the next timepoint of the plan that one can still reach; undefined `next`: none can. */
+/** Until when a command must leave Earth, by the clock on top, to come before the next timepoint of the plan that one can still reach; undefined `next`: none can. */
 export interface LatestSend {
   next: { name: string; at: string; left_s: number } | undefined;
 }
@@ -40,8 +40,10 @@ export interface LatestSend {
 export function latestSend(store: RunStore): LatestSend | undefined {
   const { clocks } = store;
   if (!clocks?.ert) return undefined;
-  const left_s = secondsOfDayOfYear(clocks.latestUseful) - secondsOfDayOfYear(clocks.ert);
-  return { next: clocks.usefulBefore === '' ? undefined : { name: clocks.usefulBefore, at: fromEntry(clocks.eS + left_s), left_s } };
+  const latest_s = secondsOfDayOfYear(clocks.latestUseful);
+  return { next: clocks.usefulBefore === '' ? undefined : {
+    name: clocks.usefulBefore, at: fromEntry(latest_s - store.ertOf(store.entrySclk)), left_s: latest_s - secondsOfDayOfYear(clocks.ert),
+  } };
 }
 
 export interface LinkLine {
@@ -78,11 +80,11 @@ function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] 
   const names = [...store.links.keys()];
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
   all.forEach((line, i) => (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line));
-  const up = others.filter((line) => line.look === 'up');
-  return [...own, {
-    name: `${others.length} relay links`, look: up.length > 0 ? 'up' : others.some((line) => line.look === 'down') ? 'down' : 'unknown',
-    detail: up.length > 0 ? `up: ${up.map((line) => line.name).join(', ')}` : (others.findLast((line) => line.look === 'down') ?? others.at(-1))?.detail ?? 'not yet',
-  }];
+  const [missed, up, down] = (['lost', 'up', 'down'] as const).map((look) => others.filter((line) => line.look === look)) as [LinkLine[], LinkLine[], LinkLine[]];
+  const name = `${others.length} relay links`;
+  if (missed.length > 0) return [...own, { name, look: 'lost', detail: missed.map((line) => `${line.name}: ${line.detail}`).join('; ') }];
+  if (up.length > 0) return [...own, { name, look: 'up', detail: `up: ${up.map((line) => line.name).join(', ')}` }];
+  return [...own, { name, look: down.length > 0 ? 'down' : 'unknown', detail: (down.at(-1) ?? others.at(-1))?.detail ?? 'not yet' }];
 }
 
 const STREAM_WORDS: Record<StreamState, string> = {

@@ -1,5 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { aRun, aStore, event, link, tone } from '../testing/fixtures';
+import { readReleaseAt } from '../commands/model';
 import { badgeOf, clocksOf, headerLinks, latestSend, linksOf, streamLine } from './model';
 
 describe('the header', () => {
@@ -13,8 +14,11 @@ describe('the header', () => {
   });
   it('counts down to the latest time to send, as the ground has it', () => {
     const run = aRun({ lightTimeS: 10 });
-    if (run.clocks) run.clocks = { ...run.clocks, eS: -1000, latestUseful: '2012-219T05:02:44.000', usefulBefore: 'coolant_vent' };
-    expect(latestSend(aStore([], run))).toEqual({ next: { name: 'coolant_vent', at: 'E−13:56', left_s: 164 } });
+    if (run.clocks) run.clocks = { ...run.clocks, lightTimeS: 10, eS: -90, latestUseful: '2012-219T05:02:44.000', usefulBefore: 'coolant_vent' };
+    const store = aStore([], run);
+    const send = latestSend(store);
+    expect(send).toEqual({ next: { name: 'coolant_vent', at: expect.stringMatching(/^E/), left_s: 164 } });
+    expect(readReleaseAt(send?.next?.at ?? '', store), 'as it is typed for a command that waits').toMatch(/^2012-219T05:02:4[34]/);
   });
   it('says that nothing useful can arrive, and nothing where the run has no clocks', () => {
     expect(latestSend(aStore())).toEqual({ next: undefined });
@@ -54,6 +58,8 @@ describe('the header', () => {
     expect(headerLinks(store, Infinity).map((line) => [line.name, line.look, line.detail])).toEqual([
       ['UHF live', 'up', 'receiving'], ['X-band', 'up', 'receiving'], ['3 relay links', 'up', 'up: UHF MRO'],
     ]);
+    const failed = aStore(['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) => link({ link: name, up: name === 'uhf_mex', reason: name === 'relay' ? 'ground fault: the station is silent' : '', ert })));
+    expect(headerLinks(failed, Infinity)[2], 'one that is missed comes before those that are up').toEqual({ name: '3 relay links', look: 'lost', detail: 'Relay: ground fault: the station is silent' });
   });
   it('says first that nothing is stored, in the words of the disk', () => {
     expect(headerLinks(aStore([], aRun({ archiveFault: 'a.db: the disk is full' })), Infinity)).toEqual([{ name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full' }]);

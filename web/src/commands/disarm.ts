@@ -11,7 +11,7 @@ effect(() => {
   void pastRange.value;
   untracked(() => {
     disarm(now !== run);
+    disarmFile(now !== run);
     run = now;
-    disarmFile();
   });
 });

@@ -91,7 +91,7 @@ export async function forwardFile(): Promise<void> {
   } catch (error) {
     const said = wordsFor(error);
     const open = isOpen(error);
-    outcome.value = { good: false, text: !open ? `refused: ${said}; nothing was sent` : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say` };
+    outcome.value = { good: false, text: !open ? (said.endsWith('nothing was sent') ? said : `refused: ${said}; nothing was sent`) : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say` };
     if (open) text.value = ''; // the next Enter must not be a second one
     else void learnAccess().catch(() => undefined);
   }
@@ -105,7 +105,8 @@ export function backFile(): void {
 }
 
 /** As of one command: what the ground said was of one run as it stood then. */
-export function disarmFile(): void {
+export function disarmFile(another = false): void {
   looks.value += 1;
+  if (another) outcome.value = undefined; // its numbers are of the other run
   backFile();
 }

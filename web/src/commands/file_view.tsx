@@ -93,6 +93,14 @@ function Reviewed() {
 function Opened() {
   const problem = file.value && 'problem' in file.value ? file.value.problem : undefined;
   const sending = stage.value === 'sending';
+  const box = useRef<HTMLTextAreaElement>(null);
+  const was = useRef(stage.value);
+  useLayoutEffect(() => { // what had the focus is gone: the keyboard goes on where the work does
+    if (was.current !== 'review' && stage.value === 'review' && document.activeElement === document.body) {
+      (text.value === '' ? box.current : document.querySelector<HTMLElement>('[data-testid="file-forward"]'))?.focus();
+    }
+    was.current = stage.value;
+  }, [stage.value]);
   return (
     <>
       <p>All of it is checked before the first goes; when one command is refused none goes. <label class="file-choice">choose a file
@@ -100,7 +108,7 @@ function Opened() {
           void take(event.currentTarget.files?.[0]);
           event.currentTarget.value = '';
         }} /></label> or paste it:</p>
-      <textarea data-testid="file-text" aria-label="command file as JSON" rows={4} spellcheck={false} placeholder='{"commands": [{"command": "NO_OP"}]}'
+      <textarea ref={box} data-testid="file-text" aria-label="command file as JSON" rows={4} spellcheck={false} placeholder='{"commands": [{"command": "NO_OP"}]}'
         value={text.value} disabled={stage.value !== 'review'} onInput={(event) => read(event.currentTarget.value)} />
       {problem !== undefined && <p class="verdict missing" data-testid="file-problem">✖ {problem}</p>}
       {commands.value.length > 0 && <Reviewed />}

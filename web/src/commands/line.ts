@@ -2,7 +2,7 @@
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
-import { OutcomeUnknown, dictionary, pastRange, sendCommand, store, stream, tick } from '../run/session';
+import { OutcomeUnknown, dictionary, pastRange, sendCommand, store, tick, whyNotSent } from '../run/session';
 import type { CommandIntent, QueueAction } from '../stream/messages';
 import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
 import type { Step, UplinkText } from './model';
@@ -51,18 +51,19 @@ export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRan
 export const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
 export const previewNow = computed(() => (preview.value?.of === intentKey.value ? preview.value.reply : undefined));
 
-/** Asks what would happen if it were armed, confirmed and sent now. Without connection, or with a problem of ours, nothing is asked. */
+let asked: { of: string; answer: Promise<CommandReply | undefined> } | undefined;
+
+/** Asks what would happen if it were armed, confirmed and sent now; of the same once at a time, so that no questions stand before the command itself. Without connection, or with a problem of ours, nothing is asked. */
 export async function tryOut(): Promise<CommandReply | undefined> {
   const [wanted, of, command] = [intent.value, intentKey.value, chosen.value];
   if (!wanted || 'problem' in wanted || !command) return undefined;
-  try {
-    const reply = await sendCommand({ ...wanted, dryRun: true, armed: isHazardous(command), confirmation: command.name });
-    if (of === intentKey.value) preview.value = { of, reply };
-    return reply;
-  } catch {
-    if (of === intentKey.value) preview.value = undefined; // the header says that there is no connection; an old answer must not stand
-    return undefined;
-  }
+  if (asked?.of === of) return asked.answer;
+  const one = { of, answer: sendCommand({ ...wanted, dryRun: true, armed: isHazardous(command), confirmation: command.name }).catch(() => undefined) };
+  asked = one;
+  const reply = await one.answer;
+  if (asked === one) asked = undefined;
+  if (of === intentKey.value) preview.value = reply && { of, reply }; // without one the header says that there is no connection; an old answer must not stand
+  return reply;
 }
 
 export function openCommandLine(text?: string): void {
@@ -133,6 +134,8 @@ export async function forward(): Promise<void> {
     return;
   }
   const wasArmed = step.value === 'armed';
+  const sent = line.value;
+  const done = () => (line.value === sent ? (line.value = '') : undefined); // what was typed meanwhile is the next
   step.value = 'sending';
   message.value = { good: undefined, text: `${command.name}: sending` };
   try {
@@ -140,21 +143,20 @@ export async function forward(): Promise<void> {
     message.value = reply.accepted
       ? { good: true, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}` }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
-    if (reply.accepted) line.value = '';
+    if (reply.accepted) done();
     else void learnAccess().catch(() => undefined); // rights may have been taken away in the middle
   } catch (error) {
     message.value = { good: false, text: `${command.name}: ${error instanceof Error ? error.message : String(error)}` };
-    if (error instanceof OutcomeUnknown) line.value = ''; // the next Enter must not be a second one
+    if (error instanceof OutcomeUnknown) done(); // the next Enter must not be a second one
   }
   step.value = 'type';
   chosenName.value = undefined;
   confirmation.value = '';
-  openCommandLine();
+  if (document.activeElement === document.body || document.activeElement?.closest('[data-testid="panel-commands"]')) openCommandLine(); // who went on elsewhere is left there
 }
 
 /** What leaves has been shown as it leaves: only on the ground's answer to exactly this is Enter a yes. */
-const notReviewed = () => (['live', 'catching_up'].includes(stream.value.state)
-  ? 'the ground has not answered yet what would become of it: nothing was sent; read the review, then press Enter' : 'not connected: nothing was sent');
+const notReviewed = () => whyNotSent() ?? 'the ground has not answered yet what would become of it: nothing was sent; read the review, then press Enter';
 
 /** Not while it is known that it would be refused, nor while nothing is known: an armed command is one that can be sent. */
 async function arm(): Promise<void> {
@@ -180,7 +182,8 @@ export async function act(number: number, action: QueueAction): Promise<void> {
     const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller });
     message.value = reply.accepted ? { good: true, text: `#${number} ${done}` } : { good: false, text: reply.reason };
   } catch (error) {
-    message.value = { good: false, text: `#${number} was not ${done}: ${error instanceof Error ? error.message : String(error)}` };
+    const said = error instanceof Error ? error.message : String(error);
+    message.value = { good: false, text: error instanceof OutcomeUnknown ? `#${number}, ${action}: ${said}` : `#${number} was not ${done}: ${said}` };
   }
 }
 
@@ -203,5 +206,6 @@ export function disarm(another: boolean): void {
   const armed = step.value === 'armed' ? chosen.value?.name : undefined;
   preview.value = undefined;
   if (step.value === 'armed' || (step.value === 'review' && another)) back(another);
+  else if (another) message.value = undefined; // its number is of the other run
   if (armed !== undefined) message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
 }

@@ -131,8 +131,8 @@ function DryRun({ command, onKey }: Properties) {
   }, [key, store.value?.id]);
   const reply = previewNow.value;
   return (
-    <div class="dry-run" data-testid="dry-run" aria-live="polite">
-      <Verdict command={command} />
+    <div class="dry-run" data-testid="dry-run">
+      <div aria-live="polite"><Verdict command={command} /></div>
       {step.value === 'review' && (
         <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : reply?.needsApproval ? 'asks a second controller for it' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
       )}

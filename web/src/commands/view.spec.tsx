@@ -8,7 +8,7 @@ import { CommandReplySchema, DictionaryArgumentSchema } from '../gen/aeolis/v1/r
 import type { ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { back, chosen, complete, confirmation, forward, line, message, previewNow, step, tryOut, type } from './line';
+import { act as actOn, back, chosen, complete, confirmation, forward, line, message, previewNow, step, tryOut, type } from './line';
 import {
   AT_ONCE, argumentOffers, arrivalOf, candidates, conditionWords, fieldsOf, intentOf, isHazardous, preconditionsOf, readBackOf, readLine, readReleaseAt,
   stageCells, unitText, waitingCommands,
@@ -223,6 +223,30 @@ describe('an answer', () => {
     connected();
     for (let presses = 0; presses < 4; ++presses) await forward();
     expect(heard).toEqual([]);
+  });
+  it('leaves what was typed meanwhile as the next command', async () => {
+    await reviewed();
+    const sent = forward();
+    type('do edl');
+    await answered(sent);
+    expect([line.value, message.value?.text]).toEqual(['do edl', expect.stringContaining('NO_OP is #7')]);
+  });
+  it('to the dry run is asked for once at a time, of the same', async () => {
+    type('no op');
+    await forward();
+    const asked = [tryOut(), tryOut()];
+    expect(heard.length).toBe(1);
+    reply();
+    expect((await Promise.all(asked)).map((each) => each?.accepted)).toEqual([true, true]);
+    await answered(tryOut());
+    expect(heard.length).toBe(2);
+  });
+  it('on what waits in the queue that never comes says no more than that', async () => {
+    const acted = actOn(7, 'release');
+    await Promise.resolve();
+    onMessage({ type: 'stream', state: 'lost', attempt: 1, gaps: 0, serverVersion: '' });
+    await acted;
+    expect(message.value?.text).toMatch(/^#7, release: .*whether it was taken is not known/);
   });
   it('is not waited for where nothing left', async () => {
     await reviewed();

@@ -126,7 +126,7 @@ export function ask<T>(question: Question, path: string): Promise<T> {
 }
 
 /** Why nothing can be sent now; undefined where the server has said that this very run is what it has, and all of it is here. */
-function whyNotSent(): string | undefined {
+export function whyNotSent(): string | undefined {
   const { state } = stream.value;
   return state === 'live' ? undefined : state === 'catching_up' ? 'catching up: nothing was sent' : NOT_SENT;
 }

@@ -24,9 +24,9 @@ export function WaitingFor() {
   }
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
   return (
-    <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting" aria-live="polite">
+    <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting">
       <ModeMark />
-      <h2>{waiting.title}</h2>
+      <h2 aria-live="polite">{waiting.title}</h2>
       <p>{waiting.words}</p>
       <ul>
         {waiting.lines.map((line) => (
