@@ -114,15 +114,15 @@ void print(const Reset& reset, double e_s) {
 
 }  // namespace
 
-TEST_CASE("a reset just after any of every fourth timepoint ends as the rule says", "[second_chance][R32][R33]") {
+TEST_CASE("a reset just after any of every eighth timepoint ends as the rule says", "[second_chance][R32][R33]") {
     Resets resets{900.0};
     int boundaries = 0;
     while (resets.flying()) {
         resets.step();
         for (const TimepointId id : resets.fired())
-            if (id.value % 4 == 0 && ++boundaries <= 20) check(resets.reset_now(flight::timeline_specs[id.value].name));
+            if (id.value % 8 == 0 && ++boundaries <= 20) check(resets.reset_now(flight::timeline_specs[id.value].name));
     }
-    CHECK(boundaries >= 15);
+    CHECK(boundaries >= 8);
 }
 
 TEST_CASE("the table of resets: at every boundary of a timepoint and at 200 random cycles", "[.long][second_chance][R32][R33]") {
