@@ -102,6 +102,7 @@ void Api::post_sequence(const Asked& asked) {
         if (command.dry_run() || !command.action().empty())
             return respond(error_response(400, at("dry_run and action are not for a command of a sequence")));
         if (const auto right = complete(asked, command); !right) return respond(error_response(400, at(right.error().message)));
+        command.set_dry_run(sequence.dry_run());
         if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
     }

@@ -61,7 +61,7 @@ void QueryThreads::answer(const Asked& asked, archive::Reader& reader, std::chro
     reader.stop_when({});
 }
 
-QueryThreads::~QueryThreads() {
+void QueryThreads::end() {
     {
         const std::scoped_lock lock{mutex_};
         over_ = true;
@@ -69,6 +69,7 @@ QueryThreads::~QueryThreads() {
     changed_.notify_all();
     for (auto& thread : threads_)
         thread.join();
+    threads_.clear();
 }
 
 std::optional<QueryThreads::Asked> QueryThreads::next(std::span<const Haste> kinds) {

@@ -51,7 +51,9 @@ class QueryThreads {
                                                       const dictionary::Dictionary& dictionary,
                                                       const telemetry::OtherMission* other = nullptr,
                                                       std::chrono::milliseconds question_max = question_seconds_max);
-    ~QueryThreads(); ///< does what waits that is short, stops every question, then ends
+    ~QueryThreads() { end(); }
+    /// Does what waits that is short, stops every question, and takes nothing more. Once; of the thread that made this.
+    void end();
 
     /// False, and nothing done, when too much waits.
     bool ask(Job job, std::function<bool()> gone = {}, Haste haste = Haste::in_turn);

@@ -87,8 +87,10 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
         series.add_value(value.value);
         series.add_source(static_cast<v1::Source>(value.source));
     }
-    for (auto& [name, item] : stand.links)
+    for (auto& [name, item] : stand.links) {
+        if (item.link().lost()) *answer.add_alarms() = item; // under the link's name, as in the list of alarms
         *answer.add_links() = std::move(item);
+    }
     for (auto& [name, item] : stand.timepoints)
         *answer.add_timepoints() = std::move(item);
     for (auto& [name, item] : stand.commands)

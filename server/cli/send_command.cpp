@@ -5,6 +5,7 @@
 
 #include "aeolis/v1/run.pb.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
 #include <sstream>
@@ -26,9 +27,9 @@ Result<v1::CommandSequence> sequence_of(const SendOptions& options) {
     return sequence;
 }
 
-std::string of_one(const v1::CommandReply& reply, bool only_checked) {
+std::string of_one(const v1::CommandReply& reply) {
     if (!reply.accepted()) return "refused: " + reply.reason();
-    std::string text = only_checked ? "would be taken" : fmt::format("is command {}", reply.command());
+    std::string text = reply.command() == 0 ? "would be taken" : fmt::format("is command {}", reply.command());
     text += fmt::format(", {} octets", reply.octets().size() / 2);
     if (!reply.arrives().empty()) text += fmt::format(", at the vehicle {} SCET", reply.arrives());
     if (!reply.latest_useful().empty()) text += fmt::format(", to leave by {} ERT to be there before {}", reply.latest_useful(), reply.useful_before());
@@ -61,10 +62,10 @@ int send(const SendOptions& options) {
         if (!from_json(answer->body, refusal)) return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status), options);
         return failed(fmt::format("send: refused ({}): {}", answer->status, refusal.error()));
     }
-    const bool only_checked = sequence->dry_run() || !reply.accepted();
     for (int i = 0; i < reply.commands_size() && i < sequence->commands_size(); ++i)
-        fmt::print("{:>3}  {}  {}\n", i + 1, sequence->commands(i).command(), of_one(reply.commands(i), only_checked));
-    if (!reply.accepted()) return failed(fmt::format("send: nothing was sent: {}", reply.reason()));
+        fmt::print("{:>3}  {}  {}\n", i + 1, sequence->commands(i).command(), of_one(reply.commands(i)));
+    const bool any = std::ranges::any_of(reply.commands(), [](const v1::CommandReply& each) { return each.command() != 0; });
+    if (!reply.accepted()) return failed(fmt::format("send: {}: {}", any ? "the commands with a number were taken, the others not" : "nothing was sent", reply.reason()));
     if (sequence->dry_run()) fmt::print("a dry run: nothing was sent\n");
     return 0;
 }

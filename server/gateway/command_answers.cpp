@@ -4,6 +4,7 @@
 #include "commands/read_back.hpp"
 #include "telemetry/text.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace aeolis::server {
@@ -83,15 +84,19 @@ void CommandGateway::note_read_back(const Underway& underway, const commands::St
     if (underway.report == nullptr) return;
     const auto& name = underway.lifecycle.command().name;
     if (change.stage == Stage::radiated && change.status == Status::ok) {
-        if (auto& newest = read_backs_[name]; newest.number < underway.number) newest = {underway.number, Status::pending, newest.number != 0};
+        auto& sent = read_backs_[name];
+        if (std::ranges::find(sent, underway.number, &ReadBack::number) == sent.end()) sent.push_back({underway.number, Status::pending, !sent.empty()});
         return;
     }
-    const auto told = read_backs_.find(name);
-    if (told == read_backs_.end() || told->second.number != underway.number) return;
-    if (change.stage == Stage::verified)
-        told->second.held = change.status;
-    else if (change.status == Status::failed) // it was not carried out: what is held is not its
-        read_backs_.erase(told);
+    auto& sent = read_backs_[name];
+    const auto told = std::ranges::find(sent, underway.number, &ReadBack::number);
+    if (told == sent.end()) return;
+    if (change.stage == Stage::verified) {
+        told->held = change.status;
+        if (change.status == Status::ok) sent.erase(sent.begin(), told); // none before it is held any more
+    } else if (change.status == Status::failed) { // it was not carried out: what is held is still of the one before
+        sent.erase(told);
+    }
 }
 
 } // namespace aeolis::server

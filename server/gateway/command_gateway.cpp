@@ -114,7 +114,9 @@ std::vector<commands::PreconditionState> CommandGateway::preconditions(const dic
     const bool wants_them = received != nullptr && std::ranges::any_of(command.preconditions, [&](const auto& each) { return each.channel == received->id; });
     if (!wants_them) return states;
     using State = commands::PreconditionState::State;
-    for (const auto& [name, told] : read_backs_) {
+    for (const auto& [name, sent] : read_backs_) {
+        if (sent.empty()) continue;
+        const ReadBack& told = sent.back();
         auto& state = states.emplace_back();
         // Of the first that was sent flight itself says whether it has it. That it has a later one only the read-back tells, so while that
         // can still come it is waited for.
@@ -202,6 +204,29 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
     queue_.add(entry);
     if (request.hold() || prepared.release_at || reply.needs_approval() || queue_.leaves_after(entry)) tell_wait(underway, now, stages);
     release_due(now, stages);
+}
+
+std::vector<v1::CommandReply> CommandGateway::look(std::span<const v1::CommandRequest> file, Ert now) {
+    std::vector<v1::CommandReply> replies;
+    std::vector<archive::StageRecord> none;
+    const auto kept = read_backs_;
+    std::size_t more = 0; // each needs its place
+    for (v1::CommandRequest request : file) {
+        request.set_dry_run(true);
+        auto& reply = replies.emplace_back(submit(request, now, none));
+        if (!reply.accepted() || !request.action().empty()) continue;
+        if (const auto room = takes(++more); !room) {
+            reply.set_accepted(false);
+            reply.set_reason(room.error().message);
+            continue;
+        }
+        const bool leaves = !request.hold() && request.release_at().empty() && !reply.needs_approval();
+        if (!leaves || commands::read_back_packet(dictionary_, *dictionary_.command(request.command())) == nullptr) continue;
+        auto& sent = read_backs_[request.command()]; // for those behind it in the file
+        sent.push_back({commands_ + more, commands::Status::pending, !sent.empty()});
+    }
+    read_backs_ = kept;
+    return replies;
 }
 
 void CommandGateway::note_refused(const v1::CommandRequest& request, const std::string& reason, Ert now,

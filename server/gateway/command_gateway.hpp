@@ -65,6 +65,9 @@ class CommandGateway {
     enum class Asker : std::uint8_t { person, script };
     v1::CommandReply submit(const v1::CommandRequest& request, Ert now, std::vector<archive::StageRecord>& stages, Asker asker = Asker::person);
 
+    /// Of a file: what would become of each if all before it were taken. Leaves all as it is.
+    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file, Ert now);
+
     /// One of a scenario's script was refused: it gets a number and a history that says so, for nobody waits for its reply.
     void note_refused(const v1::CommandRequest& request, const std::string& reason, Ert now, std::vector<archive::StageRecord>& stages);
 
@@ -116,7 +119,7 @@ class CommandGateway {
         std::size_t packet = 0, field = 0; ///< in the dictionary
     };
 
-    /// What the newest command of a name that was radiated came to, where flight reports back what it holds.
+    /// What a command that was radiated came to, where flight reports back what it holds.
     struct ReadBack {
         std::uint64_t number = 0;
         commands::Status held = commands::Status::pending; ///< ok: as sent; failed: something else; unknown: nothing came in its time
@@ -187,7 +190,7 @@ class CommandGateway {
     bool unseen_ = false; ///< no station saw the vehicle when it was last looked at
     std::vector<Heard> heard_; ///< by ChannelId
     std::list<Underway> underway_;
-    std::map<std::string, ReadBack> read_backs_; ///< by the command's name
+    std::map<std::string, std::vector<ReadBack>> read_backs_; ///< by the command's name, in the order in which they left: those of which the vehicle may hold what was sent
     std::vector<commands::StageChange> changes_;
     std::uint64_t commands_ = 0;
     std::uint16_t count_ = 0; ///< packet count of the uplink

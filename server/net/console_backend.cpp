@@ -159,11 +159,12 @@ ConsoleBackend::~ConsoleBackend() {
     // A run that goes on waits until its end is stored, and so for a disk that may never take it.
     if (pipeline_) pipeline_->closing();
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
-    queries_.reset(); // what still waits may add a note, through api and pipeline
+    if (queries_) queries_->end(); // what still waits may add a note, through api and pipeline; who asks from now on is refused
     api_.reset();
     campaigns_.reset(); // what flies is abandoned
     downlink_.reset();
     desk_.reset();
+    queries_.reset();
     pipeline_.reset();
     server_.reset();
     hub_.reset();

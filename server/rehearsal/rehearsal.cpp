@@ -7,6 +7,9 @@
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace aeolis::server {
 namespace {
 
@@ -77,8 +80,15 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
     return {};
 }
 
+std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file) {
+    if (takes_commands()) return flight_.look(file);
+    std::vector<v1::CommandReply> refusals;
+    std::ranges::transform(file, std::back_inserter(refusals), [this](const v1::CommandRequest& request) { return submit(request); });
+    return refusals;
+}
+
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
-    if (scenario_.test_venue != simulation::TestVenue::gnc_alone) return flight_.submit(request);
+    if (takes_commands()) return flight_.submit(request);
     v1::CommandReply refusal;
     refusal.set_request(request.request());
     refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));

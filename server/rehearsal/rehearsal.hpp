@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,8 @@ class Rehearsal {
     const simulation::CycleReport& step();
 
     v1::CommandReply submit(const v1::CommandRequest& request);
+    /// See CommandGateway::look.
+    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
 
     /// It begins with the next cycle. An Error names what of it cannot be.
     Result<void> inject(const v1::FaultInjection& injection);
@@ -83,6 +86,7 @@ class Rehearsal {
     }
 
   private:
+    bool takes_commands() const { return scenario_.test_venue != simulation::TestVenue::gnc_alone; } ///< it has a computer
     /// The same with the tones that were decoded from its samples.
     const simulation::CycleReport& hear_tones(const simulation::CycleReport& landed);
     /// The same with ground's own reasons for what links do not bring.

@@ -283,21 +283,9 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
 }
 
 std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const Order& order) {
-    std::vector<v1::CommandReply> replies;
-    if (!order.only_check && order.requests.size() == 1) return replies; // the one look at it comes when it is taken
-    bool all = true;
-    std::size_t more = 0; // each of a file needs its place
-    for (auto request : order.requests) {
-        request.set_dry_run(true);
-        auto& reply = replies.emplace_back(rehearsal.submit(request));
-        more += request.action().empty() ? 1 : 0;
-        if (const auto room = rehearsal.gateway().takes(more); reply.accepted() && request.action().empty() && !room) {
-            reply.set_accepted(false);
-            reply.set_reason(room.error().message);
-        }
-        all = all && reply.accepted();
-    }
-    if (all && !order.only_check) replies.clear();
+    if (!order.only_check && order.requests.size() == 1) return {}; // the one look at it comes when it is taken
+    auto replies = rehearsal.look(order.requests);
+    if (!order.only_check && std::ranges::all_of(replies, &v1::CommandReply::accepted)) replies.clear();
     return replies;
 }
 

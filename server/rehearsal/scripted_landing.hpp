@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class ScriptedLanding {
     void hear(const simulation::CycleReport& report);
 
     v1::CommandReply submit(const v1::CommandRequest& request);
+    /// See CommandGateway::look.
+    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file) { return gateway_.look(file, landing_.ert_now()); }
 
     void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 

@@ -47,7 +47,7 @@ std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<sim
     if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
         const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
         for (const simulation::Link& link : {simulation::uhf_live_link, simulation::x_band_link})
-            all.push_back(told(silent_.emplace_back(Silence{link, {}}),
+            all.push_back(told(silent_.emplace_back(Silence{link, false, {}}),
                                {SilenceClass::light_time, "what leaves the vehicle at the start is here at " + day_of_year_text(first)}, start_ert_, station));
     }
     for (const simulation::LinkState& change : changes) {
@@ -57,13 +57,13 @@ std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<sim
             all.push_back(change);
             continue;
         }
-        const Explanation why = explain(change.link, e_s(change.ert), station);
-        if (known != silent_.end() && known->told == why.silence) continue; // told already
-        Silence& silence = known != silent_.end() ? *known : silent_.emplace_back(Silence{change.link, {}});
-        all.push_back(told(silence, why, change.ert, station));
+        const bool told_of = known != silent_.end();
+        Silence& silence = told_of ? *known : silent_.emplace_back(Silence{change.link, !station.fault.empty(), {}});
+        const Explanation why = explain(silence, e_s(change.ert), station);
+        if (!told_of || silence.told != why.silence) all.push_back(told(silence, why, change.ert, station));
     }
     for (Silence& silence : silent_) {
-        const Explanation why = explain(silence.link, e_s(now), station);
+        const Explanation why = explain(silence, e_s(now), station);
         const bool begins = silence.told == SilenceClass::light_time && now.microseconds - start_ert_.microseconds < static_cast<std::int64_t>(predicted_.light_time_s * 1e6);
         if (why.silence != silence.told && !begins) all.push_back(told(silence, why, now, station));
     }
@@ -80,9 +80,11 @@ simulation::LinkState SilenceClassifier::told(Silence& silence, const Explanatio
     return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence)};
 }
 
-SilenceClassifier::Explanation SilenceClassifier::explain(const simulation::Link& link, double e_s, const Station& station) const {
-    auto why = explain_by_link(link, e_s, station);
-    if (why.silence == SilenceClass::unexplained && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
+SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s, const Station& station) const {
+    auto why = explain_by_link(silence.link, e_s, station);
+    // An orbiter whose delivery breaks off with the station has not delivered.
+    const bool predicted = why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
+    if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
     return why;
 }
 

@@ -64,13 +64,14 @@ class SilenceClassifier {
   private:
     struct Silence {
         simulation::Link link;
+        bool cut = false; ///< it began while the station failed
         SilenceClass told{};
     };
     struct Explanation {
         SilenceClass silence = SilenceClass::unexplained;
         std::string sentence{};
     };
-    Explanation explain(const simulation::Link& link, double e_s, const Station& station) const;
+    Explanation explain(const Silence& silence, double e_s, const Station& station) const;
     Explanation explain_by_link(const simulation::Link& link, double e_s, const Station& station) const;
     Explanation explain_uhf(double e_s) const;
     Explanation explain_relay(double e_s, const Station& station) const;

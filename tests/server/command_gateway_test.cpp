@@ -223,6 +223,47 @@ TEST_CASE("parameters that were sent anew are waited for: the vehicle may still 
     CHECK_THAT(station.send(go).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet, wait for it"));
 }
 
+TEST_CASE("parameters that were refused on board leave what is known of those before as it was", "[gateway][R23][R44]") {
+    Station station;
+    const auto& command = *tests::shipped_dictionary().command("EDL_SET_PARAMETERS");
+    const auto* report = commands::read_back_packet(tests::shipped_dictionary(), command);
+    REQUIRE(report != nullptr);
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.set_from_solution(true);
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
+    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
+    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages); // all zero: not what was sent
+    REQUIRE(station.latest("verified")->status == "failed");
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    REQUIRE_THAT(station.send(go).reason(), Catch::Contains("(command 2): sent anew"));
+    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", command.opcode.value}, {"count", 1}}), true, now, station.stages);
+    CHECK_THAT(station.send(go).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 1): the vehicle reports other values"));
+}
+
+TEST_CASE("a file is looked at as it would go: what a command before does to one behind is known before the first leaves", "[gateway][R23][R44]") {
+    Station station;
+    auto parameters = request("EDL_SET_PARAMETERS");
+    parameters.set_from_solution(true);
+    auto go = request("EDL_DO_EDL");
+    go.set_armed(true);
+    go.set_confirmation("EDL_DO_EDL");
+    const std::vector file{parameters, go};
+    const auto first = station.gateway.look(file, now);
+    CHECK(first.at(1).accepted()); // of the first that is sent flight itself says whether it has it
+    REQUIRE(station.send(parameters).accepted());
+    (void)station.radiated();
+    const auto again = station.gateway.look(file, now);
+    CHECK(again.at(0).accepted());
+    CHECK_THAT(again.at(1).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet"));
+    CHECK(station.send(go).accepted()); // looking changed nothing
+}
+
 TEST_CASE("do edl is left to flight when the parameters were not read back in their time", "[gateway][R23][R44]") {
     Station station;
     auto parameters = request("EDL_SET_PARAMETERS");

@@ -148,6 +148,20 @@ TEST_CASE("what nothing predicted while the station fails is a ground fault, and
     CHECK(class_of(back[0].reason) == "unexplained");
 }
 
+TEST_CASE("an orbiter's delivery that breaks off with the station is a ground fault, one that had ended stays delivered", "[station][silence][faults]") {
+    SilenceClassifier classifier{predicted(), at(-1200.0), entry};
+    const simulation::Link ended{"uhf_mex", false}, cut{"uhf_mro", false};
+    REQUIRE(class_of(classifier.tell({down(ended, 2500.0)}, at(2500.0), {}).at(0).reason) == "delivered");
+    const auto lost = classifier.tell({down(cut, 2600.0)}, at(2600.0), {0.0, {}, "nothing comes from the station"});
+    REQUIRE(lost.size() == 1);
+    CHECK(lost[0].link == cut);
+    CHECK(lost[0].reason == "ground fault: nothing comes from the station");
+    CHECK(lost[0].lost);
+    const auto back = classifier.tell({}, at(2700.0), {});
+    REQUIRE(back.size() == 1);
+    CHECK(class_of(back[0].reason) == "delivered");
+}
+
 TEST_CASE("before anything can have come the silence is the light time's", "[station][silence]") {
     auto silences = predicted();
     silences.light_time_s = 828.0;

@@ -85,7 +85,7 @@ export async function forwardFile(): Promise<void> {
     const numbers = answer.commands.map((each) => each.command);
     outcome.value = answer.accepted
       ? { good: true, text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}` }
-      : { good: false, text: `refused: ${answer.reason}; nothing was sent` };
+      : { good: false, text: `refused: ${answer.reason}; ${numbers.some((number) => number !== '0') ? `taken was ${numbers.filter((number) => number !== '0').map((number) => `#${number}`).join(', ')}` : 'nothing was sent'}` };
     if (answer.accepted) text.value = '';
     else void learnAccess().catch(() => undefined); // as of one command: rights may have been taken away in the middle
   } catch (error) {
