@@ -47,6 +47,7 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     accept(live(navigation_packet(0, 1001.0, 10.0F, 6000.0F)));
     accept(live(fired_packet(0, 1002.0, 2)));
     accept(simulation::LinkState{simulation::uhf_live_link, heard(1003.0), false, "plasma blackout"});
+    accept(simulation::LinkState{simulation::x_band_link, heard(1003.2), false, "ground fault: no signal", true});
     accept(stage("radiated", heard(1003.5)));
     accept(live(navigation_packet(1, 1004.0, 20.0F, 5000.0F)));
     REQUIRE(pipeline.commit().ok());
@@ -79,8 +80,12 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
 
     const auto now = at({});
     CHECK(altitude(now) != altitude(then));
+    REQUIRE(now.links_size() == 2);
     CHECK_FALSE(now.links(0).link().up());
     CHECK(now.links(0).link().reason() == "plasma blackout");
+    REQUIRE(now.alarms_size() == 1); // a silence that was predicted is none
+    CHECK(now.alarms(0).link().link() == "x_band");
+    CHECK(at(1003.1).alarms().empty());
     CHECK(now.commands(0).command_stage().stage() == "radiated");
 
     // Times that no date can have are after everything, or before it.
