@@ -33,7 +33,7 @@ test('a campaign is started by keyboard, its dots come one after the other, it i
     // The landing goes on beside it.
     await shows('stream-state', /connected/);
     const clock = await text('clock-entry');
-    await waitFor(() => text('clock-entry'), (now) => now !== clock, 3_000);
+    await waitFor(() => text('clock-entry'), (now) => now !== clock);
 
     await page.getByTestId('campaign-cancel').focus();
     await page.keyboard.press('Enter');

@@ -123,7 +123,8 @@ test('what serves Open MCT answers its own page alone, gives no socket for comma
             await new Promise((resolve) => (socket.onopen = resolve));
             socket.send(JSON.stringify({ command: { request: 7, run: 1, command: 'CDH_NO_OP' } }));
             socket.send(JSON.stringify({ control: { pace: 2 } }));
-            await new Promise((resolve) => setTimeout(resolve, 1500));
+            for (let tries = 0; tries < 200 && !(messages.includes('welcome') && messages.includes('batch')); ++tries) await new Promise((resolve) => setTimeout(resolve, 100));
+            await new Promise((resolve) => setTimeout(resolve, 1000)); // an answer would have come by then
             socket.close();
             return messages;
         }, live);

@@ -29,11 +29,11 @@ test('with tones alone the next moment, the phase, the count and the details go 
     await page.close();
 });
 
-test('the latest instant to send is that of the next timepoint one can reach, by name, also after the first has fired', { timeout: 60_000 }, async (t) => {
-    const server = await serve(t, 'latest', ['--scenario', 'nominal_auto', '--pace', '100']);
+test('the latest instant to send is that of the next timepoint one can reach, by name, also after the first has fired', { timeout: 120_000 }, async (t) => {
+    const server = await serve(t, 'latest', ['--scenario', 'nominal_auto', '--pace', '20']); // each is the next for ten seconds and more
     const { page, problems, text, shows } = await open(server.address);
     await shows('latest-send', /before coolant vent\s+E−13:46, in/);
-    await shows('latest-send', /before entry antenna\s+E−10:40, in/, 30_000);
+    await shows('latest-send', /before entry antenna\s+E−10:40, in/, 60_000);
     assert.match(await text('timepoints-fired'), /^[3-9] of/, 'timepoints have fired by then');
     assert.deepEqual(problems, []);
     await page.close();

@@ -113,14 +113,20 @@ export async function findings(page, theme) {
     return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
 }
 
-/** Waits until what `read` gives matches; fails with what it was last. */
+/** Waits until what `read` gives matches; fails with what it was last. What could not be read does not match. */
 export async function waitFor(read, wanted, timeout_ms = 20_000) {
     const end = Date.now() + timeout_ms;
     const fits = (value) => (wanted instanceof RegExp ? wanted.test(value) : wanted(value));
     for (;;) {
-        const value = await read().catch((error) => String(error));
-        if (fits(value)) return value;
-        if (Date.now() > end) throw new Error(`not within ${timeout_ms} ms: ${wanted}; it was: ${String(value).slice(0, 400)}`);
+        let last;
+        try {
+            const value = await read();
+            if (fits(value)) return value;
+            last = value;
+        } catch (error) {
+            last = error;
+        }
+        if (Date.now() > end) throw new Error(`not within ${timeout_ms} ms: ${wanted}; it was: ${String(last).slice(0, 400)}`);
         await new Promise((resolve) => setTimeout(resolve, 60));
     }
 }
