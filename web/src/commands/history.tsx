@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { STAGE_LOOKS } from '../design/status';
 import type { StageLook } from '../design/status';
 import type { CommandList } from '../gen/aeolis/v1/run_pb';
-import { ask, cutoff, dictionary, runNow, store, takesCommands } from '../run/session';
+import { ask, cutoff, dictionary, runNow, signalOfRun, store, takesCommands } from '../run/session';
 import type { CommandRow, RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { act, uplink } from './line';
@@ -40,7 +40,7 @@ export function Queue() {
   );
 }
 
-const opened = signal<number | undefined>(undefined);
+const opened = signalOfRun<number | undefined>(undefined);
 /** Octets are not on the stream. */
 const octets = signal<{ run: number; of: Map<number, string> } | undefined>(undefined);
 

@@ -4,7 +4,7 @@ import { useEffect } from 'preact/hooks';
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketList, PacketRow } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
-import { ask, cutoff, notify, pastRange, replay, runNow, store, withRecording } from '../run/session';
+import { ask, cutoff, notify, pastRange, replay, runNow, signalOfRun, store, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { Mark } from '../verdicts/mark';
@@ -22,8 +22,8 @@ interface Line {
 }
 
 const wanted = signal<string | undefined>(undefined); // only this packet
-const opened = signal<PacketRow | undefined>(undefined);
-const current = signal<bigint | undefined>(undefined); // number of the unit that is chosen
+const opened = signalOfRun<PacketRow | undefined>(undefined);
+const current = signalOfRun<bigint | undefined>(undefined); // number of the unit that is chosen
 /** While one is open the list stands still, so that what is looked at does not run away. */
 const held = signal<{ run: number; lines: Line[] } | undefined>(undefined);
 /** In a past view the units of that range come from the archive: the page itself holds only the newest. */

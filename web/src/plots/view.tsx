@@ -173,7 +173,9 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       const live = run?.live.get(channel.id);
       const span = plotSpan(run);
       const newShape = `${palette().name} ${channel.id}`;
-      const key = `${run?.id} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
+      const silences = run?.links.get('uhf_live') ?? []; // one that goes on grows with the clock, though no sample comes
+      const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
+      const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
       if (key === shown && traces[0] === recorded && traces[1] === live) return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
       traces = [recorded, live];

@@ -4,7 +4,7 @@ import { mayRehearse } from '../access/model';
 import { uplink } from '../commands/line';
 import { OCTETS } from '../notes/model';
 import { Refused, call, wordsFor } from '../run/api';
-import { change, store } from '../run/session';
+import { change, signalOfRun, store } from '../run/session';
 import type { RunStore } from '../run/store';
 
 /** As the API words it. */
@@ -21,7 +21,7 @@ export interface Intervention {
 }
 
 export const interventions = signal<{ run: number; all: Intervention[] } | undefined>(undefined);
-export const message = signal<{ good: boolean; text: string } | undefined>(undefined);
+export const message = signalOfRun<{ good: boolean; text: string } | undefined>(undefined);
 export const busy = signal(false);
 
 export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] => (interventions.value?.run === run.id ? interventions.value.all : []);

@@ -66,7 +66,7 @@ async function judge(run: RunStore): Promise<void> {
     }) };
     problem.value = '';
   } catch (error) {
-    problem.value = wordsFor(error);
+    if (store.value === run) problem.value = wordsFor(error);
   }
 }
 

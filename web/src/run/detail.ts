@@ -1,6 +1,6 @@
 // What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
 // again, as fine as it can be drawn: what is wanted last, and one question at a time.
-import { effect } from '@preact/signals';
+import { computed, effect, untracked } from '@preact/signals';
 import { seriesPath } from '../recorded/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
@@ -11,14 +11,16 @@ const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more ta
 const CHANNELS_A_QUESTION = 8; // several small questions are answered side by side
 
 let wanted = '';
+let done = '';
 let underWay = false;
+const asHeard = computed(() => pastRange.value !== undefined && !withRecording.value);
 
 async function refine(): Promise<void> {
   if (underWay) return;
   underWay = true;
-  for (let done = ''; done !== wanted;) {
+  while (done !== wanted) {
     done = wanted;
-    const [run, span, live] = [store.peek(), zoomedTo(), pastRange.value !== undefined && !withRecording.value];
+    const [run, span, live] = [store.peek(), zoomedTo(), asHeard.value];
     if (!run || !span) break;
     const [from, to] = [run.entrySclk + span.from, run.entrySclk + span.to];
     const names = plottedChannels();
@@ -41,7 +43,8 @@ async function refine(): Promise<void> {
 export function refineWhatIsLookedAt(): void {
   effect(() => {
     const span = zoomedTo(); // what follows the run is fine enough as it comes, a whole range as fine as it was asked for
-    wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${withRecording.value}` : '';
-    if (span) void refine();
+    wanted = span ? `${store.value?.id} ${span.from} ${span.to} ${asHeard.value}` : '';
+    if (span) untracked(() => void refine());
+    else done = wanted; // the same stretch is asked for anew when it is looked at again
   });
 }

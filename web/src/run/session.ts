@@ -1,5 +1,6 @@
 // The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
-import { computed, effect, signal } from '@preact/signals';
+import { computed, effect, signal, untracked } from '@preact/signals';
+import type { Signal } from '@preact/signals';
 import type { AnchorRow, CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
 import { LAYOUT } from '../layout';
@@ -20,6 +21,16 @@ export const stream = signal<{ state: StreamState; attempt: number; gaps: number
   state: 'connecting', attempt: 0, gaps: 0, serverVersion: '',
 });
 export const store = signal<RunStore | undefined>(undefined);
+/** What belongs to the run that is shown: once it is another one, as it was at first. */
+export function signalOfRun<T>(first: T): Signal<T> {
+  const value = signal(first);
+  const shown = computed(() => store.value?.id);
+  effect(() => {
+    void shown.value;
+    untracked(() => (value.value = first));
+  });
+  return value;
+}
 export const dictionary = signal<Dictionary | undefined>(undefined);
 export const timepoints = signal<TimepointRow[]>([]);
 export const anchors = signal<AnchorRow[]>([]);
