@@ -216,16 +216,7 @@ void RehearsalDesk::command(v1::CommandRequest request, RehearsalRunner::Reply r
 }
 
 void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies) {
-    const auto refuse_by = [](const std::vector<v1::CommandRequest>& all, const Replies& give, const std::string& reason) {
-        std::vector<v1::CommandReply> refusals;
-        for (const auto& request : all) {
-            auto& refusal = refusals.emplace_back();
-            refusal.set_request(request.request());
-            refusal.set_reason(reason);
-        }
-        give(std::move(refusals));
-    };
-    const auto refuse = [&](const std::string& reason) { refuse_by(requests, replies, reason); };
+    const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
     if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
     for (const auto& request : requests)
         if (request.action() == timeline_holds_action || request.action() == timeline_refuted_action)
@@ -255,12 +246,13 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
                 order();
         };
     }
-    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check, [this, run, requests, only_check, replies, refuse_by, moves = moves_](Result<std::string> timeline) {
-        post_([this, run, requests, only_check, replies, refuse_by, moves, timeline = std::move(timeline)] {
-            if (!timeline) return refuse_by(requests, replies, timeline.error().message);
-            if (!going_on() || !begun_ || state_.run() != run) return refuse_by(requests, replies, "no run goes on: nothing listens");
+    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check, [this, run, requests, only_check, replies, moves = moves_](Result<std::string> timeline) {
+        post_([this, run, requests, only_check, replies, moves, timeline = std::move(timeline)] {
+            const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
+            if (!timeline) return refuse(timeline.error().message);
+            if (!going_on() || !begun_ || state_.run() != run) return refuse("no run goes on: nothing listens");
             if (!only_check && !timeline->empty() && moves != moves_)
-                return refuse_by(requests, replies, "what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
+                return refuse("what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
             runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
                 for (auto& answer : answers)
                     answer.set_timeline(says);

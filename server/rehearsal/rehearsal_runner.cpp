@@ -28,7 +28,9 @@ constexpr std::uint64_t cycles_between_looks = 64; // while flying again: as far
 
 constexpr const char* over_reason = "the run is over: nothing listens on board";
 
-void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const RehearsalRunner::Replies& replies) {
+} // namespace
+
+void RehearsalRunner::refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const Replies& replies) {
     std::vector<v1::CommandReply> refusals;
     for (const auto& request : requests) {
         auto& refusal = refusals.emplace_back();
@@ -37,8 +39,6 @@ void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::stri
     }
     replies(std::move(refusals));
 }
-
-} // namespace
 
 RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
                                  const dictionary::Dictionary& dictionary, PipelineThread& pipeline,

@@ -83,6 +83,8 @@ class RehearsalRunner {
     /// `only_check`, and when one is refused, they are those of a dry run.
     using Replies = std::function<void(std::vector<v1::CommandReply>)>;
     void submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies);
+    /// Gives each the same refusal.
+    static void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const Replies& replies);
     bool over() const; ///< the thread has nothing more to do
     std::size_t waiting() const; ///< commands, and command files, for the next cycle
     /// Of those that were taken: what has not left the queue, and what the uplink has and has not radiated. As of the last delivery.
