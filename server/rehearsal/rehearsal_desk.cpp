@@ -248,11 +248,11 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
     }
     timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check, [this, run, requests, only_check, replies, moves = moves_](Result<std::string> timeline) {
         post_([this, run, requests, only_check, replies, moves, timeline = std::move(timeline)] {
-            const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
-            if (!timeline) return refuse(timeline.error().message);
-            if (!going_on() || !begun_ || state_.run() != run) return refuse("no run goes on: nothing listens");
+            const auto refuse_all = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
+            if (!timeline) return refuse_all(timeline.error().message);
+            if (!going_on() || !begun_ || state_.run() != run) return refuse_all("no run goes on: nothing listens");
             if (!only_check && !timeline->empty() && moves != moves_)
-                return refuse("what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
+                return refuse_all("what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
             runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
                 for (auto& answer : answers)
                     answer.set_timeline(says);
