@@ -1,10 +1,10 @@
 // What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
 // again, as fine as it can be drawn: what is wanted last, and one question at a time.
-import { computed, effect, untracked } from '@preact/signals';
+import { effect, untracked } from '@preact/signals';
 import { seriesPath } from '../recorded/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
-import { ask, pastRange, plottedChannels, store, withRecording } from './session';
+import { ask, asHeard, plottedChannels, store } from './session';
 import { zoomedTo } from './window';
 
 const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more takes longer to come than a step of zoom may
@@ -13,7 +13,6 @@ const CHANNELS_A_QUESTION = 8; // several small questions are answered side by s
 let wanted = '';
 let done = '';
 let underWay = false;
-const asHeard = computed(() => pastRange.value !== undefined && !withRecording.value);
 
 async function refine(): Promise<void> {
   if (underWay) return;

@@ -197,10 +197,16 @@ export function watch(run: number): void {
   post({ type: 'watch', run });
 }
 
+/** Thinned together with the recording, few of what came live are among the points: a past as it was heard has its own. */
+const askedLive = new WeakSet<RunStore>();
+export const asHeard = computed(() => pastRange.value !== undefined && !withRecording.value);
+
 /** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
-  post({ type: 'refresh_history', all: !of.going, live: false });
+  const live = asHeard.value;
+  if (!live) askedLive.delete(of); // its answer replaces the one of live alone
+  post({ type: 'refresh_history', all: !of.going, live });
 }
 
 export function onMessage(message: FromWorker): void {
@@ -415,11 +421,9 @@ export async function begin(): Promise<void> {
     if (isIn && !wasIn) post({ type: 'reconnect' });
     wasIn = isIn;
   });
-  // Thinned together with the recording, few of what came live are among the points: a past as it was heard has its own.
-  const askedLive = new WeakSet<RunStore>();
   effect(() => {
     const run = store.value;
-    if (!run || !pastRange.value || withRecording.value || askedLive.has(run)) return;
+    if (!run || !asHeard.value || askedLive.has(run)) return;
     askedLive.add(run);
     post({ type: 'refresh_history', all: true, live: true });
   });
