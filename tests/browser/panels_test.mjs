@@ -8,7 +8,7 @@ import { gzipSync } from 'node:zlib';
 import { madeUpCampaign } from './made_up_campaign.mjs';
 import { comesToLook, comparePicture } from './picture.mjs';
 import { standIn } from './stand_in.mjs';
-import { breakable, findings, focused, root, secondsFromEntry, waitFor, workplace } from './support.mjs';
+import { breakable, comesToRest, findings, focused, root, secondsFromEntry, waitFor, workplace } from './support.mjs';
 
 const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', 'channels', 'alarms', 'notes', 'packets', 'verdicts', 'links', 'flown', 'recorded', 'rehearsal', 'campaigns', 'users'];
 const SCRIPT_KB = 150;
@@ -451,7 +451,7 @@ test('from 320 px to 4K nothing is wider than the screen', { timeout: 60_000 }, 
     await shows('badge', /ENDED RUN/);
     for (const [width, height] of [[320, 640], [768, 1024], [1024, 768], [1366, 768], [1920, 1080], [3840, 2160]]) {
         await page.setViewportSize({ width, height });
-        await page.waitForTimeout(150);
+        await comesToRest(page);
         const wide = await page.evaluate(() => document.documentElement.scrollWidth);
         assert.ok(wide <= width, `${wide} px wide on ${width}`);
     }
@@ -484,7 +484,7 @@ test('after landing height and speed say whose they are, and no word of the desc
     const found = [];
     for (const [width, height] of [[1366, 768], [1600, 900], [1920, 1080], [3840, 2160]]) {
         await page.setViewportSize({ width, height });
-        await page.waitForTimeout(400);
+        await comesToRest(page);
         // What is drawn, and the figures that stand over it.
         const written = await page.evaluate(() => {
             const element = document.querySelector('[data-testid="descent-canvas"]');
@@ -538,7 +538,7 @@ test('nothing in the header lies over another or is cut off, with alarms standin
     const found = [];
     for (const [width, height] of [[320, 640], [768, 1024], [1024, 768], [1301, 768], [1366, 768], [1501, 900], [1600, 900], [1751, 1000], [1920, 1080], [3840, 2160]]) {
         await page.setViewportSize({ width, height });
-        await page.waitForTimeout(150);
+        await comesToRest(page);
         const texts = await page.evaluate(textsOfHeader);
         assert.ok(texts.length > 15, `${texts.length} texts`);
         const whole = texts.filter((text) => !text.cut).map((text) => text.words).join(' ');
@@ -659,7 +659,7 @@ test('live, reviewing, ended, in a replay and in the past at least four events (
         await reach(opened);
         for (const [width, height] of [[320, 640], [1024, 768], [1280, 720], [1366, 768], [1600, 900], [1920, 1080], [3840, 2160]]) {
             await opened.page.setViewportSize({ width, height });
-            await opened.page.waitForTimeout(300);
+            await comesToRest(opened.page);
             const { events, unread, cut, letters_px } = await opened.page.evaluate(whatIsInSight);
             const at = `${state}, ${width} × ${height}`;
             const roomForBoth = state !== 'reviewing' || height > 1000; // else the command that is reviewed comes first
@@ -684,7 +684,7 @@ test('at every width axe finds nothing, live and ended, in both themes', { timeo
             await shows('complete-through', /complete through [1-9]/);
             for (const [width, height] of [[320, 640], [1024, 768], [1280, 720], [1366, 768]]) {
                 await page.setViewportSize({ width, height });
-                await page.waitForTimeout(200);
+                await comesToRest(page);
                 found.push(...(await findings(page, theme)).map((line) => `${address === server.address ? 'ended' : 'live'}, ${width}, ${theme}: ${line}`));
             }
         }

@@ -5,7 +5,7 @@ import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
 import { comesToLook } from './picture.mjs';
-import { findings, temporaryFolder, waitFor, workplace } from './support.mjs';
+import { comesToRest, findings, temporaryFolder, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 const SIZE = { width: 1000, height: 640 };
@@ -57,7 +57,7 @@ async function flawsOf(page, name) {
     }
     for (const [width, height] of SIZES) {
         await page.setViewportSize({ width, height });
-        await page.waitForTimeout(150);
+        await comesToRest(page);
         flaws.push(...(await page.evaluate(cutOff)).map((line) => `${name}, ${width} px: ${line}`));
     }
     await page.setViewportSize(SIZE);

@@ -131,6 +131,17 @@ export async function waitFor(read, wanted, timeout_ms = 20_000) {
     }
 }
 
+/** Waits until no panel, and nothing in the header, has moved for 150 ms: what is measured after a resize is what stays. */
+export async function comesToRest(page) {
+    let before;
+    for (let tries = 0; tries < 40; ++tries) {
+        await page.waitForTimeout(150);
+        const now = await page.evaluate(() => [...document.querySelectorAll('header, main, .panel, canvas')].map((each) => Object.values(each.getBoundingClientRect().toJSON()).join()).join(';'));
+        if (now === before) return;
+        before = now;
+    }
+}
+
 /** A way to a server on `port` that can be cut and mended, while the server goes on. */
 export async function breakable(port) {
     const open = new Set();
