@@ -131,7 +131,7 @@ export async function waitFor(read, wanted, timeout_ms = 20_000) {
     }
 }
 
-/** Waits until no panel, and nothing in the header, has moved for 150 ms: what is measured after a resize is what stays. */
+/** Waits until neither header nor panels nor pictures have moved for 150 ms, six seconds at most: what is measured after a resize is what stays. */
 export async function comesToRest(page) {
     let before;
     for (let tries = 0; tries < 40; ++tries) {
