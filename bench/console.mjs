@@ -6,6 +6,7 @@ import { cpSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { gzipSync } from "node:zlib";
 import { browser, program, root, serve, temporaryFolder, waitFor } from "../tests/browser/support.mjs";
+import { serve as serveOpenMct } from "../web/openmct/serve.mjs";
 
 if (!globalThis.WebSocket) {
     // Node 20 has it behind a flag.
@@ -83,19 +84,20 @@ function pagesIn(folder) {
     cpSync(at("web/dist"), folder, { recursive: true });
     cpSync(at("bench/console"), folder, { recursive: true });
     for (const name of ["uPlot.iife.min.js", "uPlot.min.css"]) cpSync(at("web/node_modules/uplot/dist", name), path.join(folder, name));
-    cpSync(at("web/openmct/plugin.js"), path.join(folder, "plugin.js"));
-    cpSync(at("web/openmct/node_modules/openmct/dist"), path.join(folder, "openmct"), { recursive: true });
+}
+
+/** The plugin's own page, with the eight channels in one view. */
+function openMctPage() {
     const eight = `openmct.objects.addProvider('bench', { get: async () => ({ identifier: { namespace: 'bench', key: 'eight' }, name: 'Eight', type: 'telemetry.plot.stacked', location: 'ROOT',
         composition: ${JSON.stringify(CHANNELS.map((name) => ({ namespace: "aeolis", key: `1~${name}` })))}, configuration: { series: [], yAxis: {}, xAxis: {} } }) });`;
-    const html = readFileSync(at("web/openmct/index.html"), "utf8").replace("openmct.start();", `${eight}\n      openmct.start();`)
+    return readFileSync(path.join(root, "web/openmct/index.html"), "utf8").replace("openmct.start();", `${eight}\n      openmct.start();`)
         .replace(/start: -2 \* minutes, end: 9 \* minutes/, "start: -20 * minutes, end: 10 * minutes");
-    writeFileSync(path.join(folder, "openmct.html"), html);
 }
 
 const PAGES = {
     bare: `bare.html?channels=${CHANNELS}`,
     console: `?panel=plots&channels=${CHANNELS}`,
-    "Open MCT": "openmct.html#/browse/bench:eight",
+    "Open MCT": "#/browse/bench:eight",
 };
 
 const { folder, remove } = await temporaryFolder();
@@ -104,14 +106,17 @@ pagesIn(web);
 const chrome = await browser();
 const server = await serve({ archive: path.join(folder, "bench.db"), more: ["--scenario", "bench_wideband", "--pace", "100"], web });
 const run = async () => (await server.get("/runs")).runs[0];
+const relay = await serveOpenMct(server.address); // as people serve it: history and live values of the same server
+const openMct = `http://127.0.0.1:${relay.address().port}`;
 async function setPace(pace) {
     const answer = await fetch(`${server.address}/api/v1/rehearsals/current`, { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify({ pace }) });
     if (!answer.ok) throw new Error(await answer.text());
 }
 
 /** A page in a profile of its own, with nothing cached. */
-async function cold(name, scripts = [], address = server.address) {
+async function cold(name, scripts = [], address = name === "Open MCT" ? openMct : server.address) {
     const context = await chrome.newContext({ viewport: SIZE, bypassCSP: name === "Open MCT" }); // its page has a script in itself
+    if (name === "Open MCT") await context.route(`${openMct}/`, (route) => route.fulfill({ contentType: "text/html", body: openMctPage() }));
     for (const script of scripts) await context.addInitScript(script);
     const page = await context.newPage();
     await page.goto(`${address}/${PAGES[name] ?? name}`, { waitUntil: "commit" });
@@ -311,6 +316,8 @@ try {
     console.log(`\n${CHANNELS.length} plots, scenario bench_wideband, ${SIZE.width} x ${SIZE.height}, load average of the machine at the end ${readFileSync("/proc/loadavg", "utf8").split(" ").slice(0, 2).join(" ")}\n`);
     for (const [what, measured, limit, kept] of rows) console.log(`| ${what} | ${measured} | ${limit} | ${kept} |`);
 } finally {
+    relay.closeAllConnections();
+    relay.close();
     await server.stop();
     await chrome.close();
     await remove();
