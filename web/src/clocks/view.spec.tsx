@@ -17,8 +17,8 @@ describe('the header', () => {
     if (run.clocks) run.clocks = { ...run.clocks, lightTimeS: 10, eS: -90, latestUseful: '2012-219T05:02:44.000', usefulBefore: 'coolant_vent' };
     const store = aStore([], run);
     const send = latestSend(store);
-    expect(send).toEqual({ next: { name: 'coolant_vent', at: expect.stringMatching(/^E/), left_s: 164 } });
-    expect(readReleaseAt(send?.next?.at ?? '', store), 'as it is typed for a command that waits').toMatch(/^2012-219T05:02:4[34]/);
+    expect(send).toEqual({ next: { name: 'coolant_vent', at: 'E+01:04', left_s: 164 } });
+    expect(readReleaseAt(send?.next?.at ?? '', store), 'as it is typed for a command that waits').toMatch(/^2012-219T05:02:44/);
   });
   it('says that nothing useful can arrive, and nothing where the run has no clocks', () => {
     expect(latestSend(aStore())).toEqual({ next: undefined });

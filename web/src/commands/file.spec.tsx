@@ -65,6 +65,14 @@ describe('sending a command file', () => {
     expect([sent().length, outcome.value, text.value]).toEqual([1, { good: true, text: 'all 2 taken: #4 to #5' }, '']);
     expect(sent()[0]?.body).toMatchObject({ commands: [{}, { armed: true, confirmation: 'EDL_DO_EDL' }] });
   });
+  it('of which some were taken before one was refused says which, and is not there to be sent again', async () => {
+    read('{"commands":[{"command":"NO_OP"},{"command":"NO_OP"}]}');
+    server.routes[route] = { json: { accepted: true, reason: '', commands: [reply(), reply()] } };
+    await tryFile();
+    server.routes[route] = { status: 409, json: { accepted: false, reason: 'commands[1]: the run is over', commands: [reply({ command: '4' }), reply({ accepted: false, reason: 'the run is over' })] } };
+    await forwardFile();
+    expect([outcome.value?.text, text.value]).toEqual(['refused: commands[1]: the run is over; taken was #4', '']);
+  });
   it('is not armed while one of its commands would be refused, which is named', async () => {
     server.routes[route] = { status: 409, json: { accepted: false, reason: 'commands[1]: EDL_DO_EDL must not be sent now', commands: [reply(), reply({ accepted: false, reason: 'EDL_DO_EDL must not be sent now' })] } };
     await tryFile();

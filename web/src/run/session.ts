@@ -204,9 +204,9 @@ export const asHeard = computed(() => pastRange.value !== undefined && !withReco
 /** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
-  const live = asHeard.value;
-  if (!live) askedLive.delete(of); // its answer replaces the one of live alone
-  post({ type: 'refresh_history', all: !of.going, live });
+  post({ type: 'refresh_history', all: !of.going, live: false });
+  if (asHeard.value) post({ type: 'refresh_history', all: true, live: true }); // the answer above replaces the one of live alone
+  else askedLive.delete(of);
 }
 
 export function onMessage(message: FromWorker): void {
