@@ -86,18 +86,23 @@ function pagesIn(folder) {
     for (const name of ["uPlot.iife.min.js", "uPlot.min.css"]) cpSync(at("web/node_modules/uplot/dist", name), path.join(folder, name));
 }
 
-/** The plugin's own page, with the eight channels in one view. */
-function openMctPage() {
-    const eight = `openmct.objects.addProvider('bench', { get: async () => ({ identifier: { namespace: 'bench', key: 'eight' }, name: 'Eight', type: 'telemetry.plot.stacked', location: 'ROOT',
-        composition: ${JSON.stringify(CHANNELS.map((name) => ({ namespace: "aeolis", key: `1~${name}` })))}, configuration: { series: [], yAxis: {}, xAxis: {} } }) });`;
-    return readFileSync(path.join(root, "web/openmct/index.html"), "utf8").replace("openmct.start();", `${eight}\n      openmct.start();`)
-        .replace(/start: -2 \* minutes, end: 9 \* minutes/, "start: -20 * minutes, end: 10 * minutes");
+/** In the plugin's own page, before it starts: the eight channels in one view. A page that is handed in instead would be a stranger to loopback, and its socket shut out. */
+function eightInOneView(channels) {
+    let openmct;
+    Object.defineProperty(window, "openmct", {
+        get: () => openmct,
+        set: (made) => {
+            openmct = made;
+            openmct.objects.addProvider("bench", { get: async () => ({ identifier: { namespace: "bench", key: "eight" }, name: "Eight", type: "telemetry.plot.stacked", location: "ROOT",
+                composition: channels.map((name) => ({ namespace: "aeolis", key: `1~${name}` })), configuration: { series: [], yAxis: {}, xAxis: {} } }) });
+        },
+    });
 }
 
 const PAGES = {
     bare: `bare.html?channels=${CHANNELS}`,
     console: `?panel=plots&channels=${CHANNELS}`,
-    "Open MCT": "#/browse/bench:eight",
+    "Open MCT": `#/browse/bench:eight?tc.mode=fixed&tc.timeSystem=e&tc.startBound=${-20 * 60_000}&tc.endBound=${10 * 60_000}`,
 };
 
 const { folder, remove } = await temporaryFolder();
@@ -115,8 +120,8 @@ async function setPace(pace) {
 
 /** A page in a profile of its own, with nothing cached. */
 async function cold(name, scripts = [], address = name === "Open MCT" ? openMct : server.address) {
-    const context = await chrome.newContext({ viewport: SIZE, bypassCSP: name === "Open MCT" }); // its page has a script in itself
-    if (name === "Open MCT") await context.route(`${openMct}/`, (route) => route.fulfill({ contentType: "text/html", body: openMctPage() }));
+    const context = await chrome.newContext({ viewport: SIZE });
+    if (name === "Open MCT") await context.addInitScript(eightInOneView, CHANNELS);
     for (const script of scripts) await context.addInitScript(script);
     const page = await context.newPage();
     await page.goto(`${address}/${PAGES[name] ?? name}`, { waitUntil: "commit" });

@@ -4,6 +4,7 @@
 //     openmct.install(AeolisPlugin('http://127.0.0.1:8081'))     the origin of serve.mjs: /api/v1 and /live; this page's own by default
 const NAMESPACE = 'aeolis';
 const AGAIN_MS = 1000; // after a lost connection
+const TOGETHER_MS = 20; // a view's channels come one after the other, and are asked for at once
 const POINTS = 2000; // of a request that does not say how many: thinned by the server to least and largest
 
 /** "E+04:28.3", "E-1:02:00.0". */
@@ -90,19 +91,22 @@ export function AeolisPlugin(origin = location.origin) {
       after = last ?? '0'; // what was before comes by request
       return { idOfName: new Map(channels.map((each) => [each.name, each.id ?? 0])), entry };
     });
+    const connectIn = (ms) => {
+      clearTimeout(again);
+      again = setTimeout(() => connect().catch((error) => console.error(error)), ms);
+    };
     /** Anew whenever what is shown changes: from where the last one was. */
     const connect = async () => {
       const { idOfName, entry } = await ready;
       const before = socket;
       socket = undefined;
       before?.close();
-      clearTimeout(again);
       const channels = [...new Set([...takers].map((taker) => idOfName.get(taker.channel)))];
       if (channels.length === 0) return;
       const mine = new WebSocket(`${origin.replace(/^http/, 'ws')}/live?run=${run}&after=${after}&channels=${channels}`, 'aeolis.v1.json');
       socket = mine;
       mine.onclose = () => {
-        if (socket === mine) again = setTimeout(connect, AGAIN_MS);
+        if (socket === mine) connectIn(AGAIN_MS);
       };
       mine.onmessage = ({ data }) => {
         if (socket !== mine) return;
@@ -117,10 +121,10 @@ export function AeolisPlugin(origin = location.origin) {
     return { add(channel, take) {
       const taker = { channel, take };
       takers.add(taker);
-      connect().catch((error) => console.error(error));
+      connectIn(TOGETHER_MS);
       return () => {
         takers.delete(taker);
-        void connect();
+        connectIn(TOGETHER_MS);
         if (takers.size === 0) ended();
       };
     } };
