@@ -115,7 +115,7 @@ void CommandLifecycle::radiated_again(std::string evidence, Ert at, std::vector<
     out.push_back({Stage::radiated, Status::ok, std::move(evidence), at});
 }
 
-void CommandLifecycle::not_radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out) {
+void CommandLifecycle::radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out) {
     AEOLIS_CHECK(radiated_.has_value());
     out.push_back({Stage::radiated, Status::ok, std::move(evidence), at});
 }

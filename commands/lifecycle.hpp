@@ -67,8 +67,8 @@ class CommandLifecycle {
     void taken_back(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Its frame went out once more: the windows begin anew.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// Its frame would have to go out once more, and must not.
-    void not_radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
+    /// It has left, and would not any more: why its frame does not go out once more, or what it was judged by no longer holds.
+    void radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// The vehicle's receiver of frames reports that it took the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// No report will tell: the vehicle may have taken it or not.

@@ -340,13 +340,12 @@ CommandGateway::Underway* CommandGateway::underway(std::optional<std::uint64_t> 
 void CommandGateway::append(const Underway& underway, const std::vector<commands::StageChange>& changes,
                             std::vector<archive::StageRecord>& stages) {
     const auto* waits = waiting(underway.number);
+    bool undone = false;
     for (const auto& change : changes) {
         note_read_back(underway, change);
         if (change.stage == commands::Stage::executed && change.status == commands::Status::ok)
             if (const auto arguments = commands::decode(underway.lifecycle.command(), underway.packet)) deadlines_.executed(underway.lifecycle.command(), *arguments);
-        if (undoes(change) && commands::changes_offsets(underway.lifecycle.command().name) && undone_.insert(underway.number).second)
-            for (const std::uint64_t number : queue_.doubt_after(underway.number))
-                doubted_.push_back(number);
+        undone = undone || undoes(change);
         auto& stage = stages.emplace_back();
         stage.command = underway.number;
         stage.name = underway.lifecycle.command().name;
@@ -365,6 +364,8 @@ void CommandGateway::append(const Underway& underway, const std::vector<commands
             if (waits->needs_approval) stage.asked_by = underway.controller;
         }
     }
+    if (undone && commands::changes_offsets(underway.lifecycle.command().name) && undone_.insert(underway.number).second)
+        doubt_after(underway.number, changes.back().at, stages);
 }
 
 } // namespace aeolis::server

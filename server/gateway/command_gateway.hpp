@@ -158,6 +158,11 @@ class CommandGateway {
     /// While no station sees the vehicle: what is due, and what the uplink has not radiated, waits for the next pass. Where none
     /// comes all that waits fails, whatever it waits for.
     void await_pass(Ert now, std::vector<archive::StageRecord>& stages);
+    /// What the uplink gave back waits again.
+    void wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now, std::vector<archive::StageRecord>& stages);
+    /// A change of the timeline came to nothing: those after it, which were analysed with it, do not leave before they are analysed
+    /// anew; of those that have left it is said.
+    void doubt_after(std::uint64_t undone, Ert now, std::vector<archive::StageRecord>& stages);
     /// When a pass begins: what the vehicle has not acknowledged would be radiated again, so its preconditions are looked at again.
     void begin_pass(Ert now, std::vector<archive::StageRecord>& stages);
     static std::optional<FieldPlace> clcw_place(const dictionary::Dictionary& dictionary);

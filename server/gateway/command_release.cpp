@@ -5,6 +5,7 @@
 #include "common/bytes.hpp"
 #include "common/tc_frame.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fmt/format.h>
 
@@ -43,17 +44,8 @@ void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stag
     if (const auto* next = stations_.next_after(now)) {
         for (const std::uint64_t number : queue_.postpone_due(now, next->begin))
             if (auto* command = underway(number)) tell_wait(*command, now, stages);
-        for (const std::uint64_t number : not_radiated) {
-            auto* command = underway(number);
-            if (command == nullptr) continue;
-            const commands::CommandQueue::Entry entry{number, command->priority, next->begin, false, false,
-                                                      commands::changes_offsets(command->lifecycle.command().name), false};
-            queue_.add(entry);
-            changes_.clear();
-            command->lifecycle.taken_back("taken back from the uplink, which had not radiated it when the pass ended; " + leaving_text(entry),
-                                          now, changes_);
-            append(*command, changes_, stages);
-        }
+        for (const std::uint64_t number : not_radiated)
+            wait_again(number, next->begin, "when the pass ended", now, stages);
         return;
     }
     const auto fail = [&](std::uint64_t number, Stage stage) {
@@ -69,6 +61,36 @@ void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stag
         fail(number, Stage::released);
 }
 
+void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now, std::vector<archive::StageRecord>& stages) {
+    auto* command = underway(number);
+    if (command == nullptr) return;
+    const commands::CommandQueue::Entry entry{number, command->priority, until, false, false,
+                                              commands::changes_offsets(command->lifecycle.command().name), false};
+    queue_.add(entry);
+    std::vector<commands::StageChange> changes;
+    command->lifecycle.taken_back("taken back from the uplink, which had not radiated it " + why + "; " + leaving_text(entry), now, changes);
+    append(*command, changes, stages);
+}
+
+void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<archive::StageRecord>& stages) {
+    using commands::Stage;
+    using commands::Status;
+    const auto after = [&](const Underway& each) { return each.number > undone && commands::changes_offsets(each.lifecycle.command().name); };
+    const auto reached = [](const Underway& each, Stage stage) { return each.lifecycle.status(stage) == Status::ok; };
+    const auto at_uplink = [&](const Underway& each) { return reached(each, Stage::released) && each.lifecycle.status(Stage::radiated) == Status::pending; };
+    if (std::ranges::any_of(underway_, [&](const Underway& each) { return after(each) && at_uplink(each); }))
+        for (const std::uint64_t number : link_.take_back()) // all of it: those that nobody doubts are released again at once
+            wait_again(number, {}, fmt::format("when command {} came to nothing", undone), now, stages);
+    for (const std::uint64_t number : queue_.doubt_after(undone))
+        doubted_.push_back(number);
+    for (Underway& each : underway_) {
+        if (!after(each) || !reached(each, Stage::radiated) || each.lifecycle.finished()) continue;
+        std::vector<commands::StageChange> changes;
+        each.lifecycle.radiated_in_doubt(fmt::format("has left Earth, and its timeline was analysed with command {}, which came to nothing", undone), now, changes);
+        append(each, changes, stages);
+    }
+}
+
 void CommandGateway::begin_pass(Ert now, std::vector<archive::StageRecord>& stages) {
     if (!std::exchange(unseen_, false)) return;
     bool any = false;
@@ -78,7 +100,7 @@ void CommandGateway::begin_pass(Ert now, std::vector<archive::StageRecord>& stag
         if (failing.empty()) continue;
         any = true;
         changes_.clear();
-        command->lifecycle.not_radiated_again("not acknowledged, and not radiated again: it must not be sent now: " + failing, now, changes_);
+        command->lifecycle.radiated_in_doubt("not acknowledged, and not radiated again: it must not be sent now: " + failing, now, changes_);
         append(*command, changes_, stages);
     }
     if (!any) return;

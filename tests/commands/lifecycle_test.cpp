@@ -223,7 +223,7 @@ TEST_CASE("what the uplink gives back before it was radiated waits again, and ca
 
 TEST_CASE("a frame that is not radiated again says why, and stays radiated", "[lifecycle]") {
     Uplink uplink{"NO_OP"};
-    uplink.lifecycle.not_radiated_again("it must not", Ert{second}, uplink.changes);
+    uplink.lifecycle.radiated_in_doubt("it must not", Ert{second}, uplink.changes);
     CHECK(uplink.evidence(Stage::radiated) == "it must not");
     CHECK(uplink.lifecycle.status(Stage::radiated) == Status::ok);
 }

@@ -436,8 +436,9 @@ TEST_CASE("what a command of the scenario's script is refused for is its history
     CHECK(station.gateway.take_uplinks().size() == 1); // of the second: the first never leaves
 }
 
-TEST_CASE("a change of the timeline leaves after those that it was analysed with; when one is cancelled, only once that is analysed anew", "[gateway][R19][R44]") {
-    Station station;
+namespace {
+
+v1::CommandRequest offset_change() {
     const auto& timeline = tests::shipped_dictionary().timeline;
     auto change = request("EDL_SET_TIMEPOINT_OFFSET");
     for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
@@ -448,7 +449,14 @@ TEST_CASE("a change of the timeline leaves after those that it was analysed with
         argument.set_name(name);
         argument.set_value(value);
     }
-    auto held = change;
+    return change;
+}
+
+} // namespace
+
+TEST_CASE("a change of the timeline leaves after those that it was analysed with; when one is cancelled, only once that is analysed anew", "[gateway][R19][R44]") {
+    Station station;
+    auto held = offset_change();
     held.set_hold(true);
     REQUIRE(station.send(held).command() == 1);
     REQUIRE(station.send(held).command() == 2);
@@ -675,6 +683,50 @@ v1::CommandRequest do_edl() {
 }
 
 } // namespace
+
+TEST_CASE("when a change of the timeline is refused on board, what was analysed with it waits again if it is at the uplink, and is told if it has left", "[gateway][R19][R44]") {
+    Station station;
+    auto change = offset_change();
+    change.set_service("AD");
+    REQUIRE(station.send(change).command() == 1);
+    REQUIRE(station.send(change).command() == 2);
+    CHECK(station.gateway.take_uplinks().size() == 2);
+    tell_room(station, false, now);
+    REQUIRE(station.send(change).command() == 3);
+    auto other = request("NO_OP");
+    other.set_service("AD");
+    REQUIRE(station.send(other).command() == 4);
+    CHECK(station.gateway.take_uplinks().empty());
+    station.stages.clear();
+
+    const auto& dictionary = tests::shipped_dictionary();
+    const auto* refused = dictionary.command("EDL_SET_TIMEPOINT_OFFSET");
+    REQUIRE(refused != nullptr);
+    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", refused->opcode.value}, {"count", 0}}), true, now, station.stages);
+    const auto told = [&](std::uint64_t number, const std::string& stage) {
+        const archive::StageRecord* last = nullptr;
+        for (const auto& each : station.stages)
+            if (each.command == number && each.stage == stage) last = &each;
+        REQUIRE(last != nullptr);
+        return last->status + ": " + last->evidence;
+    };
+    CHECK_THAT(told(1, "accepted"), Catch::StartsWith("failed"));
+    CHECK(told(2, "radiated") == "ok: has left Earth, and its timeline was analysed with command 1, which came to nothing");
+    CHECK_THAT(told(3, "released"), Catch::StartsWith("pending: taken back from the uplink, which had not radiated it when command 1 came to nothing"));
+
+    tell_room(station, true, now);
+    station.gateway.pass(now, station.stages);
+    CHECK_THAT(told(3, "released"), Catch::Contains("does not leave before its timeline is looked at again"));
+    CHECK_THAT(told(4, "released"), Catch::StartsWith("ok"));
+    CHECK(station.gateway.take_uplinks().size() == 1); // the fourth: nobody doubts it
+    v1::CommandRequest holds;
+    holds.set_action(timeline_holds_action);
+    holds.set_number(3);
+    holds.set_request(1);
+    holds.set_analysis("all bounds hold");
+    CHECK(station.send(holds).accepted());
+    CHECK(station.gateway.take_uplinks().size() == 1);
+}
 
 TEST_CASE("what the uplink has not radiated when the last pass ends is told as failed, with the reason", "[gateway][tracking][R44]") {
     Station station{.passes = commands::TrackingSchedule{{{"DSS-43", now, in_s(60.0)}}}};
