@@ -310,12 +310,12 @@ std::string as_flown_csv(const v1::AsFlownReport& report) {
     std::string csv = "of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\n";
     const auto cell = [](bool known, double value) { return known ? fmt::format("{:.6f}", value) : std::string{}; };
     for (const auto& row : report.timepoints())
-        fmt::format_to(std::back_inserter(csv), "timepoint,{},{},{},{},{},{},{},{},{},\n", row.name(), cell(row.has_planned_e_s(), row.planned_e_s()),
+        fmt::format_to(std::back_inserter(csv), "timepoint,{},{},{},{},{},{},{},{},{},\n", csv_text(row.name()), cell(row.has_planned_e_s(), row.planned_e_s()),
                        cell(row.has_predicted_e_s(), row.predicted_e_s()), cell(row.has_tone_e_s(), row.tone_e_s()),
                        cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()),
                        cell(row.has_margin_s(), row.margin_s()), row.tone(), row.verdict());
     for (const auto& row : report.events())
-        fmt::format_to(std::back_inserter(csv), "event,{},,{},,{},{},,,,{}\n", row.name(), cell(row.has_predicted_e_s(), row.predicted_e_s()),
+        fmt::format_to(std::back_inserter(csv), "event,{},,{},,{},{},,,,{}\n", csv_text(row.name()), cell(row.has_predicted_e_s(), row.predicted_e_s()),
                        cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()), csv_text(row.text()));
     return csv;
 }

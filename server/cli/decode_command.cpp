@@ -1,6 +1,7 @@
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
+#include "server/api/csv_text.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
 #include "server/cli/xtce_file.hpp"
@@ -48,16 +49,6 @@ Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
     return kernels;
 }
 
-std::string csv_cell(const std::string& text) {
-    if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-    std::string cell = "\"";
-    for (const char c : text) {
-        cell += c;
-        if (c == '"') cell += c;
-    }
-    return cell + '"';
-}
-
 /// What is printed: a row a packet, or in the end a line a container.
 class Printed {
   public:
@@ -93,7 +84,7 @@ class Printed {
         fmt::print("{},{},{},{}", index_, apid, read_bits(packet, 18, 14),
                    contents.time ? telemetry::time_text(*contents.time, kernels_) : std::string{});
         for (const auto& value : contents.values)
-            fmt::print(",{}", csv_cell(value.name + "=" + telemetry::datum_text(value.raw) + "|" +
+            fmt::print(",{}", csv_text(value.name + "=" + telemetry::datum_text(value.raw) + "|" +
                                        telemetry::datum_text(value.calibrated)));
         fmt::print("\n");
     }

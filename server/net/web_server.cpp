@@ -37,6 +37,7 @@ using Response = http::response<http::string_body>;
 
 constexpr const char* stream_path = "/api/v1/stream";
 constexpr std::size_t slice_octets = 64 << 10;    // ours: of a long body in parts, written at once
+constexpr std::size_t short_octets = 512 << 10;   // ours: of an answer that is given however many long ones wait: the console's files, the dictionary
 constexpr unsigned peers_looked_at_ms = 250; // ours: a question goes on for so long after its client has left
 struct Subprotocol {
     std::string_view name;
@@ -139,7 +140,7 @@ struct OctetsUnderWay {
         OctetsUnderWay& all_;
         std::size_t octets_;
     };
-    bool has_room(std::size_t octets) const { return octets <= slice_octets || now == 0 || now + octets <= max; }
+    bool has_room(std::size_t octets) const { return octets <= short_octets || now == 0 || now + octets <= max; }
 };
 
 /// An address of version 4 as such, also when the socket is one of version 6.

@@ -178,12 +178,15 @@ void RehearsalDesk::tell_looks(const TimelineCheck::Look& look) {
     }
 }
 
+std::string RehearsalDesk::not_going_on(std::uint64_t run) const { return fmt::format("run {} is not the one that goes on ({})", run, state_.run()); }
+
 Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {
     if (control.action_case() == v1::RehearsalControl::kStart) {
         start(control.start(), std::move(began));
         return {};
     }
     if (!going_on()) return Error{"no rehearsal goes on"};
+    if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
     switch (control.action_case()) {
     case v1::RehearsalControl::kPause:
         runner_->pause(control.pause());
@@ -223,7 +226,7 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
             return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
     for (const auto& request : requests)
         if (request.run() != 0 && request.run() != state_.run())
-            return refuse(fmt::format("run {} is not the one that goes on ({})", request.run(), state_.run()));
+            return refuse(not_going_on(request.run()));
     // In the order in which they came: what follows a change of the timeline waits until that was taken or refused. Not who stops
     // something: that changes no timeline, and nothing may leave while it waits.
     const bool stops = std::ranges::all_of(requests, [](const v1::CommandRequest& request) { return request.action() == "hold"; });

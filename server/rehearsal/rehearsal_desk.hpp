@@ -74,6 +74,8 @@ class RehearsalDesk {
     void look_again();
     void tell_looks(const TimelineCheck::Look& look);
     Result<void> refusal_while_going_on() const;
+    /// Why what is asked of this run is not done: another goes on.
+    std::string not_going_on(std::uint64_t run) const;
 
     const ScenarioLibrary& scenarios_;
     const dictionary::Dictionary& dictionary_;

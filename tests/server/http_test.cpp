@@ -259,6 +259,10 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
     CHECK(control(radar).status == 202);
     CHECK(control(R"({"system_fault":{"duration_s":3}})").status == 202);
     CHECK(control(R"({"computer_reset":true})").status == 202);
+    CHECK(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":1,"pace":2})").status == 202);
+    const auto of_another = web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":2,"stop":true})");
+    CHECK(of_another.status == 422);
+    CHECK_THAT(of_another.body, Catch::Contains("run 2 is not the one that goes on (1)"));
     const Asked refused[] = {
         {"", "", R"({})", 422, "device_fault, system_fault, computer_reset or station_outage"},
         {"", "", R"({"computer_reset":false})", 422, "false asks for nothing"},

@@ -10,6 +10,7 @@ import { landedSclk } from '../run/whose';
 import { inWords } from '../run/dictionary';
 import { isImportant, outages } from '../timeline/model';
 import { phaseSteps } from '../phases/model';
+import { GAP_S } from '../plots/model';
 import { CORRIDOR } from './corridor';
 import { LEAST_M, LEAST_MPS, fraction, halfWidth, isClear, pairs, placeIn, wayOf } from './model';
 import type { Box } from './model';
@@ -20,7 +21,6 @@ const RIGHT = 22;
 const BOTTOM = 40;
 const TOP_M = 200000;
 const FASTEST_MPS = 8000;
-const GAP_S = 6; // ours: longer without a sample is a gap
 
 /** The picture ends at touchdown: what the descent stage does after it is not the landing. */
 const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, landedSclk(run));

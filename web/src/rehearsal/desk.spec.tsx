@@ -67,7 +67,7 @@ describe('the instructor’s desk', () => {
     server.routes['POST /rehearsals/current'] = { status: 422, json: { error: 'device_faults[0].kind: is not possible for this device' } };
     await open();
     await send('fault-what');
-    expect(server.asked.at(-1)?.body).toEqual({ inject: injectionOf('DEVICE_RADAR', 'A', 'DEVICE_FAULT_KIND_SILENT', 10) });
+    expect(server.asked.at(-1)?.body).toEqual({ run: 1, inject: injectionOf('DEVICE_RADAR', 'A', 'DEVICE_FAULT_KIND_SILENT', 10) });
     expect(shown('instructor-message')?.textContent).toContain('not possible for this device');
   });
   it('keeps a note once, in the instructor’s name, and apart from the shift log', async () => {
@@ -80,7 +80,7 @@ describe('the instructor’s desk', () => {
     field.value = ' do they see it? ';
     act(() => void field.dispatchEvent(new Event('input', { bubbles: true })));
     await send('instructor-note');
-    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([{ method: 'POST', path: '/rehearsals/current', body: { note: { text: 'do they see it?', by: 'Ida' } } }]);
+    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([{ method: 'POST', path: '/rehearsals/current', body: { run: 1, note: { text: 'do they see it?', by: 'Ida' } } }]);
     expect([field.value, shown('instructor-message')?.textContent]).toEqual(['', '● kept for the review']);
     uplink.value = { ...uplink.value, controller: '' };
   });

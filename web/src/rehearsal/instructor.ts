@@ -51,7 +51,7 @@ async function intervene(what: object, done: string): Promise<boolean> {
   busy.value = true;
   message.value = undefined;
   try {
-    await change('/rehearsals/current', what);
+    await change('/rehearsals/current', { ...what, run: store.value?.id ?? 0 });
     message.value = { good: true, text: done };
     await refreshInterventions();
     return true;

@@ -67,7 +67,7 @@ describe('a rehearsal', () => {
     act(() => button('stop-rehearsal')?.click());
     expect(heard).toEqual([]);
     act(() => button('stop-rehearsal')?.click());
-    expect(heard).toEqual([{ type: 'control', control: { action: 'stop' } }]);
+    expect(heard).toEqual([{ type: 'control', run: 1, control: { action: 'stop' } }]);
   });
   it('that is continued says what is known of how far it is, and can be left to itself: then nothing is shown unasked', async () => {
     let answer = (_: object) => undefined as void;

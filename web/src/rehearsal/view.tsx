@@ -6,6 +6,7 @@ import { canContinue, isReal } from '../mode/model';
 import { changeReplayPace, playOrHold } from '../replay/model';
 import { wordsFor } from '../run/api';
 import { control, modeNow, pastRange, replay, runNow, runs, scenarios, startRehearsal, store, watch } from '../run/session';
+import { isGoing } from '../run/start';
 import { InstructorDesk } from './desk';
 import { PACES, attainedText, nextPace, paceText } from './model';
 import { Review } from './review';
@@ -63,10 +64,12 @@ async function begin(order: Parameters<typeof startRehearsal>[0]): Promise<void>
   }
 }
 
+/** The run that was cut off and is waited for. */
+const continued = () => (starting.value && 'continue_run' in starting.value ? starting.value.continue_run : undefined);
+
 /** A run that was cut off is flown again before it goes on; how far it is only the server knows. */
 function CatchingUp() {
-  const order = starting.value;
-  const run = order && 'continue_run' in order ? order.continue_run : undefined;
+  const run = continued();
   if (run === undefined) return left.value ? <p role="status">{left.value}</p> : null;
   const items = runs.value.find((each) => Number(each.run) === run)?.lastSeq;
   return (
@@ -94,7 +97,7 @@ export function EndRun({ run, name, words }: { run: number; name: string; words:
         event.stopPropagation();
       }}
       onClick={() => {
-        if (sure) control({ action: 'stop' });
+        if (sure) control({ action: 'stop' }, run);
         ending.value = sure ? '' : mine;
       }}>{sure ? `▲ press again: run ${run} ends for everyone` : words}</button>
   );
@@ -103,7 +106,7 @@ export function EndRun({ run, name, words }: { run: number; name: string; words:
 export function Rehearsal() {
   const run = runNow();
   const allowed = mayRehearse();
-  const going = runs.value.find((other) => ['waiting', 'running', 'paused'].includes(other.state));
+  const going = runs.value.find(isGoing);
   const names = scenarios.value.length > 0 ? scenarios.value : [{ name: 'nominal', title: '' }];
   const badSeed = !/^\d{1,15}$/.test(seed.value);
   const past = pastRange.value; // nothing is sent from there, and nothing there is of now
@@ -142,12 +145,12 @@ export function Rehearsal() {
                   <td>{each.started}</td><td class="number">{state === 'past' ? '—' : String(now.lastSeq)}</td>
                   <td>
                     {shown ? '◀ shown ' : (
-                      <button type="button" onClick={() => watch(['waiting', 'running', 'paused'].includes(each.state) ? 0 : Number(each.run))}>show</button>
+                      <button type="button" onClick={() => watch(isGoing(each) ? 0 : Number(each.run))}>show</button>
                     )}
                     {state === 'interrupted' && canContinue(each) && (
                       <button type="button" disabled={blocked} data-testid={`continue-${String(each.run)}`}
                         title="flown again up to its last item, each held against the archive; then it goes on"
-                        onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}>{starting.value ? 'catching up…' : 'continue'}</button>
+                        onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}>{continued() === Number(each.run) ? 'catching up…' : 'continue'}</button>
                     )}
                   </td>
                 </tr>

@@ -142,9 +142,10 @@ export function whyNotSent(): string | undefined {
   return state === 'live' ? undefined : state === 'catching_up' ? 'catching up: nothing was sent' : NOT_SENT;
 }
 
-export function control(action: ControlAction): void {
+/** Of the run that is shown, if no other is named: another that goes on meanwhile is not touched. */
+export function control(action: ControlAction, run = store.value?.id ?? 0): void {
   const why = whyNotSent();
-  if (why === undefined) post({ type: 'control', control: action });
+  if (why === undefined) post({ type: 'control', run, control: action });
   else notify(why);
 }
 

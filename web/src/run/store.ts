@@ -7,6 +7,7 @@ import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
 import type { BatchOfFacts, Column, Fact } from '../stream/messages';
 import { LIMIT_NOT_DRAWN, Series } from './series';
+import { isGoing } from './start';
 import { secondsOfDayOfYear } from './time';
 
 const EVENT_LIMIT = 20000;
@@ -120,7 +121,7 @@ export class RunStore {
     return Number(this.run.run);
   }
   get going(): boolean {
-    return ['waiting', 'running', 'paused'].includes(this.run.state);
+    return isGoing(this.run);
   }
   get entrySclk(): number {
     return this.run.entrySclk;

@@ -81,5 +81,5 @@ export type ToWorker =
   | { type: 'reconnect' } // at once: whoever was turned away has logged in
   | { type: 'refresh_history'; all: boolean; live: boolean } // live: only what came so, as fine as if nothing else had come
   | { type: 'command'; request: number; run: number; intent: CommandIntent }
-  | { type: 'control'; control: ControlAction }
+  | { type: 'control'; run: number; control: ControlAction }
   | { type: 'ask'; ask: number; question: Question; path: string };

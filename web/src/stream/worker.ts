@@ -301,7 +301,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       }
       break;
     case 'control':
-      if (!send({ case: 'control', value: control(message.control) })) {
+      if (!send({ case: 'control', value: { ...control(message.control), run: BigInt(message.run) } })) {
         post({ type: 'trouble', words: 'not connected: nothing was sent' });
       }
       break;

@@ -149,7 +149,7 @@ describe('the recording’s way down', () => {
     act(() => button?.click());
     expect([heard, button?.textContent]).toEqual([[], '▲ press again: run 1 ends for everyone']);
     act(() => button?.click());
-    expect(heard).toEqual([{ type: 'control', control: { action: 'stop' } }]);
+    expect(heard).toEqual([{ type: 'control', run: 1, control: { action: 'stop' } }]);
   });
   it('of a real vehicle is nobody’s to stop here', () => {
     const { root, button } = shown({ venue: 'downlink' });
