@@ -129,7 +129,8 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
     if (!names) return names.error();
     const auto complete = reader.recording_complete(run.run);
     if (!complete) return complete.error();
-    const auto outages = live_outages(reader, run);
+    // Why the live link was down says nothing of what only the recording brought.
+    const auto outages = only == Source::recorded ? Result<std::vector<Outage>>{std::vector<Outage>{}} : live_outages(reader, run);
     if (!outages) return outages.error();
 
     const double longest_s = longest_interval_s(reader.dictionary, places);

@@ -11,7 +11,7 @@ namespace aeolis::archive {
 ///          verdict against the other path
 /// Gap      longer than `stale_intervals` of the slowest interval at which the plan promises the channel's packet, or with
 ///          values between that were undefined on board. At an end of the range only where that end was asked for
-/// Reason   what was told of the link that is live while it was down, where that lies in the gap; else not known
+/// Reason   what was told of the link that is live while it was down, where that lies in the gap; else not known, and always so of the recording alone
 /// Limits   exact_samples_max packets
 /// @param asked  with the ends that were asked for; `range` the same, closed
 /// @param only  what came so; none: both sources

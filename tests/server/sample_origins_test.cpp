@@ -108,4 +108,6 @@ TEST_CASE("of one source a series tells the gaps of that source", "[reader][arch
         landing.take(recorded(Landing::packet(i)));
     CHECK(text_of(landing.series({}, archive::Source::realtime)).find("gap 1019-1035 uhf_live: plasma blackout") != std::string::npos);
     CHECK(text_of(landing.series({}, archive::Source::recorded)) == "15 recorded relay never_seen_live 1020-1034; ");
+    // By the outage of a link that is not asked about no gap is explained.
+    CHECK(text_of(landing.series({1010.0, 1040.0}, archive::Source::recorded)) == "15 recorded relay never_seen_live 1020-1034; gap 1010-1020 ; gap 1034-1040 ; ");
 }
