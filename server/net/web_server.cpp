@@ -425,7 +425,8 @@ void WebServer::State::end() {
     error_code ignored;
     acceptor.close(ignored);
     farewell.expires_after(farewell_max);
-    farewell.async_wait([this](error_code) {
+    farewell.async_wait([this](error_code asked_again) {
+        if (asked_again) return;
         streams.forget(); // who does not answer goes with io
         io.stop();
     });
