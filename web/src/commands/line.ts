@@ -96,16 +96,19 @@ export function choose(name: string): void {
   message.value = undefined;
 }
 
-export function complete(): void {
-  const within = inArguments.value;
+/** Puts what is offered into the line; false when that changes nothing. */
+export function complete(): boolean {
+  const [before, within] = [line.value, inArguments.value];
   if (within) {
     const offer = within.offers[choiceIndex.value] ?? within.offers[0];
     if (offer !== undefined) line.value = line.value.replace(/\S*$/, within.stem + offer);
     choiceIndex.value = 0;
-    return;
+    return line.value !== before;
   }
   const command = offered.value[choiceIndex.value];
   if (command) line.value = [command.name.toLowerCase(), ...[...typed.value.given].map(([name, value]) => `${name}=${value}`)].join(' ') + (command.arguments.length > 0 ? ' ' : '');
+  choiceIndex.value = 0;
+  return line.value !== before;
 }
 
 /** One step on. Returns nothing; what happened stands in `step` and `message`. */

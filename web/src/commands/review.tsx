@@ -111,7 +111,7 @@ function Verdict({ command }: { command: DictionaryCommand }) {
       {problem !== undefined ? <p class="verdict unknown">○ {problem}</p>
         : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
           : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
-          : reply.accepted ? <p class="verdict holds">✓ {isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
+          : reply.accepted ? <p class="verdict holds">✓ {step.value === 'armed' ? 'It is sent once its name is typed.' : isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
             : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
       {tooLateFor.length > 0 && <p class="verdict caution" data-testid="too-late">▲ Too late for {tooLateFor.slice(0, 3).map(inWords).join(', ')}{tooLateFor.length > 3 && ` and ${tooLateFor.length - 3} more`}.</p>}
     </>

@@ -298,7 +298,7 @@ describe('the command line', () => {
     await act(() => answered(forward()));
     expect(step.value).toBe('armed');
     // What matters at that moment stands with it: why to beware, and the ground's word.
-    expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(/ARMED: EDL_DO_EDL.*Starts the timeline.*It would be sent once it is armed and its name is typed.*Type EDL_DO_EDL/);
+    expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(/ARMED: EDL_DO_EDL.*Starts the timeline.*It is sent once its name is typed.*Type EDL_DO_EDL/);
     await act(() => forward());
     expect([step.value, message.value?.good]).toEqual(['armed', false]);
     act(() => back());

@@ -13,8 +13,9 @@ import './style.css';
 function onKey(event: KeyboardEvent): void {
   if (event.key === 'Enter') void forward();
   else if (event.key === 'Escape') back();
-  else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey && (inArguments.value?.offers ?? offered.value).length > 0) complete();
-  else if (event.key === 'ArrowDown' && step.value === 'type') choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
+  else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey) {
+    if (!complete()) return; // it goes on to the next field
+  } else if (event.key === 'ArrowDown' && step.value === 'type') choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
   else if (event.key === 'ArrowUp' && step.value === 'type') choiceIndex.value = Math.max(0, choiceIndex.value - 1);
   else if (event.key !== '/' || line.value !== '') return; // the key that opens the line, pressed in it, is no text
   event.preventDefault();

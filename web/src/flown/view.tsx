@@ -1,50 +1,23 @@
 // A run as it was flown: when each timepoint came by plan, prediction, tone, UHF and recording, what flight reported between them, and what was
 // silent meanwhile.
-import { signal } from '@preact/signals';
-import { useEffect } from 'preact/hooks';
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
-import { ask, pastRange, runNow, store } from '../run/session';
+import { reportOfRun } from '../run/report';
+import { pastRange, runNow } from '../run/session';
 import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
 
 const AGAIN_MS = 5000; // ours: while a run goes on; counting it is work for the archive
-const report = signal<{ run: number; of: AsFlownReport } | undefined>(undefined);
-const problem = signal<string | undefined>(undefined);
-
-async function refresh(): Promise<void> {
-  const run = store.value;
-  if (!run) return;
-  try {
-    const of = await ask<AsFlownReport>('report', `/runs/${run.id}/report`);
-    if (store.value === run) report.value = { run: run.id, of };
-    problem.value = undefined;
-  } catch (error) {
-    problem.value = error instanceof Error ? error.message : String(error);
-  }
-}
+const flown = reportOfRun<AsFlownReport>('report', 'report', AGAIN_MS);
 
 export function Flown() {
   const run = runNow();
-  const id = run?.id;
-  useEffect(() => {
-    let told = -1;
-    const look = () => {
-      const through = store.value?.completeThrough ?? -1;
-      if (through === told) return;
-      told = through;
-      void refresh();
-    };
-    look();
-    const timer = setInterval(look, AGAIN_MS);
-    return () => clearInterval(timer);
-  }, [id]);
+  const of = flown.use();
   if (!run) return null;
-  const of = report.value?.run === run.id ? report.value.of : undefined;
   return (
     <div class="table-box" data-testid="flown">
       {pastRange.value && <p class="not-past">▲ The report is of the whole run, with all that is known of it now.</p>}
       <div class="table-tools">
-        <span data-testid="flown-summary">{of ? summaryOf(of) : problem.value ? `✖ ${problem.value}` : 'asking the archive…'}</span>
+        <span data-testid="flown-summary">{of ? summaryOf(of) : flown.problem.value ? `✖ ${flown.problem.value}` : 'asking the archive…'}</span>
         <a href={`api/v1/runs/${run.id}/report`} download={`as-flown-${run.id}.json`}>take the report as JSON</a>
         <a href={`api/v1/runs/${run.id}/report?format=csv`} download={`as-flown-${run.id}.csv`}>its timepoints and events as CSV</a>
       </div>

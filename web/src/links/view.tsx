@@ -1,6 +1,6 @@
 // The links side by side: which is up, which is silent and why, what each brought and lost.
 import { LINK_STATUS, STATUS } from '../design/status';
-import { useReport } from '../proof/report';
+import { proofOfRun } from '../proof/report';
 import { cutoff, pastRange, runNow, stream } from '../run/session';
 import { duration, fromEntry } from '../run/time';
 import { framesKept, linkTitle, linkViews } from './model';
@@ -53,7 +53,7 @@ function Silences({ views }: { views: LinkView[] }) {
 
 export function Links() {
   const run = runNow();
-  const proof = useReport();
+  const proof = proofOfRun.use();
   if (!run) return <p class="none">no run</p>;
   const views = linkViews(run, proof, cutoff.value, stream.value.state === 'lost');
   return (

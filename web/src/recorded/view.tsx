@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
-import { ask, dictionary, lookAtPast, replay, runNow, signalOfRun, store } from '../run/session';
+import { ask, dictionary, lookAtPast, pastRange, replay, runNow, signalOfRun, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { wordsFor } from '../run/api';
 import { download, save, sizeWords } from './download';
@@ -19,7 +19,7 @@ const channels = signal<string | undefined>(undefined);
 const size = signal('20000');
 const rows = signalOfRun<RangeRow[]>([]);
 const summary = signalOfRun<RecordingSummary | undefined>(undefined);
-const message = signalOfRun<{ good: boolean; text: string } | undefined>(undefined);
+const message = signalOfRun<{ good: boolean; text: string; range?: { from: number; to: number } } | undefined>(undefined);
 const csvPath = signalOfRun<string | undefined>(undefined);
 const underWay = signal(false);
 /** The file that is being taken. */
@@ -72,9 +72,10 @@ async function query(): Promise<void> {
     run.addRange(columnsOf(list), run.entrySclk + start, run.entrySclk + end);
     csvPath.value = `api/v1${samplesPath(run.id, names, run.entrySclk + start, run.entrySclk + end)}`;
     replay.value = undefined;
-    lookAtPast({ from: start, to: end }, true);
+    const range = { from: start, to: end };
+    lookAtPast(range, true);
     const samples = rows.value.reduce((sum, row) => sum + row.samples, 0);
-    message.value = { good: true, text: `${samples} samples of ${rows.value.length} channels; every panel now shows this range` };
+    message.value = { good: true, text: `${samples} samples of ${rows.value.length} channels`, range };
     summary.value = await ask<RecordingSummary>('recording', `/runs/${run.id}/recording`).catch(() => undefined);
   } catch (error) {
     message.value = { good: false, text: error instanceof Error ? error.message : String(error) };
@@ -104,7 +105,7 @@ export function Recorded() {
         <label>points <input class="points" value={size.value} inputMode="numeric" onInput={(event) => (size.value = event.currentTarget.value)} /></label>
         <button type="submit" disabled={underWay.value} data-testid="range-query">{underWay.value ? 'asking…' : 'ask'}</button>
       </form>
-      {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">{message.value.good ? '✓' : '✖'} {message.value.text}</p>}
+      {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">{message.value.good ? '✓' : '✖'} {message.value.text}{message.value.range && pastRange.value === message.value.range && !replay.value && '; every panel now shows this range'}</p>}
       <div class="table-scroll" tabIndex={0} aria-label="recorded range">
         {rows.value.length > 0 && (
           <table data-testid="range-table">

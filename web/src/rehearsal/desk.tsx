@@ -29,7 +29,8 @@ function NoteForm() {
   return (
     <form class="table-tools" onSubmit={(event) => {
       event.preventDefault();
-      void write(text.value).then((written) => written && (text.value = ''));
+      const sent = text.value;
+      void write(sent).then((written) => written && text.value === sent && (text.value = '')); // what was typed meanwhile is the next
     }}>
       <input class="note-text" data-testid="instructor-note" aria-label="write an instructor’s note" placeholder="what you see them do; Enter keeps it with its instant" value={text.value}
         onInput={(event) => (text.value = event.currentTarget.value)} />

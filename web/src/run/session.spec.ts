@@ -6,7 +6,7 @@ import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
-import { change, control, dismissNotice, notices, onMessage, sendCommand, store, useForTest } from './session';
+import { backToLive, change, control, dismissNotice, lookAtPast, notices, onMessage, pastRange, refreshRuns, runs, sendCommand, store, useForTest, watched } from './session';
 
 const soon = () => vi.advanceTimersByTimeAsync(0);
 
@@ -112,5 +112,29 @@ describe('a run', () => {
     state('live');
     control({ action: 'stop' });
     expect(heard).toHaveLength(1);
+  });
+  it('that begins while the past of another is looked at is told once, and shown when who looks comes back', () => {
+    state('live');
+    watched.value = 0;
+    const shown = store.value;
+    lookAtPast({ from: -100, to: 0 }, true);
+    const next = aRun({ run: 2n, started: '2026-01-01T12:00:00Z', seed: 2n });
+    for (let i = 0; i < 2; ++i) onMessage({ type: 'run', run: next, fresh: true });
+    const words = 'Run 2, nominal, has begun. What is shown stays the past of run 1; Esc leaves it for the new one.';
+    expect([store.value === shown, notices.value.map((notice) => notice.text), runs.value[0]?.run]).toEqual([true, [words], 2n]);
+    dismissNotice();
+    onMessage({ type: 'run', run: next, fresh: false });
+    expect(notices.value).toEqual([]);
+    backToLive();
+    expect([store.value, pastRange.value, heard.at(-1)]).toEqual([undefined, undefined, { type: 'watch', run: 0 }]);
+  });
+  it('that is over is not going again by an answer from before its end; one that was cut off may go on', async () => {
+    for (const [held, polled, then] of [['finished', 'running', 'finished'], ['interrupted', 'running', 'running'], ['interrupted', 'interrupted', 'interrupted']]) {
+      useForTest(aStore([], aRun({ ...one, state: held })), aDictionary);
+      runs.value = [];
+      vi.stubGlobal('fetch', vi.fn(async () => new Response(JSON.stringify({ runs: [{ run: '1', started: one.started, seed: '1', state: polled, last_seq: '0' }] }))));
+      await refreshRuns();
+      expect([runs.value[0]?.state, store.value?.run.state]).toEqual([then, then]);
+    }
   });
 });

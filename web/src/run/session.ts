@@ -103,6 +103,16 @@ export function lookAtPast(range: { from: number; to: number }, recorded: boolea
 export function backToLive(): void {
   replay.value = undefined;
   pastRange.value = undefined;
+  if (begun) watch(0);
+}
+
+/** A run that began while the past of another was looked at: the stream is of it, and so will be what is shown, once who looks comes back. */
+let begun: { run: bigint; words: string } | undefined;
+
+function staysInThePast(of: RunStore, run: RunState): void {
+  if (begun?.run === run.run) return;
+  begun = { run: run.run, words: `Run ${run.run}, ${run.scenario}, has begun. What is shown stays the past of run ${of.id}; Esc leaves it for the new one.` };
+  notify(begun.words);
 }
 
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
@@ -187,6 +197,8 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
 
 export function watch(run: number): void {
   watched.value = run;
+  if (begun) notices.value = notices.value.filter((notice) => notice.text !== begun?.words);
+  begun = undefined;
   backToLive();
   const url = new URL(location.href);
   if (run === 0) url.searchParams.delete('run');
@@ -298,6 +310,8 @@ function takeRun(run: RunState | undefined): void {
   if (known?.id === Number(run.run)) {
     if (!isSameRun(known.run, run)) return takeOtherArchive();
     known.update(run);
+  } else if (watched.value === 0 && known && pastRange.value) {
+    staysInThePast(known, run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
     const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
     store.value = new RunStore(run, (channel) => drawn.has(channel));
@@ -310,32 +324,38 @@ function takeRun(run: RunState | undefined): void {
 }
 
 let timepointsUnderWay = false;
+let timepointsOf: RunStore | undefined; // whose they are
 async function refreshTimepoints(): Promise<void> {
   const of = store.value;
   if (!of || timepointsUnderWay) return;
   timepointsUnderWay = true;
   try {
     const list = await ask<TimepointList>('timepoints', `/runs/${of.id}/timepoints`);
-    if (store.value === of) [timepoints.value, anchors.value] = [list.timepoints, list.anchors];
+    if (store.value === of) [timepoints.value, anchors.value, timepointsOf] = [list.timepoints, list.anchors, of];
   } catch {
     // The timeline says that it has no plan; the next round asks again.
   } finally {
     timepointsUnderWay = false;
+    if (store.value !== of) void refreshTimepoints();
   }
 }
 
-async function refreshRuns(): Promise<void> {
+export async function refreshRuns(): Promise<void> {
   const [before, shown] = [runs.value, store.value];
   try {
     const all = await askRuns();
     const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
     if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run))) return takeOtherArchive();
-    runs.value = all;
-    const mine = runs.value.find((run) => Number(run.run) === store.value?.id);
-    if (mine && store.value && !store.value.going) store.value.update(mine);
+    const held = store.value;
+    // What is over stays over: an answer from before its end may come after it. One that was cut off may go on.
+    runs.value = all.map((run) => (held && run.run === held.run.run && held.run.state === 'finished' ? held.run : run));
+    const mine = runs.value.find((run) => run.run === held?.run.run);
+    if (mine && held && (!held.going || begun)) held.update(mine);
     // A run that began while the one we follow was already over, or lost with its server: go there.
     const going = runs.value.find(isGoing);
-    if (watched.value === 0 && going && store.value && !store.value.going && Number(going.run) !== store.value.id) watch(0);
+    if (watched.value !== 0 || !going || !held || held.going || going.run === held.run.run) return;
+    if (pastRange.value) staysInThePast(held, going);
+    else watch(0);
   } catch {
     // Not connected; the header says so.
   }
@@ -438,7 +458,7 @@ export async function begin(): Promise<void> {
   });
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
-    if (store.value?.going) await refreshTimepoints();
+    if (store.value?.going || store.value !== timepointsOf) await refreshTimepoints();
   });
   void everySeconds(5, async () => {
     if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory(store.value);

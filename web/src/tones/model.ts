@@ -1,6 +1,6 @@
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
-import { secondsOfDayOfYear } from '../run/time';
+import { fromEntry, secondsOfDayOfYear } from '../run/time';
 
 export interface ToneBar {
   from_e_s: number;
@@ -41,11 +41,16 @@ export function neighbour(store: RunStore, cutoff: number, sclk: number | undefi
   return to >= all.length - 1 ? undefined : all[to];
 }
 
-/** The title in words: what the vehicle says now. */
-export function toneTitle(tone: Tone | undefined): string {
+const OLD_S = 40; // ours: four symbols; by then the next would have come, decoded or not
+
+/** Whether it is not what the vehicle says now, at `seen_sclk`, but the last that was heard of it. */
+export const isOld = (tone: Tone | undefined, seen_sclk: number): boolean => tone !== undefined && seen_sclk - tone.sclk > OLD_S;
+
+/** The title in words: what the vehicle says now, or what was heard last and when. */
+export function toneTitle(tone: Tone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
-  if (tone.tone === undefined) return 'Tone not decoded';
-  return `Tone ${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
+  const meaning = tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
+  return last_e_s === undefined ? `Tone ${meaning}` : `Last tone, ${fromEntry(last_e_s)}: ${meaning}`;
 }
 
 function lockInWords(tone: Tone): string {

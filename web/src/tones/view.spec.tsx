@@ -4,7 +4,7 @@ import { aStore, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import { drawSpectrum } from './view';
-import { bestTones, latestTone, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import { bestTones, isOld, latestTone, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
 
 describe('tones', () => {
   it('say an erasure as an erasure', () => {
@@ -17,6 +17,13 @@ describe('tones', () => {
     const store = aStore([tone({ sclk: 700, tone: 7, meaning: 'Entry interface', likelihood: 0.998, runnerUp: 8, runnerUpLikelihood: 0.001, locked: true, cN0Dbhz: 22, model: 'statistical' })]);
     expect(toneTitle(latestTone(store, Infinity))).toBe('Tone 7 · Entry interface');
     expect(toneEvidence(latestTone(store, Infinity))).toBe('likelihood 0.998 · next 8 at 0.001 · ■ lock, 22.0 dB-Hz · statistical');
+  });
+  it('tell of a tone that is long past as the last one, with its time, not as what the vehicle says now', () => {
+    const last = tone({ sclk: 700, tone: 7, meaning: 'Entry interface' }).item.value as Tone;
+    const lost = tone({ sclk: 700 }).item.value as Tone;
+    expect([700, 740, 740.1].map((seen) => isOld(last, seen))).toEqual([false, false, true]);
+    expect(isOld(undefined, 900)).toBe(false);
+    expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual(['Last tone, E−05:00: 7 · Entry interface', 'Last tone, E−05:00: not decoded']);
   });
   it('show what a receiver saw, and of a statistical tone no spectrum', () => {
     const spectrum = new Uint8Array(128).fill(60);

@@ -9,7 +9,7 @@ import { cursor } from '../run/cursor';
 import { cutoff, shownRun, tick } from '../run/session';
 import { fromEntry } from '../run/time';
 import { plotSpan } from '../run/window';
-import { bestTones, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import { bestTones, isOld, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
 import './style.css';
 
 const LEFT = 42;
@@ -157,15 +157,18 @@ export function Tones() {
   void tick.value;
   const [run, tone] = [shownRun(), toneNow()];
   const back = tone !== undefined && tone.sclk === chosenSclk();
+  const at_e_s = run && tone && tone.sclk - run.entrySclk;
+  const old = !back && run !== undefined && isOld(tone, Math.min(run.seenSclk, cutoff.value));
+  const title = toneTitle(tone, old ? at_e_s : undefined);
   return (
-    <Panel name="tones" title={<span class="tone-title" data-testid="tone-title">{toneTitle(tone)}</span>} extra={
-      back && run && tone && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
+    <Panel name="tones" title={<span class={`tone-title ${old ? 'tone-old' : ''}`} data-testid="tone-title">{title}</span>} extra={
+      back && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
     }>
       <p class="tone-evidence" data-testid="tone-evidence">
-        {back && run && tone && <b>at {fromEntry(tone.sclk - run.entrySclk)} · </b>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
+        {at_e_s !== undefined && <>{back ? <b>at {fromEntry(at_e_s)}</b> : <>at {fromEntry(at_e_s)}</>} · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div class="tone-symbols" data-testid="tone-symbols" role="group" aria-label="symbols: ← → choose one" tabIndex={0} onKeyDown={onKey}>
-        <Canvas label={toneTitle(tone)} testId="tone-canvas" draw={draw} onPoint={choose}
+        <Canvas label={title} testId="tone-canvas" draw={draw} onPoint={choose}
           onHover={(px) => (cursor.value = px === undefined || px < LEFT ? undefined : timeAt(px))}
           keyOf={() => {
             const strip = shownRun();

@@ -5,7 +5,7 @@ import { STATUS, VERDICTS } from '../design/status';
 import type { Verdict } from '../design/status';
 import type { PacketList, PacketRow, ProofReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
-import { reportProblem, useReport } from '../proof/report';
+import { proofOfRun } from '../proof/report';
 import { ask, pastRange, runNow, store } from '../run/session';
 import { fromEntry } from '../run/time';
 import { Mark } from './mark';
@@ -142,9 +142,9 @@ function Packets() {
 
 export function Verdicts() {
   const run = runNow();
-  const proof = useReport();
+  const proof = proofOfRun.use();
   if (!run) return <p class="none">no run</p>;
-  if (!proof) return <p class="none" role="status">{reportProblem.value ? `✖ ${reportProblem.value}` : 'asking for the report…'}</p>;
+  if (!proof) return <p class="none" role="status">{proofOfRun.problem.value ? `✖ ${proofOfRun.problem.value}` : 'asking for the report…'}</p>;
   const said = sentence(proof);
   const rows = rowsOf(proof.streams);
   return (
