@@ -95,7 +95,7 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
     page.on('pageerror', (error) => problems.push(String(error)));
     page.on('console', (message) => {
         // A connection that is refused while the server is down is what one of the tests is about.
-        if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(message.text());
+        if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(`${message.text()} ${message.location().url}`);
     });
     page.setDefaultTimeout(20_000);
     await page.goto(address);

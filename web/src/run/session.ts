@@ -458,7 +458,8 @@ export async function begin(): Promise<void> {
   });
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
-    if (store.value?.going || store.value !== timepointsOf) await refreshTimepoints();
+    // Without connection the server that answers may be another one, which has no such run.
+    if (stream.value.state === 'live' && (store.value?.going || store.value !== timepointsOf)) await refreshTimepoints();
   });
   void everySeconds(5, async () => {
     if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory(store.value);
