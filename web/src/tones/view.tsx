@@ -16,6 +16,7 @@ const LEFT = 42;
 const SPECTRUM = 106; // wide, at the right, where there is one
 const TONES = 256;
 const LOUDEST_DB = 30;
+const LABEL_PX = 12;
 const HEIGHTS = [64, 128, 256]; // the strip is as high as the tones that came need
 
 /** The symbol that is looked at, of one run; undefined: the newest. */
@@ -96,7 +97,9 @@ function draw(surface: Surface): void {
   c.font = `11px ${colours.mono}`;
   c.lineWidth = 1;
   c.textBaseline = 'middle';
-  for (const tone of [0, high / 4, high / 2, (high * 3) / 4, high - 1]) {
+  const quarters = [0, high / 4, high / 2, (high * 3) / 4, high - 1];
+  const apart = (y(0) - y(high)) / 4;
+  for (const tone of apart >= LABEL_PX ? quarters : 4 * apart >= LABEL_PX ? [0, high - 1] : []) {
     c.strokeStyle = colours.line;
     c.beginPath();
     c.moveTo(LEFT, Math.round(y(tone)) + 0.5);
@@ -165,7 +168,7 @@ export function Tones() {
       back && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
     }>
       <p class="tone-evidence" data-testid="tone-evidence">
-        {at_e_s !== undefined && <>{back ? <b>at {fromEntry(at_e_s)}</b> : <>at {fromEntry(at_e_s)}</>} · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
+        {at_e_s !== undefined && !old && <>{back ? <b>at {fromEntry(at_e_s)}</b> : <>at {fromEntry(at_e_s)}</>} · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div class="tone-symbols" data-testid="tone-symbols" role="group" aria-label="symbols: ← → choose one" tabIndex={0} onKeyDown={onKey}>
         <Canvas label={title} testId="tone-canvas" draw={draw} onPoint={choose}
