@@ -6,6 +6,7 @@
 #include "server/api/json_object.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/reflection.h>
@@ -40,9 +41,22 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
     }
 }
 
+/// As parameters of questions and the samples as CSV have it: SOURCE_REALTIME is "realtime", and what is not said nothing.
+std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) {
+    constexpr std::string_view unsaid = "UNSPECIFIED"; // how the name of the first of each ends, behind what all of them begin with
+    const auto* value = kind.FindValueByNumber(number);
+    if (value == nullptr) return std::to_string(number);
+    if (value->index() == 0) return {};
+    std::string text = value->name().substr(kind.value(0)->name().size() - unsaid.size());
+    std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    return text;
+}
+
 /// @param index  of a repeated field, else -1
 std::string value_text(const Message& message, const FieldDescriptor& field, int index) {
     const auto& reflection = *message.GetReflection();
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM)
+        return enum_text(*field.enum_type(), index < 0 ? reflection.GetEnumValue(message, &field) : reflection.GetRepeatedEnumValue(message, &field, index));
     std::string text;
     if (field.cpp_type() != FieldDescriptor::CPPTYPE_STRING) {
         google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
