@@ -34,7 +34,7 @@ TEST_CASE("a list as CSV has a column a field by its path and a row a line, quot
     CHECK(csv.content_type == "text/csv; charset=utf-8");
     CHECK(csv.next_after == "9");
     CHECK(csv.body == "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
-                      "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,SOURCE_RECORDED,false\n"
+                      "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
                       "9007199254740993,,,,,,,,\n");
     CHECK(as("csv", v1::EventList{}, {"events", {"event"}}).body.starts_with("seq,event.id,")); // a header also of no rows
 }
