@@ -44,7 +44,7 @@ std::string words_of(SilenceClass silence, const std::string& sentence);
 /// A value, as the landing is.
 class SilenceClassifier {
   public:
-    static constexpr double margin_s = 25.0; ///< ours: three deviations of when dispersed landings open their parachute, and the coarse prediction
+    static constexpr double margin_s = 35.0; ///< ours: four deviations of when Earth sets for dispersed landings (docs/decisions/0027), and the coarse prediction
 
     static constexpr double pass_margin_s = 1.0; ///< ours: so near its rise or set an orbiter explains a silence
 

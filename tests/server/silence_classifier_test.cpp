@@ -125,7 +125,7 @@ TEST_CASE("a silence that outlasts what explained it becomes unexplained, once",
     for (double e_s = 46.0; e_s < 200.0; e_s += 1.0)
         for (const auto& told : changes(classifier.tell({}, at(e_s), {})))
             later.push_back(told);
-    CHECK(later == std::vector<Told>{{"uhf_live", at(124.0).microseconds, false, "unexplained"}});
+    CHECK(later == std::vector<Told>{{"uhf_live", at(99.0 + SilenceClassifier::margin_s).microseconds, false, "unexplained"}});
     // Once it is heard again there is nothing left to explain.
     const auto up = classifier.tell({{simulation::uhf_live_link, at(200.0), true, "nominal"}}, at(200.0), {});
     REQUIRE(up.size() == 1);
