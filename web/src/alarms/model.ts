@@ -2,7 +2,7 @@
 import { computed, signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import type { Status } from '../design/status';
-import { Refused, call, wordsFor } from '../run/api';
+import { call, wordsFor } from '../run/api';
 import { isWorst } from '../run/limits';
 import { change, store } from '../run/session';
 
@@ -26,14 +26,14 @@ export type Action = 'acknowledge' | 'shelve' | 'unshelve' | 'reset';
 
 const ORDER = ['unacknowledged', 'latched', 'returned', 'acknowledged', 'shelved', 'normal'];
 
-/** undefined: not asked yet; 'absent': a server without this route. */
-export const alarms = signal<{ run: number; all: AlarmState[] } | 'absent' | undefined>(undefined);
+/** undefined: no answer has come yet. */
+export const alarms = signal<{ run: number; all: AlarmState[] } | undefined>(undefined);
 export const problem = signal('');
 export const note = signal('');
 export const shelveFor = signal('300');
 export const acting = signal<string | undefined>(undefined);
 
-export const listed = computed(() => (typeof alarms.value === 'object' && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : []));
+export const listed = computed(() => (alarms.value && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : []));
 export const toAcknowledge = computed(() => listed.value.filter(wantsLook));
 
 export function lookOf(alarm: AlarmState): Status {
@@ -68,21 +68,20 @@ export function calls(before: readonly AlarmState[], after: readonly AlarmState[
 
 let asking = false;
 
-/** Asks for the current states. A server that does not have them is not asked again for this run. */
+/** Asks for the current states. */
 export async function refreshAlarms(): Promise<void> {
   const run = store.value;
-  if (!run || asking || alarms.value === 'absent') return;
+  if (!run || asking) return;
   asking = true;
   try {
     const { alarms: all = [] } = await call<{ alarms?: AlarmState[] }>('GET', `/runs/${run.id}/alarms?state=current`);
     if (store.value !== run) return;
-    const before = typeof alarms.value === 'object' && alarms.value.run === run.id ? alarms.value.all : all;
+    const before = alarms.value?.run === run.id ? alarms.value.all : all;
     alarms.value = { run: run.id, all };
     const call_ = calls(before, all);
     if (call_ && sound.value) beep(call_);
-  } catch (error) {
-    if (error instanceof Refused && error.status === 404) alarms.value = 'absent';
-    // Else the header says that there is no connection, or the bar that there is no session; the next round asks again.
+  } catch {
+    // The header says that there is no connection, or the bar that there is no session; the next round asks again.
   } finally {
     asking = false;
   }

@@ -34,7 +34,6 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
 export function Alarms() {
   const run = runNow();
   if (!run) return <p class="none">no run</p>;
-  if (alarms.value === 'absent') return <p class="none">This server keeps no states of alarms; the table of channels shows which are outside their limits.</p>;
   if (pastRange.value) return <p class="not-past">▲ Alarms are of now, and are not shown in a view of the past.</p>;
   return (
     <div class="table-box" data-testid="alarms">
@@ -46,7 +45,7 @@ export function Alarms() {
         </select></label>
         <Signature />
         <button type="button" aria-pressed={sound.value} data-testid="alarm-sound" onClick={toggleSound}>{sound.value ? '♪ sound on' : '♪ sound off'}</button>
-        <span role="status" data-testid="alarm-sentence">{listed.value.length === 0 ? '● no alarm' : toAcknowledge.value.length === 0 ? '✓ all acknowledged' : `▲ ${toAcknowledge.value.length} to acknowledge`}</span>
+        <span role="status" data-testid="alarm-sentence">{alarms.value?.run !== run.id ? '? asking…' : listed.value.length === 0 ? '● no alarm' : toAcknowledge.value.length === 0 ? '✓ all acknowledged' : `▲ ${toAcknowledge.value.length} to acknowledge`}</span>
       </div>
       {problem.value && <p role="alert" class="status-alarm" data-testid="alarm-problem">✖ {problem.value}</p>}
       <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms, those that no one has looked at first">

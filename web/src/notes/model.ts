@@ -1,7 +1,7 @@
 // The shift log of a run, and remarks at its instants: what people wrote down, kept with the run.
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';
-import { Refused, call, wordsFor } from '../run/api';
+import { call, wordsFor } from '../run/api';
 import { change, store } from '../run/session';
 import type { RunStore } from '../run/store';
 
@@ -20,7 +20,7 @@ interface NoteList {
 const PAGES = 20; // ours: as many answers as are put together
 export const OCTETS = 4000; // the server takes no more
 
-export const notes = signal<{ run: number; all: NoteRow[] } | 'absent' | undefined>(undefined);
+export const notes = signal<{ run: number; all: NoteRow[] } | undefined>(undefined);
 export const problem = signal('');
 export const writing = signal(false);
 
@@ -28,10 +28,10 @@ let asking = false;
 
 export async function refreshNotes(): Promise<void> {
   const run = store.value;
-  if (!run || asking || notes.value === 'absent') return;
+  if (!run || asking) return;
   asking = true;
   try {
-    const known = typeof notes.value === 'object' && notes.value.run === run.id ? notes.value.all : [];
+    const known = notes.value?.run === run.id ? notes.value.all : [];
     const all = [...known];
     let after = all.at(-1)?.seq ?? 0;
     for (let page = 0; page < PAGES; ++page) {
@@ -43,8 +43,8 @@ export async function refreshNotes(): Promise<void> {
       if (after === 0) break;
     }
     if (store.value === run) notes.value = { run: run.id, all };
-  } catch (error) {
-    if (error instanceof Refused && error.status === 404) notes.value = 'absent';
+  } catch {
+    // The header says that there is no connection; the next round asks again.
   } finally {
     asking = false;
   }
