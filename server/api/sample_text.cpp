@@ -29,6 +29,12 @@ std::optional<double> seconds_of(const std::string& text) {
     return seconds;
 }
 
+/// The first whole multiple of `step_s` that is not before: of a tenth the nearest number to the tenth, so that two files have the same times.
+double next_step(double sclk_s, double step_s) {
+    const double count = std::ceil(sclk_s / step_s), per_s = std::round(1.0 / step_s);
+    return std::abs(per_s * step_s - 1.0) < 1e-12 ? count / per_s : count * step_s;
+}
+
 } // namespace
 
 SampleText::SampleText(const dictionary::Dictionary& dictionary, bool csv) : csv_(csv) {
@@ -97,7 +103,7 @@ void SampleText::append_aligned(std::string& text, const archive::ChannelValue& 
     if (line_s_ && sclk_s > *line_s_) finish(text); // all of that instant have come
     values_[static_cast<std::size_t>(column - columns_.begin())] = sample.value;
     if (leader_ == nullptr)
-        line_s_ = std::ceil(sclk_s / step_s_) * step_s_;
+        line_s_ = next_step(sclk_s, step_s_);
     else if (sample.channel == leader_->id)
         line_s_ = sclk_s;
 }

@@ -300,7 +300,8 @@ Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const 
     } else {
         auto found = find_channels(reader.dictionary, channels);
         if (!found) return found.error();
-        windows.channels_ = std::move(found).value();
+        for (const auto* channel : *found) // by name and by alias it is one
+            if (std::ranges::find(windows.channels_, channel) == windows.channels_.end()) windows.channels_.push_back(channel);
     }
     if (after) {
         windows.cursor_ = *after;

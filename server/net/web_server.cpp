@@ -64,7 +64,7 @@ std::string_view host_of(std::string_view authority) {
 }
 
 bool is_loopback_name(std::string_view host) {
-    return host == "localhost" || host == "127.0.0.1" || host == "[::1]";
+    return boost::beast::iequals(host, "localhost") || host == "127.0.0.1" || host == "[::1]";
 }
 
 /// The first of ours that the client offers.
@@ -204,13 +204,14 @@ struct WebServer::State {
 /// Empty when the request may go on.
 std::string WebServer::State::refusal_of(const Request& request) const {
     const auto host = plain(request[http::field::host]);
-    if (!is_loopback_name(host_of(host)) && std::ranges::find(names, host_of(host)) == names.end())
+    const auto is_this = [&](const std::string& name) { return boost::beast::iequals(name, host_of(host)); };
+    if (!is_loopback_name(host_of(host)) && std::ranges::none_of(names, is_this))
         return fmt::format("Host '{}' is not a name of this server: it answers to loopback names{}", host,
                            names.empty() ? " only" : " and to those of --host");
     // Another program's page on this machine is another origin, too: only our own may command. A program that is no browser sends none.
     const auto origin = request.find(http::field::origin);
     const std::string own = fmt::format("{}://{}", tls ? "https" : "http", host);
-    if (origin != request.end() && plain(origin->value()) != own)
+    if (origin != request.end() && !boost::beast::iequals(plain(origin->value()), own))
         return fmt::format("Origin '{}' is not a page of this server", plain(origin->value()));
     return {};
 }

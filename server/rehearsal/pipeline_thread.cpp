@@ -87,13 +87,20 @@ void PipelineThread::perform(Action action) {
     if (taken) done.wait();
 }
 
-Result<void> PipelineThread::resume(const archive::CutOffRun& cut, const archive::RunStart& start) {
+Result<void> PipelineThread::resume(archive::CutOffRun& cut, const archive::RunStart& start) {
     auto reader = archive::Reader::open(archive_.file(), dictionary_);
     if (!reader) return reader.error();
     auto stored = std::make_shared<archive::Reader>(std::move(*reader));
     const auto compare = [stored](const pipeline::PublishedBatch& again) { return same_items(*stored, again); };
     Result<void> result = Error{"the archive is closing"};
-    perform([&] { result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations); });
+    perform([&] {
+        // What people wrote down since it was read has numbers of its own. From here on this thread gives them out.
+        auto now = stored->cut_off(cut.run);
+        if (!now) return void(result = now.error());
+        cut.last_seq = now->last_seq;
+        cut.annotations = std::move(now->annotations);
+        result = pipeline_.resume(cut.run, start, cut.last_seq, compare, cut.annotations);
+    });
     return result;
 }
 

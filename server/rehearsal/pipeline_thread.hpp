@@ -54,7 +54,7 @@ class PipelineThread {
     /// Waits until the run is in the archive.
     Result<archive::RunId> begin(const archive::RunStart& start);
     /// A run that was cut off, flown again from its beginning: what is stored already is compared and not stored again.
-    Result<void> resume(const archive::CutOffRun& cut, const archive::RunStart& start);
+    Result<void> resume(archive::CutOffRun& cut, const archive::RunStart& start);
     /// Waits until everything delivered was taken: true when the run has caught up with what is stored; an Error when it
     /// did not come out the same.
     Result<bool> caught_up();

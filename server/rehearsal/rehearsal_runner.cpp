@@ -397,6 +397,7 @@ std::string RehearsalRunner::state_word() const {
 v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     v1::RunState state;
     state.set_run(run_id_.value);
+    if (cut_) state.set_last_seq(cut_->last_seq); // until the stream says what has come since
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);

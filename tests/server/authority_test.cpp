@@ -149,8 +149,8 @@ const Message messages[] = {
     {R"({"control":{"stop":true}})", "director", "no rehearsal goes on"},
     {R"({"control":{"inject":{"computer_reset":true}}})", "director", "no rehearsal goes on"},
     {R"({"control":{"note":{"text":"seen"}}})", "director", "no rehearsal goes on"},
-    {R"({"command":{"action":"hold","number":1}})", "controller", "no run goes on"},
-    {R"({"command":{"action":"cancel","number":1}})", "controller", "no run goes on"},
+    {R"({"command":{"action":"hold","number":1}})", "director", "no run goes on"},
+    {R"({"command":{"action":"cancel","number":1}})", "director", "no run goes on"},
     {R"({"command":{"action":"release","number":1}})", "director", "no run goes on"},
     {R"({"command":{"action":"approve","number":1}})", "director", "no run goes on"},
 };
@@ -254,8 +254,8 @@ const OfTheQueue of_the_queue[] = {
     {"nina", "cancel", 2, not_listed},
     {"robot", "approve", 1, "token robot is none"},
     // A number that none has may be any command's by the time that it is looked up.
-    {"carl", "hold", 77, ""},
-    {"carl", "cancel", 77, ""},
+    {"carl", "hold", 77, "needs a director"},
+    {"carl", "cancel", 77, "needs a director"},
     {"carl", "release", 77, "carl may not release: it needs a director"},
     {"carl", "approve", 77, "carl may not approve: it needs a director"},
     {"nina", "hold", 77, "acts on no others"},

@@ -316,6 +316,48 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     CHECK(reader->last_seq(archive::RunId{1}).value() == cut->last_seq);
 }
 
+TEST_CASE("what is written down while a cut-off run is being continued keeps its number, and no item has another's", "[rehearsal][archive][R43]") {
+    test::TemporaryFolder folder;
+    const auto file = folder / "killed.db";
+    const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
+    spdlog::set_level(spdlog::level::err);
+    kill_after(2'000, file);
+    const archive::RunId run{1};
+    auto archive = archive::Archive::open(file);
+    REQUIRE(archive);
+    const auto cut = archive::Reader::open(file, dictionary)->cut_off(run);
+    REQUIRE(cut);
+    archive::NoteRecord note;
+    note.text = "between reading and going on";
+    REQUIRE(archive->annotate(run, note));
+    {
+        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        RehearsalRunner::Callbacks callbacks;
+        archive::Sequence told = 0;
+        callbacks.on_begun = [&](Result<v1::RunState> state) { told = state ? state->last_seq() : 0; };
+        callbacks.on_state = [](const auto&) {};
+        callbacks.on_clocks = [](const auto&) {};
+        RehearsalRunner runner{short_landing(), *cut, 0.0, dictionary, pipeline, callbacks};
+        while (!runner.over() && pipeline.figures().published_items < 500)
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        runner.stop();
+        while (!runner.over())
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        CHECK(told == cut->last_seq + 1); // who follows it resumes from there
+    }
+    auto reader = archive::Reader::open(file, dictionary);
+    archive::Sequence seen = 0;
+    int notes = 0;
+    for (auto page = reader->items(run, seen, archive::items_page_max); page && !page->items.empty(); page = reader->items(run, seen, archive::items_page_max))
+        for (const auto& item : page->items) {
+            REQUIRE(item.seq() == ++seen);
+            notes += item.has_note() ? 1 : 0;
+            if (item.has_note()) CHECK(item.seq() == cut->last_seq + 1);
+        }
+    CHECK(notes == 1);
+    CHECK(seen > cut->last_seq + 500);
+}
+
 TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever the sheet says by now", "[rehearsal][archive][time][R43]") {
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
