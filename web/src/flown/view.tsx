@@ -24,8 +24,8 @@ export function Flown() {
       <div class="table-scroll" tabIndex={0} role="region" aria-label="timepoints and events as flown">
         {of && (
           <table data-testid="flown-table">
-            <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number" title="at entry interface, by the timeline’s rule over the anchors that ground had then">predicted</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
-              <th class="number" title="later than the previous timepoint and the minimum offset from it">margin</th><th>verdict</th></tr></thead>
+            <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number" title="at entry interface, by the anchors that ground had then">predicted</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
+              <th class="number" title="beyond the minimum offset from the previous one">margin</th><th>verdict</th></tr></thead>
             <tbody>
               {of.timepoints.map(flownRow).map((row) => (
                 <tr key={row.name} data-flown={row.name}>
@@ -40,7 +40,7 @@ export function Flown() {
           <section aria-label="events as flown">
             <h3>Events</h3>
             <table data-testid="flown-events">
-              <thead><tr><th>event</th><th class="number" title="by the anchor of that name, as the design had it when the run began">predicted</th><th class="number">by UHF</th><th class="number">recorded</th><th>as flight reported it</th></tr></thead>
+              <thead><tr><th>event</th><th class="number" title="by the anchor of that name, when the run began">predicted</th><th class="number">by UHF</th><th class="number">recorded</th><th>as flight reported it</th></tr></thead>
               <tbody>
                 {of.events.map(flownEvent).map((row) => (
                   <tr key={row.name} data-flown-event={row.name}>

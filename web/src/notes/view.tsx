@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
-import { cutoff, pastRange, runNow, signalOfRun } from '../run/session';
+import { cutoff, pastRange, runNow } from '../run/session';
 import { fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
 import './style.css';
@@ -13,8 +13,6 @@ const AGAIN_MS = 3000; // ours: while the panel is looked at, for what others wr
 const text = signal('');
 const search = signal('');
 const atInstant = signal(false);
-/** Of the note that was written last, until the next is begun. */
-const kept = signalOfRun(false);
 
 export function Notes() {
   const run = runNow();
@@ -35,22 +33,18 @@ export function Notes() {
         event.preventDefault();
         const sent = text.value;
         void write(sent, atInstant.value ? instant : undefined).then((written) => {
-          kept.value = written;
           if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
         });
       }}>
         <input class="note-text" data-testid="note-text" aria-label="write a note" placeholder={mayAct() ? 'write a note; Enter keeps it' : 'observers write no notes'} value={text.value} disabled={!mayAct()}
-          onInput={(event) => {
-            text.value = event.currentTarget.value;
-            kept.value = false;
-          }} />
+          onInput={(event) => (text.value = event.currentTarget.value)} />
         <label><input type="checkbox" data-testid="note-instant" checked={atInstant.value} onChange={(event) => (atInstant.value = event.currentTarget.checked)} /> at {fromEntry(instant - run.entrySclk)}</label>
         <Signature />
         <button type="submit" disabled={!mayAct() || writing.value}>keep</button>
         <input type="search" data-testid="note-search" aria-label="search notes" placeholder="search" value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
       </form>
       {problem.value && <p role="alert" class="status-alarm" data-testid="note-problem">✖ {problem.value}</p>}
-      {pastRange.value && <p class="not-past" role="status" data-testid="note-past">◧ Only what had been written by then.{kept.value && ' ✓ Your note is kept; it is of now, and not among these.'}</p>}
+      {pastRange.value && <p class="not-past">◧ Only what had been written by then; what you write now is not among these.</p>}
       <ol class="notes table-scroll" tabIndex={0} aria-label="notes, newest first" data-testid="note-list">
         {shown.map((row) => (
           <li key={row.seq}>

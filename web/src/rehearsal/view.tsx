@@ -149,7 +149,7 @@ export function Rehearsal() {
                     )}
                     {state === 'interrupted' && canContinue(each) && (
                       <button type="button" disabled={blocked} data-testid={`continue-${String(each.run)}`}
-                        title="flown again up to its last item, each held against the archive; then it goes on"
+                        title="flown again up to its last item, then it goes on"
                         onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}>{continued() === Number(each.run) ? 'catching up…' : 'continue'}</button>
                     )}
                   </td>

@@ -120,7 +120,7 @@ describe('a run', () => {
     lookAtPast({ from: -100, to: 0 }, true);
     const next = aRun({ run: 2n, started: '2026-01-01T12:00:00Z', seed: 2n });
     for (let i = 0; i < 2; ++i) onMessage({ type: 'run', run: next, fresh: true });
-    const words = 'Run 2, nominal, has begun. What is shown stays the past of run 1; Esc leaves it for the new one.';
+    const words = 'Run 2, nominal, has begun; Esc leaves the past of run 1 for it.';
     expect([store.value === shown, notices.value.map((notice) => notice.text), runs.value[0]?.run]).toEqual([true, [words], 2n]);
     dismissNotice();
     onMessage({ type: 'run', run: next, fresh: false });

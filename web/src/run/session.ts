@@ -107,12 +107,12 @@ export function backToLive(): void {
 }
 
 /** A run that began while the past of another was looked at: the stream is of it, and so will be what is shown, once who looks comes back. */
-let begun: { run: bigint; words: string } | undefined;
+let begun: bigint | undefined;
 
 function staysInThePast(of: RunStore, run: RunState): void {
-  if (begun?.run === run.run) return;
-  begun = { run: run.run, words: `Run ${run.run}, ${run.scenario}, has begun. What is shown stays the past of run ${of.id}; Esc leaves it for the new one.` };
-  notify(begun.words);
+  if (begun === run.run) return;
+  begun = run.run;
+  notify(`Run ${begun}, ${run.scenario}, has begun; Esc leaves the past of run ${of.id} for it.`);
 }
 
 let lostAt_e_s = NaN; // when the connection broke, as the header showed it
@@ -197,7 +197,6 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
 
 export function watch(run: number): void {
   watched.value = run;
-  if (begun) notices.value = notices.value.filter((notice) => notice.text !== begun?.words);
   begun = undefined;
   backToLive();
   const url = new URL(location.href);

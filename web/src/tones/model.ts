@@ -50,7 +50,7 @@ export const isOld = (tone: Tone | undefined, seen_sclk: number): boolean => ton
 export function toneTitle(tone: Tone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
   const meaning = tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
-  return last_e_s === undefined ? `Tone ${meaning}` : `Last ${tone.tone === undefined ? 'symbol' : 'tone'}, ${fromEntry(last_e_s)}: ${meaning}`;
+  return last_e_s === undefined ? `Tone ${meaning}` : `Last tone, ${fromEntry(last_e_s)}: ${meaning}`;
 }
 
 function lockInWords(tone: Tone): string {

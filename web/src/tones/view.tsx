@@ -99,7 +99,7 @@ function draw(surface: Surface): void {
   c.textBaseline = 'middle';
   const quarters = [0, high / 4, high / 2, (high * 3) / 4, high - 1];
   const apart = (y(0) - y(high)) / 4;
-  for (const tone of apart >= LABEL_PX ? quarters : 4 * apart >= LABEL_PX ? [0, high - 1] : []) {
+  for (const tone of quarters.filter((_, i) => (i % 4 === 0 ? 4 : 1) * apart >= LABEL_PX)) {
     c.strokeStyle = colours.line;
     c.beginPath();
     c.moveTo(LEFT, Math.round(y(tone)) + 0.5);
@@ -168,7 +168,7 @@ export function Tones() {
       back && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
     }>
       <p class="tone-evidence" data-testid="tone-evidence">
-        {at_e_s !== undefined && !old && <>{back ? <b>at {fromEntry(at_e_s)}</b> : <>at {fromEntry(at_e_s)}</>} · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
+        {at_e_s !== undefined && !old && <><b>at {fromEntry(at_e_s)}</b> · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
       <div class="tone-symbols" data-testid="tone-symbols" role="group" aria-label="symbols: ← → choose one" tabIndex={0} onKeyDown={onKey}>
         <Canvas label={title} testId="tone-canvas" draw={draw} onPoint={choose}
