@@ -267,6 +267,16 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
     }
 }
 
+/// An archive whose run was begun by `dictionary` and ended by kill -9, and what there is of the run as it is read today.
+std::pair<archive::Archive, archive::CutOffRun> cut_off_in(const std::filesystem::path& file, const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
+    kill_after(2'000, file, dictionary);
+    auto archive = archive::Archive::open(file);
+    REQUIRE(archive);
+    auto cut = archive::Reader::open(file, tests::shipped_dictionary())->cut_off(archive::RunId{1});
+    REQUIRE(cut);
+    return {std::move(*archive), std::move(*cut)};
+}
+
 } // namespace
 
 TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands, faults and all",
@@ -295,25 +305,21 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
     spdlog::set_level(spdlog::level::err);
-    kill_after(2'000, file);
-    auto archive = archive::Archive::open(file);
-    REQUIRE(archive);
-    auto cut = archive::Reader::open(file, dictionary)->cut_off(archive::RunId{1});
-    REQUIRE(cut);
-    cut->seed = 8;
+    auto [archive, cut] = cut_off_in(file);
+    cut.seed = 8;
     std::string failure;
     {
-        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        PipelineThread pipeline{std::move(archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> state) { failure = state ? "continued" : state.error().message; };
-        RehearsalRunner runner{short_landing(), *cut, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over())
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
     auto reader = archive::Reader::open(file, dictionary);
     CHECK(reader->run(archive::RunId{1})->state() == "interrupted");
-    CHECK(reader->last_seq(archive::RunId{1}).value() == cut->last_seq);
+    CHECK(reader->last_seq(archive::RunId{1}).value() == cut.last_seq);
 }
 
 TEST_CASE("what is written down while a cut-off run is being continued keeps its number, and no item has another's", "[rehearsal][archive][R43]") {
@@ -321,29 +327,25 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
     spdlog::set_level(spdlog::level::err);
-    kill_after(2'000, file);
     const archive::RunId run{1};
-    auto archive = archive::Archive::open(file);
-    REQUIRE(archive);
-    const auto cut = archive::Reader::open(file, dictionary)->cut_off(run);
-    REQUIRE(cut);
+    auto [archive, cut] = cut_off_in(file);
     archive::NoteRecord note;
     note.text = "between reading and going on";
-    REQUIRE(archive->annotate(run, note));
+    REQUIRE(archive.annotate(run, note));
     {
-        PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
+        PipelineThread pipeline{std::move(archive), dictionary, PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         archive::Sequence told = 0;
         callbacks.on_begun = [&](Result<v1::RunState> state) { told = state ? state->last_seq() : 0; };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), *cut, 0.0, dictionary, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
         while (!runner.over() && pipeline.figures().published_items < 500)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         runner.stop();
         while (!runner.over())
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        CHECK(told == cut->last_seq + 1); // who follows it resumes from there
+        CHECK(told == cut.last_seq + 1); // who follows it resumes from there
     }
     auto reader = archive::Reader::open(file, dictionary);
     archive::Sequence seen = 0;
@@ -352,10 +354,10 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
         for (const auto& item : page->items) {
             REQUIRE(item.seq() == ++seen);
             notes += item.has_note() ? 1 : 0;
-            if (item.has_note()) CHECK(item.seq() == cut->last_seq + 1);
+            if (item.has_note()) CHECK(item.seq() == cut.last_seq + 1);
         }
     CHECK(notes == 1);
-    CHECK(seen > cut->last_seq + 500);
+    CHECK(seen > cut.last_seq + 500);
 }
 
 TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever the sheet says by now", "[rehearsal][archive][time][R43]") {
@@ -365,19 +367,15 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
     auto then = tests::shipped_dictionary();
     then.clock.front().correlation.rate = 1.0 + 2.0e-5; // some 18 ms over the flight to entry
     then.clock.front().correlation.version = 4;
-    kill_after(2'000, file, then);
-    auto archive = archive::Archive::open(file);
-    REQUIRE(archive);
     const dictionary::Dictionary& today = tests::shipped_dictionary();
-    const auto cut = archive::Reader::open(file, today)->cut_off(archive::RunId{1});
-    REQUIRE(cut);
-    CHECK(cut->clock_kept);
-    CHECK(cut->clock.rate == 1.0 + 2.0e-5);
+    auto [archive, cut] = cut_off_in(file, then);
+    CHECK(cut.clock_kept);
+    CHECK(cut.clock.rate == 1.0 + 2.0e-5);
     std::atomic<bool> begun{false};
     std::string failure;
     v1::RunState state;
     {
-        PipelineThread pipeline{std::move(*archive), today, PipelineThread::Faults::give_up, [](const auto&) {}};
+        PipelineThread pipeline{std::move(archive), today, PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> told) {
             if (told)
@@ -388,7 +386,7 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
         };
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
-        RehearsalRunner runner{short_landing(), *cut, 0.0, today, pipeline, callbacks};
+        RehearsalRunner runner{short_landing(), cut, 0.0, today, pipeline, callbacks};
         while (!begun)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         runner.stop();
