@@ -71,6 +71,7 @@ Result<std::unique_ptr<Access>> Access::open(Settings settings) {
     if (!access->accounts()) return access;
     const auto& file = access->settings_.file;
     std::error_code error;
+    const AccountsLock lock{file};
     if (!std::filesystem::exists(file, error)) {
         v1::AccountFile fresh;
         access->first_password_ = reset_account(fresh, "administrator");
@@ -97,18 +98,32 @@ void Access::refresh() {
 
 Result<void> Access::change_file(const std::function<Result<void>(v1::AccountFile&)>& change) {
     const std::scoped_lock one_at_a_time{changing_};
-    auto changed = [&] {
-        const std::scoped_lock lock{mutex_};
-        refresh();
-        return file_;
-    }();
-    if (auto done = change(changed); !done) return done;
-    if (auto written = write_accounts(settings_.file, changed); !written) return written;
+    const AccountsLock of_all_processes{settings_.file};
+    auto changed = read_accounts(settings_.file);
+    if (!changed) return changed.error();
+    if (auto done = change(*changed); !done) return done;
+    if (auto written = write_accounts(settings_.file, *changed); !written) return written;
     const std::scoped_lock lock{mutex_};
-    file_ = std::move(changed);
+    file_ = std::move(*changed);
     std::error_code ignored;
     file_time_ = std::filesystem::last_write_time(settings_.file, ignored);
     return {};
+}
+
+std::vector<v1::PasswordReset> Access::take_resets() {
+    std::vector<v1::PasswordReset> resets;
+    {
+        const std::scoped_lock lock{mutex_};
+        if (accounts()) refresh();
+        if (file_.resets().empty()) return resets;
+    }
+    const auto taken = change_file([&](v1::AccountFile& file) -> Result<void> {
+        resets.assign(file.resets().begin(), file.resets().end());
+        file.clear_resets();
+        return {};
+    });
+    if (!taken) resets.clear();
+    return resets;
 }
 
 Operator Access::operator_of(const v1::Account& account, const std::string& session, const LiveSession& live) const {

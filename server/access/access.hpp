@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <vector>
 
 namespace aeolis::server {
 
@@ -49,6 +50,9 @@ class Access {
     bool accounts() const { return !settings_.file.empty(); }
     /// Of user "administrator", when open() made the file; else empty.
     const std::string& first_password() const { return first_password_; }
+
+    /// What `aeolis accounts reset` has done that no audit has yet; each is given once.
+    std::vector<v1::PasswordReset> take_resets();
 
     Operator identify(const Credentials& credentials);
 

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,6 +20,10 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::size_t name_octets_max = 32;
+
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+    return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+}
 
 Result<void> check_accounts(const v1::AccountFile& accounts) {
     std::set<std::string> users, tokens;
@@ -65,6 +70,14 @@ std::string reset_account(v1::AccountFile& accounts, const std::string& user) {
     return password;
 }
 
+AccountsLock::AccountsLock(const std::filesystem::path& file) : folder_(::open(folder_of(file).c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (folder_ >= 0) ::flock(folder_, LOCK_EX); // where there are no locks it is as without
+}
+
+AccountsLock::~AccountsLock() {
+    if (folder_ >= 0) ::close(folder_);
+}
+
 Result<v1::AccountFile> read_accounts(const std::filesystem::path& file) {
     std::ifstream in{file, std::ios::binary};
     const std::string text{std::istreambuf_iterator<char>{in}, {}};
@@ -86,7 +99,7 @@ Result<void> write_accounts(const std::filesystem::path& file, const v1::Account
     if (out < 0) return failed();
     // Whose it was it remains: a server under a user of its own must be able to read what root has changed.
     struct stat owner {};
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const auto folder = folder_of(file);
     const bool owned = (::stat(file.c_str(), &owner) == 0 || ::stat(folder.c_str(), &owner) == 0) &&
                        ((owner.st_uid == ::geteuid() && owner.st_gid == ::getegid()) || ::fchown(out, owner.st_uid, owner.st_gid) == 0);
     const bool written = owned && ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;

@@ -14,6 +14,18 @@ Result<v1::AccountFile> read_accounts(const std::filesystem::path& file);
 /// In one piece or not at all, durable, and readable for its owner only.
 Result<void> write_accounts(const std::filesystem::path& file, const v1::AccountFile& accounts);
 
+/// Held from reading the file until it is written: another process that wants to change it waits.
+class AccountsLock {
+  public:
+    explicit AccountsLock(const std::filesystem::path& file);
+    ~AccountsLock();
+    AccountsLock(const AccountsLock&) = delete;
+    AccountsLock& operator=(const AccountsLock&) = delete;
+
+  private:
+    int folder_; ///< locked itself, for the file is another one after each change
+};
+
 /// A user's or token's name: 1 to 32 of a-z, 0-9, '-', '_', '.', beginning with a letter.
 Result<void> check_name(const std::string& name);
 

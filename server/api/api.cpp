@@ -6,6 +6,7 @@
 #include "server/api/openapi.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
+#include "server/net/web_server.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 
 #include <algorithm>
@@ -17,6 +18,8 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::string_view api_prefix = "/api/v1/";
+constexpr std::size_t body_of_nobody_octets_max = 4'096; ///< ours: a log-in is shorter
+constexpr std::size_t brief_body_octets_max = 32'768;    ///< ours: a note of its greatest length, every letter escaped; a user's list of a thousand commands
 constexpr std::size_t audit_detail_max = 2'000; ///< ours: of a request's body
 constexpr std::size_t audit_outcome_max = 500;  ///< ours: of an answer's
 
@@ -128,7 +131,7 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, Query::own},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, Query::own},
         {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, Query::none, "command", Noted::refusals},
-        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, Query::none, "command", Noted::refusals},
+        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, Query::none, "command", Noted::refusals, Body::whole},
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, Query::none, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
@@ -138,12 +141,12 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals},
-        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal"},
+        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
         {"GET", "/api/v1/rehearsals/current", Right::watch, &Api::current_rehearsal},
-        {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal"},
-        {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal"},
+        {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
+        {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
         {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns},
-        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign"},
+        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Noted::all, Body::whole},
         {"GET", "/api/v1/campaigns/{campaign}", Right::watch, &Api::campaign_report},
         {"GET", "/api/v1/campaigns/{campaign}/touchdowns", Right::watch, &Api::campaign_touchdowns, Query::own},
         {"POST", "/api/v1/campaigns/{campaign}/cancel", Right::rehearse, &Api::cancel_campaign, Query::none, "campaign"},
@@ -174,6 +177,13 @@ void Api::handle(HttpRequest request, const Respond& respond) {
         return respond(error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
     if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
     aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, Haste::at_once);
+}
+
+std::size_t Api::body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const {
+    const auto who = parts_.access.identify(credentials);
+    const auto route = std::ranges::find_if(routes(), [&](const Route& each) { return each.method == method && parts_of(each.path, path); });
+    if (route == routes().end() || !who.role || !may(who, route->right)) return body_of_nobody_octets_max;
+    return route->body == Body::whole ? WebServer::body_octets_max : brief_body_octets_max;
 }
 
 void Api::answer(const Route& route, Asked asked) {

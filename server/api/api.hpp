@@ -54,10 +54,13 @@ class Api {
     explicit Api(Parts parts);
 
     void handle(HttpRequest request, const Respond& respond);
+    /// How long a body this one may send: what is refused anyhow need not be read, and what is read takes the network thread's time.
+    std::size_t body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const;
     /// None: it will be given later. `respond` is called on whatever thread has the answer.
     using RunQuestion = std::function<std::optional<HttpResponse>(archive::Reader&, archive::RunId, const QueryText&)>;
 
     enum class Query { none, own }; ///< behind '?': nothing; or what its answer reads
+    enum class Body { brief, whole }; ///< whole: a scenario, a command file
     enum class Noted { all, refusals }; ///< refusals: the rest its answer notes, a dry run is no action
     struct Route {
         std::string_view method; ///< GET answers HEAD, too
@@ -67,6 +70,7 @@ class Api {
         Query query = Query::none;
         std::string_view audit{}; ///< the action's word; empty: it changes nothing, or its answer writes it
         Noted noted = Noted::all;
+        Body body = Body::brief;
     };
     static std::span<const Route> routes();
 
@@ -149,6 +153,9 @@ HttpResponse refusal_of(const Operator& who, Right right);
 /// Whether they may send this command, by its significance and their own list; of one that waits in the run of `desk`: whether they may
 /// do something about it, which needs the right to send it.
 Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk, const v1::CommandRequest& request);
+
+/// The same, asked again later of who may have lost what they had.
+RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk);
 
 /// Writes into the request what only the server knows of who asks.
 void name_asker(const Operator& who, v1::CommandRequest& request);

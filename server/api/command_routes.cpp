@@ -66,6 +66,14 @@ Result<void> may_send(const Operator& who, const dictionary::Dictionary& diction
     return may_send_named(who, dictionary, request.command(), request.dry_run());
 }
 
+RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
+    return [&access, credentials, &dictionary, &desk](const v1::CommandRequest& request) -> Result<void> {
+        const auto who = access.identify(credentials);
+        if (!may(who, Right::command)) return Error{"the right to send it was lost while it waited for a change of the timeline"};
+        return may_send(who, dictionary, desk, request);
+    };
+}
+
 Result<void> may_start(const Operator& who, const dictionary::Dictionary& dictionary, const v1::StartRehearsal& start) {
     const auto& script = start.inline_scenario().commands();
     for (int i = 0; i < script.size(); ++i) {
@@ -84,7 +92,8 @@ void Api::post_command(const Asked& asked) {
     if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
         return respond(error_response(403, allowed.error()));
     const unsigned refused = parts_.dictionary.command(command.command()) == nullptr ? 422 : 409;
-    parts_.desk.command(std::move(command), [respond, refused](const v1::CommandReply& reply) {
+    const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
+    parts_.desk.command(std::move(command), still, [respond, refused](const v1::CommandReply& reply) {
         respond(json_response(reply, reply.accepted() ? 202 : refused));
     });
 }
@@ -106,14 +115,14 @@ void Api::post_sequence(const Asked& asked) {
         if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
     }
-    parts_.desk.sequence({sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), [respond](std::vector<v1::CommandReply> replies) {
+    const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
+    parts_.desk.sequence({sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), still, [respond](std::vector<v1::CommandReply> replies) {
         v1::SequenceReply reply;
         reply.set_accepted(true);
         for (auto& each : replies) {
-            if (!each.accepted() && reply.accepted()) {
-                reply.set_accepted(false);
+            if (!each.reason().empty() && (reply.reason().empty() || (!each.accepted() && reply.accepted())))
                 reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
-            }
+            if (!each.accepted()) reply.set_accepted(false);
             *reply.add_commands() = std::move(each);
         }
         respond(json_response(reply, reply.accepted() ? 202 : 409));

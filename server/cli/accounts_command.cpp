@@ -1,6 +1,8 @@
 #include "server/access/account_file.hpp"
+#include "server/access/this_user.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"
+#include "server/rehearsal/wall_clock.hpp"
 
 #include <fmt/format.h>
 
@@ -18,11 +20,16 @@ int accounts_list(const AccountsOptions& options) {
 
 int accounts_reset(const AccountsOptions& options) {
     if (const auto named = check_name(options.user); !named) return failed("accounts reset: --user: " + named.error().message, 2);
+    const AccountsLock lock{options.file};
     std::error_code ignored;
     auto accounts = std::filesystem::exists(options.file, ignored) ? read_accounts(options.file) : Result<v1::AccountFile>{v1::AccountFile{}};
     if (!accounts) return failed("accounts reset: " + accounts.error().message);
     const bool fresh = find_account(*accounts, options.user) == nullptr;
     const auto password = reset_account(*accounts, options.user);
+    auto& reset = *accounts->add_resets();
+    reset.set_user(options.user);
+    reset.set_at(wall_clock_text());
+    reset.set_by(this_user());
     if (const auto written = write_accounts(options.file, *accounts); !written) return failed("accounts reset: " + written.error().message);
     fmt::print("{} '{}': {}\n  It only lets its owner choose another.\n", fresh ? "a new administrator," : "user", options.user, password);
     return 0;

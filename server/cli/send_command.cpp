@@ -33,6 +33,7 @@ std::string of_one(const v1::CommandReply& reply) {
     text += fmt::format(", {} octets", reply.octets().size() / 2);
     if (!reply.arrives().empty()) text += fmt::format(", at the vehicle {} SCET", reply.arrives());
     if (!reply.latest_useful().empty()) text += fmt::format(", to leave by {} ERT to be there before {}", reply.latest_useful(), reply.useful_before());
+    if (!reply.reason().empty()) text += ", " + reply.reason();
     if (reply.needs_approval()) text += ", waits for a second person";
     return text;
 }

@@ -11,7 +11,6 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::size_t body_of_nobody_octets_max = 4'096; // ours: a log-in is shorter
 constexpr unsigned stream_check_ms = 1'000; // ours: so long a client may follow after its log-in has ended
 
 /// Who started the program.
@@ -54,7 +53,10 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     auto server = WebServer::open(chosen.web_server, self->web_handlers());
     if (!server) return server.error();
     backend->server_ = std::move(*server);
-    backend->server_->every(stream_check_ms, [self] { self->hub_->check_clients(); });
+    backend->server_->every(stream_check_ms, [self] {
+        self->hub_->check_clients();
+        self->note_resets();
+    });
     const auto post = [self](std::function<void()> action) { self->server_->post(std::move(action)); };
 
     std::error_code ignored;
@@ -93,14 +95,15 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_, *backend->hub_,
                    *backend->pipeline_, backend->console_, *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
+    backend->note_resets();
     return backend;
 }
 
 WebServer::Handlers ConsoleBackend::web_handlers() {
     WebServer::Handlers handlers;
     handlers.request = [this](HttpRequest request, const Respond& respond) { api_->handle(std::move(request), respond); };
-    handlers.body_octets = [this](const Credentials& credentials) {
-        return access_->identify(credentials).role ? WebServer::body_octets_max : body_of_nobody_octets_max;
+    handlers.body_octets = [this](const Credentials& credentials, std::string_view method, std::string_view path) {
+        return api_->body_octets(credentials, method, path);
     };
     handlers.admit_stream = [this](const Credentials& credentials) { return refusal_of(access_->identify(credentials), Right::watch); };
     handlers.open_stream = [this](const Credentials& credentials, StreamFormat format, std::function<void()> wake) {
@@ -131,7 +134,7 @@ StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentia
             if (!dry_run && !full()) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
             reply(answer);
         };
-        if (right) return desk_->command(std::move(request), noted);
+        if (right) return desk_->command(std::move(request), may_still_send(*access_, credentials, dictionary_, *desk_), noted);
         v1::CommandReply refusal;
         refusal.set_request(request.request());
         refusal.set_reason(right.error().message);
@@ -221,6 +224,16 @@ void ConsoleBackend::adopt_newest_run() {
     if (!reader) return;
     auto runs = reader->runs();
     if (runs && !runs->runs().empty()) hub_->run_state(runs->runs(0));
+}
+
+/// Who can write the file of accounts needs no server to become an administrator: the next one that runs says that it happened.
+void ConsoleBackend::note_resets() {
+    for (const auto& reset : access_->take_resets()) {
+        Operator who;
+        who.user = reset.by();
+        who.from = command_line;
+        pipeline_->audit(audit_record(who, "user", fmt::format("aeolis accounts reset: a new password for '{}', {}", reset.user(), reset.at()), "done"));
+    }
 }
 
 void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, double pace) {

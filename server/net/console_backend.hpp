@@ -47,6 +47,7 @@ class ConsoleBackend {
     WebServer::Handlers web_handlers();
     StreamSession::Client stream_client(const Credentials& credentials);
     void adopt_newest_run();
+    void note_resets();
 
     Settings settings_;
     const dictionary::Dictionary& dictionary_;

@@ -18,6 +18,7 @@ namespace websocket = beast::websocket;
 
 constexpr const char* server_ends = "the server ends";
 constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
+constexpr std::chrono::milliseconds turn_max{5}; // ours: of all writers together, until whoever asks something else is heard
 
 /// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
 template <typename AnyStream>
@@ -178,17 +179,24 @@ void OpenStreams::end(std::function<void()> gone) {
 
 void WriteTurn::add(std::shared_ptr<Writer> writer) {
     if (std::exchange(writer->due_, true)) return;
-    if (due_.empty()) asio::post(executor_, [this] { write_all(); });
     due_.push_back(std::move(writer));
+    post();
+}
+
+void WriteTurn::post() {
+    if (!std::exchange(posted_, true)) asio::post(executor_, [this] { write_all(); });
 }
 
 void WriteTurn::write_all() {
-    std::swap(due_, now_);
-    for (const auto& writer : now_) {
+    posted_ = false;
+    const auto end = std::chrono::steady_clock::now() + turn_max;
+    for (auto left = due_.size(); left > 0 && std::chrono::steady_clock::now() < end; --left) {
+        const auto writer = std::move(due_.front());
+        due_.pop_front();
         writer->due_ = false;
         writer->write();
     }
-    now_.clear();
+    if (!due_.empty()) post();
 }
 
 Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service) {

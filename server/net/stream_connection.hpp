@@ -7,12 +7,12 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <list>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace aeolis::server::net {
 
@@ -38,11 +38,13 @@ class WriteTurn {
     }
 
   private:
-    void write_all();
+    void post();
+    void write_all(); ///< or those that come to it in a turn; the rest after what else the thread has to do
 
     Executor executor_;
     std::string frames_;
-    std::vector<std::shared_ptr<Writer>> due_, now_;
+    std::deque<std::shared_ptr<Writer>> due_;
+    bool posted_ = false;
 };
 
 /// The streams that are open, each with a place.

@@ -275,21 +275,27 @@ Encoded StreamSession::next_items() {
 
 std::optional<archive::ItemPage> StreamSession::take_page() {
     due_.reset();
-    if (!replay_) return std::exchange(page_, std::nullopt);
     const auto now = hub_.services().now();
-    if (next_batch_ > now) due_ = next_batch_;
+    if (replay_ && next_batch_ > now) {
+        due_ = next_batch_;
+        return std::nullopt;
+    }
     archive::ItemPage part;
     auto& items = page_->items;
-    while (!due_ && page_taken_ < items.size()) {
-        if (const auto due = replay_->due(items[page_taken_], now); due > now)
+    const auto items_max = shape_.format == StreamFormat::json ? json_items : items.size();
+    while (page_taken_ < items.size() && part.items.size() < items_max) {
+        if (const auto due = replay_ ? replay_->due(items[page_taken_], now) : now; due > now) {
             due_ = due;
-        else
-            part.items.push_back(std::move(items[page_taken_++]));
+            break;
+        }
+        part.items.push_back(std::move(items[page_taken_++]));
     }
     if (part.items.empty() && due_) return std::nullopt;
-    part.complete_through = due_ ? part.items.back().seq() : page_->complete_through;
-    part.more = due_ || page_->more;
-    if (!due_) page_.reset();
+    const bool rest = page_taken_ < items.size();
+    part.complete_through = rest ? part.items.back().seq() : page_->complete_through;
+    part.more = rest || page_->more;
+    if (!rest) page_.reset();
+    if (replay_ && (due_ || !rest)) next_batch_ = now + replay_interval;
     return part;
 }
 
@@ -317,7 +323,6 @@ Encoded StreamSession::from_page() {
     batch.set_complete_through(cursor_);
     if (follows_current()) *batch.mutable_clocks() = hub_.latest_clocks();
     sent_through_ = cursor_;
-    if (replay_) next_batch_ = hub_.services().now() + replay_interval;
     return encode(message, shape_.format);
 }
 

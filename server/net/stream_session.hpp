@@ -26,6 +26,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
   public:
     static constexpr std::size_t replies_max = 64;        ///< ours: a client that sends and never reads is closed
     static constexpr std::size_t page_items = 2'048;      ///< read from the archive at once
+    static constexpr std::size_t json_items = 128;        ///< ours: of a page in one message of JSON, some 2 ms of the network thread
     static constexpr double catching_up_interval_s = 1.0; ///< ours: samples of one who fell behind are thinned to 1 Hz
     static constexpr std::chrono::milliseconds replay_interval{50}; ///< ours: 20 Hz, as often as a console draws
 
@@ -71,7 +72,7 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     Encoded welcome();
     Encoded next_items();
     Encoded from_page();
-    /// Of the page what is due: all of it, or with a pace what has its time; none: nothing yet.
+    /// Of the page what goes out next: all of it, json_items, or with a pace what has its time; none: nothing yet.
     std::optional<archive::ItemPage> take_page();
     void ask_archive();
     bool follows_current() const { return !replay_ && run_ != 0 && run_ == hub_.current_run(); }

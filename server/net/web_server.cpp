@@ -286,7 +286,10 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         // Before anything is read of who has not said who they are: a thousand such bodies are no burden.
         const auto field = [&](http::field name) { return std::string{plain(parser.get()[name])}; };
         Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
-        const std::size_t octets_max = error || !handlers.body_octets ? body_octets_max : handlers.body_octets(credentials);
+        const auto wanted = plain(parser.get().target());
+        const std::size_t octets_max = error || !handlers.body_octets
+                                           ? body_octets_max
+                                           : handlers.body_octets(credentials, plain(parser.get().method_string()), wanted.substr(0, wanted.find('?')));
         if (!error && octets_max < body_octets_max) {
             parser.body_limit(octets_max);
             if (parser.content_length().value_or(0) > octets_max) error = http::make_error_code(http::error::body_limit);

@@ -118,16 +118,25 @@ void PipelineThread::audit(archive::AuditRecord record, std::function<void()> ke
     const bool refuses = !fault().empty();
     {
         const std::scoped_lock lock{audit_mutex_};
-        // What was let in while there was room still has some.
-        if (audit_.size() < 2 * audit_waiting_max) {
-            audit_.push_back(std::move(record));
-            audit_kept_.push_back(refuses ? nullptr : std::exchange(kept, nullptr));
-        } else {
-            spdlog::error("audit: too much waits for the disk, an entry is lost: {} {}", record.who, record.action);
+        if (within_budget(record)) {
+            // What was let in while there was room still has some.
+            if (audit_.size() < 2 * audit_waiting_max) {
+                audit_.push_back(std::move(record));
+                audit_kept_.push_back(refuses ? nullptr : std::exchange(kept, nullptr));
+            } else {
+                spdlog::error("audit: too much waits for the disk, an entry is lost: {} {}", record.who, record.action);
+            }
         }
     }
     jobs_.try_push(Action{[] {}}); // wakes it; a full queue keeps it awake
     if (kept) kept();
+}
+
+bool PipelineThread::within_budget(archive::AuditRecord& record) {
+    if (record.who.empty() || !record.outcome.starts_with("refused")) return true;
+    const auto left_out = refusals_.take(record.who, std::chrono::steady_clock::now());
+    if (left_out.value_or(0) > 0) record.outcome += fmt::format(" (and {} refusals before it, not noted one by one)", *left_out);
+    return left_out.has_value();
 }
 
 void PipelineThread::tell_audit_kept(std::optional<std::size_t> written) {
@@ -153,7 +162,7 @@ bool PipelineThread::audit_has_room() const {
 }
 
 bool PipelineThread::waits() const {
-    if (pipeline_.pending_items() != 0 || !when_durable_.empty()) return true;
+    if (pipeline_.pending_items() != 0 || !when_durable_.empty() || !answers_.empty()) return true;
     const std::scoped_lock lock{audit_mutex_};
     return !audit_.empty();
 }
@@ -212,11 +221,14 @@ Result<void> PipelineThread::finish(const archive::RunEnd& end) {
 }
 
 bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done) {
-    return jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
+    return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
         if (!added) return done(std::move(added));
         // Told as a command is, after the commit: a disk that refuses must not hold up what arrives meanwhile.
-        when_durable_.push_back([done, added = std::move(added)] { done(added); });
+        answers_.push_back([done, added = std::move(added)](const std::string& fault) {
+            if (fault.empty()) return done(added);
+            done(Error{fmt::format("this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault)});
+        });
     }});
 }
 
@@ -279,6 +291,9 @@ void PipelineThread::finish(Finish& finish) {
 void PipelineThread::take(Delivery& delivery) {
     ++deliveries_;
     note_received(delivery);
+    // First, for what is not taken now is not durable either: they wait no longer than this thread does.
+    for (auto& answer : delivery.answers)
+        answers_.push_back(std::move(answer));
     for (auto& entry : delivery.entries) {
         const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
         // Refused only while too much waits for a failing disk: then that must be committed first.
@@ -292,15 +307,23 @@ void PipelineThread::take(Delivery& delivery) {
 
 void PipelineThread::commit_what_is_due() {
     const auto now = std::chrono::steady_clock::now();
-    if (given_up_ || now < next_attempt_) return;
-    if (!noted(commit(when_durable_.empty() ? std::optional{now} : std::nullopt))) {
+    if (given_up_) return tell_answers(fault());
+    if (now < next_attempt_) return;
+    if (!noted(commit(when_durable_.empty() && answers_.empty() ? std::optional{now} : std::nullopt))) {
         next_attempt_ = now + retry_interval;
         given_up_ = faults_ == Faults::give_up;
         tell_audit_kept({});
+        tell_answers(fault());
         return;
     }
+    tell_answers("");
     for (const auto& tell : std::exchange(when_durable_, {}))
         tell();
+}
+
+void PipelineThread::tell_answers(const std::string& fault) {
+    for (const auto& answer : std::exchange(answers_, {}))
+        answer(fault);
 }
 
 bool PipelineThread::noted(const Result<void>& result) {
@@ -320,6 +343,7 @@ bool PipelineThread::noted(const Result<void>& result) {
 }
 
 bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
+    const std::shared_ptr<void> at_the_end{nullptr, [this](void*) { blocked_ = false; }};
     for (int tries_when_closing = 0; !given_up_;) {
         const auto result = attempt();
         if (result) return noted(result);
@@ -328,6 +352,9 @@ bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
             given_up_ = true;
             break;
         }
+        blocked_ = true;
+        tell_audit_kept({});
+        tell_answers(fault());
         pending_octets_ = pipeline_.pending_octets();
         std::this_thread::sleep_for(retry_interval);
         const auto committed = pipeline_.commit(); // what waits goes first: accept() can then succeed

@@ -4,6 +4,7 @@
 #include "server/archive/archive.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "server/rehearsal/bounded_queue.hpp"
+#include "server/rehearsal/refusal_budget.hpp"
 #include "simulation/landing.hpp"
 
 #include <atomic>
@@ -27,6 +28,9 @@ struct Delivery {
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links; ///< empty: as told before
     std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
+    /// Called there, too, after the first attempt at it: with why it is not durable yet, or with nothing when it is. Who waits for an
+    /// answer is not kept waiting by a disk.
+    std::vector<std::function<void(const std::string& fault)>> answers;
 
     void add(const simulation::CycleReport& report);
     /// Once a second of the run: that time goes on.
@@ -69,12 +73,12 @@ class PipelineThread {
     void closing() { closing_ = true; }
 
     /// Stored as soon as the disk takes it; never waits. From any thread. `kept` is told when it is durable, on this object's thread; while
-    /// the disk refuses at once, for what was done must still be answered.
+    /// the disk refuses at once, for what was done must still be answered. Of refusals only those that RefusalBudget takes.
     void audit(archive::AuditRecord record, std::function<void()> kept = {});
     /// False while so much of the audit waits for a failing disk that nothing more may be done that belongs into it.
     bool audit_has_room() const;
-    /// Adds to any run what a person says; `done` comes on this thread when it is durable. False, and nothing done, when too
-    /// much waits.
+    /// Adds to any run what a person says; `done` comes on this thread when it is durable, or with an Error when the disk refuses it
+    /// for now. False, and nothing done, when too much waits.
     bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
@@ -82,6 +86,8 @@ class PipelineThread {
     void on_fault(std::function<void(const std::string& fault)> told) { on_fault_ = std::move(told); }
     /// Given up, or held right now; empty when all is well.
     std::string fault() const;
+    /// Nothing more is taken until the disk goes on: the run waits, too.
+    bool blocked() const { return blocked_; }
 
     struct Received {
         std::uint64_t units = 0, octets = 0;
@@ -120,8 +126,11 @@ class PipelineThread {
     void finish(Finish& finish);
     /// Keeps and tells the fault that `result` is, or that it is over.
     bool noted(const Result<void>& result);
+    void tell_answers(const std::string& fault);
     bool waits() const;
     Result<void> write_audit();
+    /// Whether it is noted; with audit_mutex_ held.
+    bool within_budget(archive::AuditRecord& record);
     /// Of all that waits, or of the first so many, which leave.
     void tell_audit_kept(std::optional<std::size_t> written);
     void note_received(const Delivery& delivery);
@@ -134,7 +143,7 @@ class PipelineThread {
     pipeline::Pipeline pipeline_;
     Faults faults_;
     BoundedQueue<Job> jobs_{deliveries_max};
-    std::atomic<bool> items_wanted_{true}, given_up_{false}, closing_{false};
+    std::atomic<bool> items_wanted_{true}, given_up_{false}, closing_{false}, blocked_{false};
     std::atomic<std::uint64_t> deliveries_{0}, failed_commits_{0}, batches_{0}, items_{0};
     std::atomic<std::size_t> pending_octets_{0};
     mutable std::mutex figures_mutex_;
@@ -143,8 +152,10 @@ class PipelineThread {
     double commit_s_ = 0.0, longest_commit_s_ = 0.0;
     mutable std::mutex audit_mutex_;
     std::vector<archive::AuditRecord> audit_;
+    RefusalBudget refusals_;
     std::vector<std::function<void()>> audit_kept_; ///< one a record; empty: told, or nobody wants to know
     std::vector<std::function<void()>> when_durable_; ///< of what waits
+    std::vector<std::function<void(const std::string& fault)>> answers_; ///< of what waits for the first attempt
     std::chrono::steady_clock::time_point next_attempt_{};
     std::function<void(const std::string&)> on_fault_;
     mutable std::mutex fault_mutex_;

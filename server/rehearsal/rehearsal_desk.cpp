@@ -211,16 +211,17 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
     }
 }
 
-void RehearsalDesk::command(v1::CommandRequest request, RehearsalRunner::Reply reply) {
+void RehearsalDesk::command(v1::CommandRequest request, const May& may, RehearsalRunner::Reply reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
-    sequence(std::move(one), only_check, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+    sequence(std::move(one), only_check, may, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
-void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies) {
+void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may, Replies replies) {
     const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
     if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
+    if (!only_check && pipeline_.blocked()) return refuse("the run waits until its archive can be written again: " + pipeline_.fault());
     for (const auto& request : requests)
         if (request.action() == timeline_holds_action || request.action() == timeline_refuted_action)
             return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
@@ -235,8 +236,10 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
     if (changing_ && !only_check && !stops) {
         for (auto& request : requests) // their numbers and rights are of this run, not of one that begins meanwhile
             request.set_run(state_.run());
-        return later_.push_back([this, requests = std::move(requests), replies = std::move(replies)]() mutable {
-            sequence(std::move(requests), false, std::move(replies));
+        return later_.push_back([this, requests = std::move(requests), may, replies = std::move(replies)]() mutable {
+            for (const auto& request : requests)
+                if (const auto allowed = may(request); !allowed) return RehearsalRunner::refuse_all(requests, allowed.error().message, replies);
+            sequence(std::move(requests), false, may, std::move(replies));
         });
     }
     const auto run = state_.run();

@@ -49,9 +49,12 @@ class RehearsalDesk {
     void start(const v1::StartRehearsal& request, Began began);
     void start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
-    void command(v1::CommandRequest request, RehearsalRunner::Reply reply);
+    /// `may` is asked about what waited for something else, when its turn comes: rights change meanwhile, and so do the commands that
+    /// have its number.
+    using May = std::function<Result<void>(const v1::CommandRequest&)>;
+    void command(v1::CommandRequest request, const May& may, RehearsalRunner::Reply reply);
     /// A command file: all or none.
-    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, Replies replies);
+    void sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may, Replies replies);
 
     /// From now on none can be started, because of `reason`.
     void close(std::string reason) { closed_ = std::move(reason); }

@@ -26,6 +26,7 @@ constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pac
 constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
 constexpr std::uint64_t cycles_between_looks = 64; // while flying again: as far as a run may go on before its pace counts
 
+constexpr const char* not_stored_yet = "taken, but not in the archive yet, which is lost if the server ends now: ";
 constexpr const char* over_reason = "the run is over: nothing listens on board";
 
 } // namespace
@@ -310,11 +311,15 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
             replies.push_back(std::move(answer));
         }
         if (any)
-            delivery_.when_durable.push_back([give = std::move(order.replies), given = std::move(replies)]() mutable { give(std::move(given)); });
+            delivery_.answers.push_back([give = std::move(order.replies), given = std::move(replies)](const std::string& fault) mutable {
+                for (auto& reply : given)
+                    if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
+                give(std::move(given));
+            });
         else
             order.replies(std::move(replies));
     }
-    if (!delivery_.when_durable.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
+    if (!delivery_.answers.empty()) archive_gave_up_ = !deliver(rehearsal, Clock::now());
 }
 
 void RehearsalRunner::bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions) {
@@ -359,7 +364,7 @@ bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now)
     delivered_ = now;
     queued_ = rehearsal.gateway().queued();
     at_uplink_ = rehearsal.gateway().at_uplink();
-    if (delivery_.entries.empty() && delivery_.when_durable.empty()) return true;
+    if (delivery_.entries.empty() && delivery_.answers.empty()) return true;
     delivery_.relay_progress = rehearsal.recording_progress();
     if (now - links_told_ >= links_interval || rehearsal.finished()) {
         links_told_ = now;

@@ -347,6 +347,10 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
     const std::string long_body(5'000, ' ');
     CHECK(guarded.ask("nobody", "POST", "/api/v1/session", long_body).status == 413);
     CHECK(guarded.ask("observer", "POST", "/api/v1/session", long_body).status == 400);
+    CHECK(guarded.ask("observer", "POST", "/api/v1/rehearsals", long_body).status == 413); // which they may not start
+    const std::string longer_body(50'000, ' ');
+    CHECK(guarded.ask("director", "POST", "/api/v1/rehearsals", longer_body).status == 400);
+    CHECK(guarded.ask("director", "POST", "/api/v1/runs/latest/notes", longer_body).status == 413);
     const auto count = [&] {
         const auto audit = guarded.ask("administrator", "GET", "/api/v1/audit").body;
         std::size_t entries = 0;

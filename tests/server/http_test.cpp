@@ -351,6 +351,32 @@ TEST_CASE("what is answered as done is in the audit by then; while the disk refu
     CHECK(reader->audit(0, 100)->size() == 14);
 }
 
+TEST_CASE("what is said while the disk refuses is answered at once, as taken and not yet stored, and is in the archive once the disk is well", "[http][disk]") {
+    FaultyDisk disk;
+    RunningServer server;
+    const auto post = [&](const char* route, const std::string& body) { return web_request(server.port(), "POST", fmt::format("/api/v1/runs/latest/{}", route), body); };
+    const auto stored = [&](const char* question, const char* words) {
+        const auto body = web_request(server.port(), "GET", fmt::format("/api/v1/runs/1/{}", question)).body;
+        return body.find(words) != std::string::npos;
+    };
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    disk.fail_at(1, FaultyDisk::Fault::full, true);
+    for (int i = 0; i < 2; ++i) { // whether or not it is known already
+        const auto note = post("notes", R"({"text":"the disk is full","by":"ada"})");
+        CHECK(note.status == 503);
+        CHECK_THAT(note.body, Catch::Contains("do not send it again"));
+        const auto command = post("commands", R"({"command":"NO_OP","controller":"ada"})");
+        CHECK(command.status == 202);
+        CHECK_THAT(command.body, Catch::Contains("not in the archive yet"));
+    }
+    disk.mend();
+    for (int i = 0; i < 3'000 && !stored("notes", "the disk is full"); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    CHECK(stored("notes", "the disk is full"));
+    CHECK(stored("commands", "NO_OP"));
+    CHECK(post("notes", R"({"text":"and well again","by":"ada"})").status == 201);
+}
+
 TEST_CASE("a question that the disk keeps from its answer is the server's fault and not the asker's, and is answered once the disk is well", "[http][disk]") {
     FaultyDisk disk;
     RunningServer server{shipped_scenario("nominal"), 100.0};
@@ -555,7 +581,7 @@ TEST_CASE("what is no HTTP, too long or cut off costs its own connection only", 
                Catch::StartsWith("HTTP/1.1 413"));
     CHECK_THAT(
         raw_exchange(port, "POST /api/v1/rehearsals HTTP/1.1\r\nHost: localhost\r\nContent-Length: 2000000\r\n\r\n"),
-        Catch::StartsWith("HTTP/1.1 413") && Catch::Contains("1048576"));
+        Catch::StartsWith("HTTP/1.1 413") && Catch::Contains("262144"));
     raw_exchange(port, "GET /api/v1/runs HTT");
     CHECK_THAT(raw_exchange(port, "GET /%zz HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"),
                Catch::StartsWith("HTTP/1.1 400"));

@@ -1,5 +1,6 @@
 #include "server/net/stream_session.hpp"
 
+#include "server/api/json.hpp"
 #include "server/api/query_threads.hpp"
 #include "tests/server/faulty_disk.hpp"
 #include "tests/server/small_mission.hpp"
@@ -137,7 +138,10 @@ struct Client {
         message.mutable_subscribe()->set_after_seq(after);
         message.mutable_subscribe()->set_all_channels(all_channels);
         message.mutable_subscribe()->set_max_rate_hz(max_rate_hz);
-        session->on_message(message.SerializeAsString());
+        send(message);
+    }
+    void send(const v1::ClientMessage& message) const {
+        session->on_message(session->format() == StreamFormat::json ? to_json(message) : message.SerializeAsString());
     }
     void replay(double pace, archive::Sequence after = 0, std::uint64_t run = Venue::flown_before) {
         v1::ClientMessage message;
@@ -145,7 +149,7 @@ struct Client {
         message.mutable_subscribe()->set_after_seq(after);
         message.mutable_subscribe()->set_all_channels(true);
         message.mutable_subscribe()->set_pace(pace);
-        session->on_message(message.SerializeAsString());
+        send(message);
         complete_through = after;
         seen.clear();
     }
@@ -153,7 +157,7 @@ struct Client {
     void read_all() {
         while (const auto encoded = session->next_message()) {
             v1::ServerMessage message;
-            REQUIRE(message.ParseFromString(*encoded));
+            REQUIRE((session->format() == StreamFormat::json ? from_json(*encoded, message).ok() : message.ParseFromString(*encoded)));
             if (message.has_batch()) {
                 const auto& batch = message.batch();
                 CHECK(batch.after_seq() == complete_through); // a chain without a hole
@@ -504,6 +508,23 @@ TEST_CASE("who replays gets twenty batches a second at most, over as many pages 
     pass(venue, 6s, {&client});
     CHECK(client.saw_exactly(1, items));
     CHECK(batches(client) <= 1 + items / 50 + venue.pages_read);
+}
+
+TEST_CASE("of JSON a page of the past goes out in parts, each once, so that no message holds the network up", "[stream][bounds]") {
+    Venue venue;
+    constexpr std::size_t items = StreamSession::page_items + 3 * StreamSession::json_items / 2;
+    venue.store_events(items);
+    Client client{venue.hub, StreamFormat::json};
+    client.subscribe(0);
+    for (std::size_t page = 0; page < 3; ++page) {
+        client.read_all();
+        venue.answer();
+    }
+    client.read_all();
+    CHECK(client.saw_exactly(1, items));
+    CHECK(venue.pages_read == 2);
+    for (const auto& message : client.messages)
+        CHECK(message.batch().items_size() <= static_cast<int>(StreamSession::json_items));
 }
 
 TEST_CASE("each replays at a pace of its own and from its own place, and who follows the run that goes on does not notice", "[stream][R42]") {

@@ -84,7 +84,7 @@ export async function forwardFile(): Promise<void> {
     const answer = await ask(run, false);
     const numbers = answer.commands.map((each) => each.command).filter((number) => number !== '0');
     outcome.value = answer.accepted
-      ? { good: true, text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}` }
+      ? { good: !answer.reason, text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}${answer.reason && `; ${answer.reason}`}` }
       : { good: false, text: `refused: ${answer.reason}; ${numbers.length > 0 ? `taken was ${numbers.map((number) => `#${number}`).join(', ')}` : 'nothing was sent'}` };
     if (numbers.length > 0) text.value = ''; // the next Enter must not send them a second time
     if (!answer.accepted) void learnAccess().catch(() => undefined); // as of one command: rights may have been taken away in the middle

@@ -144,7 +144,7 @@ export async function forward(): Promise<void> {
   try {
     const reply = await sendCommand({ ...wanted, armed: wasArmed, confirmation: wasArmed ? command.name : '' });
     message.value = reply.accepted
-      ? { good: true, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}` }
+      ? { good: !reply.reason, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}${reply.reason && `; ${reply.reason}`}` }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) done();
     else void learnAccess().catch(() => undefined); // rights may have been taken away in the middle
@@ -183,7 +183,7 @@ export async function act(number: number, action: QueueAction): Promise<void> {
   const done = { release: 'released', hold: 'held', cancel: 'cancelled', approve: 'approved' }[action];
   try {
     const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller });
-    message.value = reply.accepted ? { good: true, text: `#${number} ${done}` } : { good: false, text: reply.reason };
+    message.value = reply.accepted ? { good: !reply.reason, text: `#${number} ${done}${reply.reason && `; ${reply.reason}`}` } : { good: false, text: reply.reason };
   } catch (error) {
     const said = error instanceof Error ? error.message : String(error);
     message.value = { good: false, text: error instanceof OutcomeUnknown ? `#${number}, ${action}: ${said}` : `#${number} was not ${done}: ${said}` };
