@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -70,6 +72,37 @@ TEST_CASE("the first start makes one way in, which only lets its owner choose a 
     accounts.open(); // a second start finds its accounts, and no session
     CHECK(accounts.access->first_password().empty());
     CHECK_FALSE(accounts.who(in->secret).role);
+}
+
+TEST_CASE("who changes the accounts waits until another process has done so, and loses nothing of it", "[access]") {
+    Accounts accounts;
+    constexpr int each = 10;
+    const auto child = ::fork();
+    if (child == 0) {
+        for (int i = 0; i < each; ++i) {
+            const AccountsLock lock{accounts.file};
+            auto all = read_accounts(accounts.file);
+            if (!all) ::_exit(1);
+            auto& account = *all->add_accounts();
+            account.set_user(fmt::format("child-{}", i));
+            account.set_role("observer");
+            if (!write_accounts(accounts.file, *all)) ::_exit(1);
+        }
+        ::_exit(0);
+    }
+    for (int i = 0; i < each; ++i) {
+        v1::NewToken wanted;
+        wanted.set_name(fmt::format("token-{}", i));
+        wanted.set_role("observer");
+        CHECK(accounts.access->add_token(wanted));
+    }
+    int status = 1;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    CHECK(status == 0);
+    const auto all = read_accounts(accounts.file);
+    REQUIRE(all);
+    CHECK(all->accounts_size() == 1 + each);
+    CHECK(all->tokens_size() == each);
 }
 
 TEST_CASE("a server that does not come up makes no account: the one that does tells the first password", "[access]") {

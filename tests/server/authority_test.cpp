@@ -1,5 +1,7 @@
 #include "aeolis/v1/stream.pb.h"
+#include "server/access/account_file.hpp"
 #include "server/api/json.hpp"
+#include "server/archive/reader.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
@@ -436,4 +438,36 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
     CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
     CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711")); // a dry run is no action
     CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) && !Catch::Contains("a wrong guess"));
+}
+
+TEST_CASE("a password that was reset by hand is in the audit of the server that runs, or of the next, once", "[access][audit]") {
+    Guarded guarded;
+    const auto reset = [&](const char* user) { // as `aeolis accounts reset`
+        const server::AccountsLock lock{guarded.server.accounts()};
+        auto accounts = server::read_accounts(guarded.server.accounts());
+        REQUIRE(accounts);
+        server::reset_account(*accounts, user);
+        auto& told = *accounts->add_resets();
+        told.set_user(user);
+        told.set_by("root");
+        REQUIRE(server::write_accounts(guarded.server.accounts(), *accounts));
+    };
+    auto reader = archive::Reader::open(guarded.server.archive(), tests::shipped_dictionary());
+    REQUIRE(reader);
+    const auto told = [&](const char* user) {
+        return std::ranges::count_if(reader->audit(0, 1'000).value(), [&](const auto& entry) {
+            return entry.who == "root" && entry.detail.find(fmt::format("a new password for '{}'", user)) != std::string::npos;
+        });
+    };
+    reset("controller");
+    for (int i = 0; i < 500 && told("controller") == 0; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    CHECK(told("controller") == 1);
+    guarded.server.end();
+    reset("director");
+    guarded.server.restart();
+    guarded.server.end();
+    CHECK(told("director") == 1);
+    CHECK(told("controller") == 1);
+    CHECK(server::read_accounts(guarded.server.accounts())->resets().empty());
 }

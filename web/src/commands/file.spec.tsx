@@ -27,7 +27,7 @@ describe('a command file', () => {
   it('is no longer than the server takes it, chosen or pasted', () => {
     const many = (count: number) => JSON.stringify({ commands: Array.from({ length: count }, () => ({ command: 'NO_OP' })) });
     expect([readFile(many(100)), readFile(many(101)), readFile(many(1) + ' '.repeat(1_000_000))]).toEqual([{ commands: expect.anything() }, { problem: TOO_LONG }, { problem: TOO_LONG }]);
-    expect(TOO_LONG).toContain('at most 100 commands and 1 MB');
+    expect(TOO_LONG).toContain('at most 100 commands and 0.2 MB');
   });
   it('is armed by who sends it: what it says of itself does not count', () => {
     const commands = (readFile(landing) as { commands: never[] }).commands;

@@ -30,7 +30,7 @@ export interface SequenceAnswer {
 const COMMANDS_MAX = 100; // the server takes no more
 export const FILE_OCTETS_MAX = 200_000; // ours: a hundred commands are far shorter
 /** Chosen or pasted. */
-export const TOO_LONG = `a command file has at most ${COMMANDS_MAX} commands and ${FILE_OCTETS_MAX / 1e6} MB: send it in parts`;
+export const TOO_LONG = `a command file has at most ${COMMANDS_MAX} commands and ${FILE_OCTETS_MAX / 1e6} MB`;
 
 export function readFile(text: string): { commands: FileCommand[] } | { problem: string } {
   if (new TextEncoder().encode(text).length > FILE_OCTETS_MAX) return { problem: TOO_LONG };
