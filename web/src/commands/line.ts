@@ -159,7 +159,7 @@ export async function forward(): Promise<void> {
 }
 
 /** What leaves has been shown as it leaves: only on the ground's answer to exactly this is Enter a yes. */
-const notReviewed = () => whyNotSent() ?? 'the ground has not answered yet what would become of it: nothing was sent; read the review, then press Enter';
+const notReviewed = () => whyNotSent() ?? 'the ground has not answered yet what would become of it: nothing was sent; read it, then press Enter';
 
 /** Not while it is known that it would be refused, nor while nothing is known: an armed command is one that can be sent. */
 async function arm(): Promise<void> {
