@@ -18,7 +18,7 @@ namespace websocket = beast::websocket;
 
 constexpr const char* server_ends = "the server ends";
 constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
-constexpr std::chrono::milliseconds turn_max{5}; // ours: of all writers together, until whoever asks something else is heard
+constexpr std::chrono::milliseconds turn_max{20}; // ours: of all writers together (live, a thousand take 8), until whoever asks something else is heard
 
 /// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
 template <typename AnyStream>

@@ -570,6 +570,7 @@ TEST_CASE("a page of another site, or a name bound to this address, gets nothing
     CHECK(status({{"Origin", "http://localhost.evil.example"}}) == 403);
     CHECK(status({{"Host", "evil.example"}}) == 403);
     CHECK(status({{"Host", "localhost"}}) == 200);
+    CHECK(status({{"Host", "LocalHost:8080"}, {"Origin", "http://localhost:8080"}}) == 200); // names have no case
     CHECK_FALSE(StreamClient{server.port(), "aeolis.v1.json", {{"Origin", "http://evil.example"}}}.open());
 }
 
