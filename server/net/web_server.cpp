@@ -287,7 +287,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         const auto field = [&](http::field name) { return std::string{plain(parser.get()[name])}; };
         Credentials credentials{field(http::field::cookie), field(http::field::authorization), from};
         const auto wanted = plain(parser.get().target());
-        const std::size_t octets_max = error || !handlers.body_octets
+        const std::size_t octets_max = error || parser.is_done() || !handlers.body_octets
                                            ? body_octets_max
                                            : handlers.body_octets(credentials, plain(parser.get().method_string()), wanted.substr(0, wanted.find('?')));
         if (!error && octets_max < body_octets_max) {
