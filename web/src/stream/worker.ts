@@ -8,10 +8,10 @@ import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
   AsFlownReportSchema, CommandListSchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, ScenarioListSchema, TimepointListSchema,
-} from '../gen/aeolis/v1/run_pb';
-import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/aeolis/v1/stream_pb';
-import type { Batch } from '../gen/aeolis/v1/stream_pb';
-import type { RunState } from '../gen/aeolis/v1/run_pb';
+} from '../gen/worker/aeolis/v1/run_pb';
+import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
+import type { Batch } from '../gen/worker/aeolis/v1/stream_pb';
+import type { RunState } from '../gen/worker/aeolis/v1/run_pb';
 import { Pace } from '../run/pace';
 import { isSameRun } from '../run/same';
 import { ColumnCollector } from './columns';
