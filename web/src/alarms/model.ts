@@ -2,9 +2,9 @@
 import { computed, signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import type { Status } from '../design/status';
-import { call, wordsFor } from '../run/api';
+import { wordsFor } from '../run/api';
 import { isWorst } from '../run/limits';
-import { change, store } from '../run/session';
+import { change, read, store } from '../run/session';
 
 export interface AlarmState {
   name: string;
@@ -43,7 +43,7 @@ export function lookOf(alarm: AlarmState): Status {
   return isWorst(severity) ? 'alarm' : 'caution';
 }
 
-export const wantsLook = (alarm: AlarmState) => !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
+const wantsLook = (alarm: AlarmState) => !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
 
 /** What no one has looked at first, the worst of it on top. */
 export function sorted(all: readonly AlarmState[]): AlarmState[] {
@@ -74,7 +74,7 @@ export async function refreshAlarms(): Promise<void> {
   if (!run || asking) return;
   asking = true;
   try {
-    const { alarms: all = [] } = await call<{ alarms?: AlarmState[] }>('GET', `/runs/${run.id}/alarms?state=current`);
+    const { alarms: all = [] } = await read<{ alarms?: AlarmState[] }>(`/runs/${run.id}/alarms?state=current`);
     if (store.value !== run) return;
     const before = alarms.value?.run === run.id ? alarms.value.all : all;
     alarms.value = { run: run.id, all };

@@ -1,8 +1,8 @@
 // The shift log of a run, and remarks at its instants: what people wrote down, kept with the run.
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';
-import { call, wordsFor } from '../run/api';
-import { change, store } from '../run/session';
+import { wordsFor } from '../run/api';
+import { change, read, store } from '../run/session';
 import type { RunStore } from '../run/store';
 
 export interface NoteRow {
@@ -35,7 +35,7 @@ export async function refreshNotes(): Promise<void> {
     const all = [...known];
     let after = all.at(-1)?.seq ?? 0;
     for (let page = 0; page < PAGES; ++page) {
-      const list = await call<NoteList>('GET', `/runs/${run.id}/notes${after > 0 ? `?after=${after}` : ''}`);
+      const list = await read<NoteList>(`/runs/${run.id}/notes${after > 0 ? `?after=${after}` : ''}`);
       for (const { seq, note } of list.notes ?? []) {
         if (Number(seq) > (all.at(-1)?.seq ?? 0)) all.push({ seq: Number(seq), text: note.text, by: note.by ?? '', at: note.at ?? '', sclk: note.sclk });
       }

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { numberText } from '../run/dictionary';
-import { ask, dictionary, lookAtPast, pastRange, replay, runNow, signalOfRun, store } from '../run/session';
+import { ask, dictionary, lookAtPast, pastRange, refuseInDoubt, replay, runNow, signalOfRun, store } from '../run/session';
 import { fromEntry, readFromEntry } from '../run/time';
 import { wordsFor } from '../run/api';
 import { download, save, sizeWords } from './download';
@@ -31,6 +31,7 @@ async function take(path: string): Promise<void> {
   taking.value = { stop, octets: 0, of: undefined };
   message.value = undefined;
   try {
+    refuseInDoubt();
     const file = await download(path, stop.signal, (octets, of) => (taking.value = { stop, octets, of }));
     save(file, 'aeolis.csv');
     message.value = { good: true, text: `aeolis.csv: ${sizeWords(file.size, undefined)}` };

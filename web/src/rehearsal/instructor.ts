@@ -3,8 +3,8 @@ import { signal } from '@preact/signals';
 import { mayRehearse } from '../access/model';
 import { uplink } from '../commands/line';
 import { OCTETS } from '../notes/model';
-import { Refused, call, wordsFor } from '../run/api';
-import { change, signalOfRun, store } from '../run/session';
+import { Refused, wordsFor } from '../run/api';
+import { change, read, signalOfRun, store } from '../run/session';
 import type { RunStore } from '../run/store';
 
 /** As the API words it. */
@@ -26,11 +26,11 @@ export const busy = signal(false);
 
 export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] => (interventions.value?.run === run.id ? interventions.value.all : []);
 /** While it goes on only who may rehearse; of one that is over, or was cut off, everybody. */
-export const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
+const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
 
 /** Throws what the server says: without them there is no score. */
 export async function askInterventions(run: RunStore): Promise<readonly Intervention[]> {
-  const list = await call<{ interventions?: Intervention[] }>('GET', `/runs/${run.id}/interventions`);
+  const list = await read<{ interventions?: Intervention[] }>(`/runs/${run.id}/interventions`);
   if (store.value === run) interventions.value = { run: run.id, all: list.interventions ?? [] };
   return list.interventions ?? [];
 }

@@ -6,8 +6,8 @@ import { isHazardous } from '../commands/model';
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';
 import { isReal } from '../mode/model';
-import { call, wordsFor } from '../run/api';
-import { ask, dictionary, pastRange, store, tick } from '../run/session';
+import { wordsFor } from '../run/api';
+import { ask, dictionary, pastRange, read, store, tick } from '../run/session';
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { InterventionList } from './desk';
@@ -25,7 +25,7 @@ const copied = signal<'done' | 'by hand' | undefined>(undefined);
 async function alarmChanges(run: number): Promise<AlarmChange[]> {
   const all: AlarmChange[] = [];
   for (let after = 0; ;) {
-    const list = await call<{ changes?: AlarmChange[]; next_after?: string }>('GET', `/runs/${run}/alarms${after > 0 ? `?after=${after}` : ''}`);
+    const list = await read<{ changes?: AlarmChange[]; next_after?: string }>(`/runs/${run}/alarms${after > 0 ? `?after=${after}` : ''}`);
     for (const change of list.changes ?? []) all.push(change);
     const next = Number(list.next_after ?? 0);
     if (next === 0) return all;
@@ -44,7 +44,7 @@ async function landedOf(run: RunStore): Promise<Landed | undefined> {
   if (latitude === undefined || longitude === undefined || radius === undefined) return landed;
   const names = LAYOUT.landing.position.filter((name) => dictionary.value?.pick([name]));
   if (names.length < LAYOUT.landing.position.length) return landed;
-  const { channels } = await call<{ channels: { value: number[] }[] }>('GET', `/runs/${run.id}/channels?names=${names.join(',')}&from=${event.sclk - 1}&to=${event.sclk}`);
+  const { channels } = await read<{ channels: { value: number[] }[] }>(`/runs/${run.id}/channels?names=${names.join(',')}&from=${event.sclk - 1}&to=${event.sclk}`);
   const position = channels.map((channel) => channel.value.at(-1)).filter((value) => value !== undefined);
   return position.length < names.length ? landed : { ...landed, miss_m: miss_m(position, latitude, longitude, radius) };
 }

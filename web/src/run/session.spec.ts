@@ -1,12 +1,13 @@
 // @vitest-environment happy-dom
 import { create } from '@bufbuild/protobuf';
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
+import { refreshAlarms } from '../alarms/model';
 import { choose, forward, line, message, step, tryOut, type } from '../commands/line';
 import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
-import { backToLive, change, control, dismissNotice, lookAtPast, notices, onMessage, pastRange, refreshRuns, runs, sendCommand, store, useForTest, watched } from './session';
+import { ask, backToLive, change, control, dismissNotice, lookAtPast, notices, onMessage, pastRange, read, refreshRuns, runs, sendCommand, store, useForTest, watched } from './session';
 
 const soon = () => vi.advanceTimersByTimeAsync(0);
 
@@ -112,6 +113,27 @@ describe('a run', () => {
     state('live');
     control({ action: 'stop' });
     expect(heard).toHaveLength(1);
+  });
+  it('of it nothing is asked from when the connection broke until the server that came back has said that it has it', async () => {
+    const asked: string[] = [];
+    useForTest(aStore([], aRun(one)), aDictionary, (message) => void (message.type === 'ask' && asked.push(message.path)));
+    const askAll = async () => {
+      asked.length = vi.mocked(fetch).mock.calls.length = 0;
+      void ask('packets', '/runs/1/packets').catch(() => undefined);
+      const answers = await Promise.allSettled([read('/runs/1/notes'), refreshAlarms()]);
+      return [asked, vi.mocked(fetch).mock.calls.map(([path]) => path), answers[0].status];
+    };
+    const every = [['/runs/1/packets'], ['/api/v1/runs/1/notes', '/api/v1/runs/1/alarms?state=current'], 'fulfilled'];
+    const none = [[], [], 'rejected'];
+    expect(await askAll()).toEqual(every);
+    for (const now of ['lost', 'catching_up', 'live'] as const) {
+      state(now); // "live" alone may be of the run that goes on there
+      expect(await askAll(), now).toEqual(none);
+    }
+    onMessage({ type: 'run', run: aRun({ ...one, seed: 2n }), fresh: false });
+    expect(await askAll(), 'another run of its number').toEqual(none);
+    onMessage({ type: 'run', run: aRun(one), fresh: false });
+    expect(await askAll(), 'the same').toEqual(every);
   });
   it('that begins while the past of another is looked at is told once, and shown when who looks comes back', () => {
     state('live');

@@ -137,8 +137,20 @@ function post(message: ToWorker): void {
   else forWorker.push(message);
 }
 
-/** Asks an HTTP route; rejects with the server's own words. */
-export function ask<T>(question: Question, path: string): Promise<T> {
+/**
+ * Since the connection broke, until the server that came back has said that it has the very run that is shown: what answers may have another archive,
+ * with no such run, or another one of its number.
+ */
+let inDoubt = false;
+
+/** Throws then: before anything of the run is asked. */
+export function refuseInDoubt(): void {
+  if (inDoubt) throw new Refused(0, 'not connected: nothing was asked');
+}
+
+/** Asks an HTTP route by the worker; rejects with the server's own words. */
+export async function ask<T>(question: Question, path: string): Promise<T> {
+  if (path.startsWith('/runs/')) refuseInDoubt();
   const number = ++lastAsk;
   return new Promise<T>((resolve, reject) => {
     asked.set(number, { resolve: resolve as (value: unknown) => void, reject });
@@ -159,7 +171,13 @@ export function control(action: ControlAction, run = store.value?.id ?? 0): void
   else notify(why);
 }
 
-/** Of the run that is shown, over HTTP. */
+/** Asks of the run that is shown, over HTTP: what has a small answer. */
+export async function read<T>(path: string): Promise<T> {
+  refuseInDoubt();
+  return call<T>('GET', path);
+}
+
+/** Changes something of it, so too. */
 export async function change<T>(path: string, body: object, within_ms?: number): Promise<T> {
   const why = whyNotSent();
   if (why === undefined) return call<T>('POST', path, body, within_ms);
@@ -226,6 +244,7 @@ export function onMessage(message: FromWorker): void {
     case 'stream': {
       const before = stream.value.state;
       stream.value = message;
+      if (message.state === 'lost') inDoubt = true;
       if (message.state === 'lost' && before !== 'lost') {
         void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
@@ -295,6 +314,7 @@ const LEFT = 'aeolis-left'; // what is said once the page has begun anew
  */
 function takeOtherArchive(): void {
   const run = store.value;
+  inDoubt = true;
   stream.value = { ...stream.value, state: 'catching_up' };
   sessionStorage.setItem(LEFT, `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`);
   const url = new URL(location.href);
@@ -308,11 +328,13 @@ function takeRun(run: RunState | undefined): void {
   const known = store.value;
   if (known?.id === Number(run.run)) {
     if (!isSameRun(known.run, run)) return takeOtherArchive();
+    inDoubt = false;
     known.update(run);
   } else if (watched.value === 0 && known && pastRange.value) {
     staysInThePast(known, run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
     const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
+    inDoubt = false;
     store.value = new RunStore(run, (channel) => drawn.has(channel));
     backToLive();
   } else {
@@ -340,11 +362,12 @@ async function refreshTimepoints(): Promise<void> {
 }
 
 export async function refreshRuns(): Promise<void> {
-  const [before, shown] = [runs.value, store.value];
+  const [before, shown, doubted] = [runs.value, store.value, inDoubt];
   try {
     const all = await askRuns();
     const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
     if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run))) return takeOtherArchive();
+    if (doubted && shown) inDoubt = false; // it is among them
     const held = store.value;
     // What is over stays over: an answer from before its end may come after it. One that was cut off may go on.
     runs.value = all.map((run) => (held && run.run === held.run.run && held.run.state === 'finished' ? held.run : run));
@@ -443,7 +466,7 @@ export async function begin(): Promise<void> {
   });
   effect(() => {
     const run = store.value;
-    if (!run || !asHeard.value || askedLive.has(run)) return;
+    if (!run || !asHeard.value || stream.value.state !== 'live' || askedLive.has(run)) return;
     askedLive.add(run);
     post({ type: 'refresh_history', all: true, live: true });
   });
@@ -457,8 +480,7 @@ export async function begin(): Promise<void> {
   });
   void everySeconds(3, refreshRuns);
   void everySeconds(2, async () => {
-    // Without connection the server that answers may be another one, which has no such run.
-    if (stream.value.state === 'live' && (store.value?.going || store.value !== timepointsOf)) await refreshTimepoints();
+    if (store.value?.going || store.value !== timepointsOf) await refreshTimepoints();
   });
   void everySeconds(5, async () => {
     if (store.value?.thinnedSinceHistory && stream.value.state === 'live') refreshHistory(store.value);
@@ -469,6 +491,7 @@ export async function begin(): Promise<void> {
 export function useForTest(run: RunStore | undefined, words: Dictionary | undefined, hears?: (message: ToWorker) => void): void {
   worker = hears && ({ postMessage: hears } as Worker);
   stream.value = { ...stream.value, state: 'live' };
+  inDoubt = false;
   store.value = run;
   dictionary.value = words;
   tick.value += 1;
