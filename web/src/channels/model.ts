@@ -30,7 +30,7 @@ export interface ChannelRow {
 
 const STALE_PERIODS = 3; // ours: three missed samples
 const STALE_LEAST_S = 3;
-export const ROWS_SHOWN = 300;
+const ROWS_SHOWN = 300;
 
 /** Those that match every word of `filter`, the picks of the layout first, as many as are shown. `total` counts all that match. */
 export function channelsShown(dictionary: Dictionary, filter: string): { channels: DictionaryChannel[]; total: number } {

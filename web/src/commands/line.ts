@@ -48,7 +48,7 @@ export const problemNow = computed(() => (intent.value && 'problem' in intent.va
 export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRange.value !== undefined, intent.value]));
 
 /** The server's answer to a dry run of what is shown: nothing is sent by it. */
-export const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
+const preview = signal<{ of: string; reply: CommandReply } | undefined>(undefined);
 export const previewNow = computed(() => (preview.value?.of === intentKey.value ? preview.value.reply : undefined));
 
 let asked: { of: string; answer: Promise<CommandReply | undefined> } | undefined;

@@ -221,7 +221,7 @@ export function conditionWords(text: string): { words: string; value: string } {
   return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
 }
 
-export const STAGES = ['queued', 'authorised', 'released', 'radiated', 'received', 'accepted', 'executed', 'verified'] as const;
+const STAGES = ['queued', 'authorised', 'released', 'radiated', 'received', 'accepted', 'executed', 'verified'] as const;
 
 export interface StageCell {
   stage: string;

@@ -11,7 +11,7 @@ export function linear(hex: string): Rgb {
   return [channel(1), channel(3), channel(5)];
 }
 
-export function luminance([r, g, b]: Rgb): number {
+function luminance([r, g, b]: Rgb): number {
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 

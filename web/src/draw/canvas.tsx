@@ -14,7 +14,7 @@ export interface Surface {
 /** By how much the page is larger on a wall: what the mouse says is in the screen's pixels, what is laid out in the page's. */
 export const grownBy = (element: Element): number => (element as Element & { currentCSSZoom?: number }).currentCSSZoom ?? 1;
 /** The screen's pixels for one of the page's. */
-export const sharpness = (element: Element): number => (window.devicePixelRatio || 1) * grownBy(element);
+const sharpness = (element: Element): number => (window.devicePixelRatio || 1) * grownBy(element);
 
 interface Properties {
   /** Changes whenever the drawing would. */

@@ -138,7 +138,7 @@ interface Reaction {
 }
 
 /** What people did, in the order of time: whether it was because of a fault nobody but they can say. */
-export function reactions(of: Recorded): Reaction[] {
+function reactions(of: Recorded): Reaction[] {
   const acts: Reaction[] = [];
   for (const { alarm_action: action } of of.alarms) {
     if (action) acts.push({ e_s: of.e_sOf(action.at), words: `${action.by || 'someone'}: ${action.action} ${action.alarm}` });

@@ -4,7 +4,7 @@ import { LAYOUT } from '../layout';
 import { backToLive, pastRange, replay, store, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 
-export const REPLAY_PACES = [1, 2, 5, 10, 20, 50] as const;
+const REPLAY_PACES = [1, 2, 5, 10, 20, 50] as const;
 
 export interface Bounds {
   from: number;

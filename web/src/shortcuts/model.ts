@@ -33,7 +33,7 @@ export function focusPanel(which: Tab): void {
     document.querySelector<HTMLElement>(`[data-testid="panel-data"] .table-box :is(input, select, button, [tabindex])`)?.focus());
 }
 
-export function toggleTheme(): void {
+function toggleTheme(): void {
   const root = document.documentElement;
   const next = root.dataset['theme'] === 'light' ? 'dark' : 'light';
   root.dataset['theme'] = next;

@@ -97,7 +97,7 @@ export async function change(words: string, what: () => Promise<unknown>): Promi
 const at = (path: string, name: string) => `${path}/${encodeURIComponent(name)}`;
 
 /** Names as they are typed, in any case, between commas or spaces; an Error names what the dictionary does not have. */
-export function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined): string[] {
+function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined): string[] {
   const names = [...new Set(text.toUpperCase().split(/[\s,;]+/).filter((name) => name !== ''))];
   const strange = names.filter((name) => known?.command(name) === undefined);
   if (strange.length > 0) throw new Error(`the dictionary has no command ${strange.join(', ')}`);

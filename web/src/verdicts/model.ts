@@ -14,7 +14,7 @@ export interface Row {
   pending: number;
 }
 
-export function rowOf(row: ProofRow): Row {
+function rowOf(row: ProofRow): Row {
   return {
     name: row.name, live: Number(row.realtime), identical: Number(row.identical), differs: Number(row.differs),
     missing: Number(row.missingInRecording), recorded: Number(row.recorded), neverLive: Number(row.neverSeenLive),

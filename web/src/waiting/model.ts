@@ -52,7 +52,7 @@ export function conditionLine({ quantity, value, comparison, bound, holds }: Pic
 }
 
 /** What the vehicle does next that people wait for: the next named moment; where none is left, the next timepoint. */
-export function waitedFor(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { main: TimepointRow; first: TimepointRow } | undefined {
+function waitedFor(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { main: TimepointRow; first: TimepointRow } | undefined {
   const first = nextTimepoint(store, plan, cutoff);
   return first && { first, main: plan.slice(plan.indexOf(first)).find((row) => isImportant(row.name)) ?? first };
 }
@@ -106,7 +106,7 @@ function ended(store: RunStore): Waiting {
 type FirstStep = (typeof LAYOUT.firstSteps)[number];
 
 /** By which word of the vehicle a step is known to be done: its answer to the command, or the tone that says so. */
-export function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Infinity): string | undefined {
+function stepEvidence(store: RunStore, step: FirstStep | undefined, cutoff = Infinity): string | undefined {
   if (!step) return undefined;
   for (const row of store.commands.values()) {
     const stage = ['verified', 'executed'].find((name) => lastWord(store, row, name, cutoff)?.status === 'ok');
@@ -124,7 +124,7 @@ const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: numbe
  * What the vehicle's own status still says against a step that comes next: it would be refused. A status that never came is no
  * reason to wait, for flight decides by what it knows.
  */
-export function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep, cutoff = Infinity): Precondition | undefined {
+function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep, cutoff = Infinity): Precondition | undefined {
   const command = dictionary.command(step.command);
   return command && preconditionsOf(command, dictionary, store, cutoff).find((condition) => condition.holds === false);
 }
