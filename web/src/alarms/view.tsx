@@ -17,7 +17,7 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
   return (
     <tr data-alarm={alarm.name} data-state={alarm.state}>
       <td class={`status-${look.token}`}><span aria-hidden="true">{look.shape}</span> {alarm.severity === 'none' ? `was ${alarm.worst}` : alarm.severity}</td>
-      <td><b>{alarm.name}</b></td>
+      <td><b>{alarm.name.split(/(?<=_)/).map((part) => <>{part}<wbr /></>)}</b></td>
       <td>{mayAct() && actionsOn(alarm).map((action) => (
         <button type="button" key={action} disabled={acting.value !== undefined} aria-label={`${action} ${alarm.name}`} onClick={() => void act(alarm.name, action)}>
           {action}{action === 'shelve' && ` ${duration(Number(shelveFor.value)).replace(' 00 s', '').replace('.0', '')}`}
@@ -25,7 +25,7 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
       ))}</td>
       <td class="alarm-state">{alarm.state}{alarm.shelved_until && ` until ${alarm.shelved_until}`}{alarm.by && `, ${alarm.by}`}{alarm.note && <small> {alarm.note}</small>}</td>
       <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.kind === 'link' ? (alarm.severity === 'none' ? 'over' : 'lost') : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
-      <td>{alarm.limit || alarm.reason}</td>
+      <td class="alarm-limit">{alarm.limit || alarm.reason}</td>
       <td class="number">{alarm.sclk === undefined ? '' : fromEntry(alarm.sclk - entry_sclk)}</td>
     </tr>
   );
@@ -50,7 +50,7 @@ export function Alarms() {
       {problem.value && <p role="alert" class="status-alarm" data-testid="alarm-problem">✖ {problem.value}</p>}
       <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms, those that no one has looked at first">
         {listed.value.length > 0 && (
-          <table>
+          <table class="alarm-table" data-testid="alarm-table">
             <thead><tr><th>severity</th><th>alarm</th><th>do</th><th>state</th><th class="number">value</th><th>limit</th><th class="number">since</th></tr></thead>
             <tbody>{listed.value.map((alarm) => <Row key={alarm.name} alarm={alarm} entry_sclk={run.entrySclk} />)}</tbody>
           </table>

@@ -61,7 +61,7 @@ export function Links() {
       {pastRange.value && <p class="not-past">▲ Counters are of the whole run; states and silences are those of the past that is shown.</p>}
       <div class="table-scroll" tabIndex={0} aria-label="links">
         {views.length === 0 ? <p class="none">no link has been heard of yet</p> : (
-          <table class="link-table">
+          <table class="link-table" data-testid="link-table">
             <thead><tr><th>link</th><th>state</th><th>frames that came</th><th class="number">frames</th><th class="number">missing</th><th class="number">gaps</th>
               <th class="number">bad CRC</th><th class="number">bad header</th><th class="number">repeated</th><th class="number">octets</th><th class="number">skipped</th>
               <th class="number">rate</th><th class="number">packets</th><th class="number">identical</th></tr></thead>

@@ -116,12 +116,12 @@ function Streams({ whole }: { whole: boolean }) {
   return (
     <div class="table-scroll streams" tabIndex={0} role="region" aria-label="packets by APID">
       <table data-testid="packet-streams">
-        <thead><tr><th>APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
+        <thead><tr><th class="number">APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
         <tbody>
           {(run ? packetStreams(run, !whole) : []).map((row) => (
             <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
               <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
-              <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
+              <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} title={row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
               <td class="number">{row.units}</td>
               <td class="number">{row.rate?.units_per_s.toFixed(1) ?? ''}</td>
               <td class="number">{rateText(row.rate)}</td>
@@ -137,7 +137,7 @@ function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
   return (
     <div class="table-scroll units" tabIndex={0} role="region" aria-label={`units, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`} data-testid="units" onKeyDown={(event) => onListKey(event, lines)}>
       <table data-testid="unit-table">
-        <thead><tr><th>from entry</th><th>unit</th><th>APID</th><th>packet</th><th class="number">octets</th><th>link</th><th>verdict</th></tr></thead>
+        <thead><tr><th class="number">from entry</th><th>unit</th><th class="number">APID</th><th>packet</th><th class="number">octets</th><th>link</th><th>verdict</th></tr></thead>
         <tbody>
           {lines.map((line) => {
             const { fact } = line;
@@ -147,9 +147,9 @@ function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
                 <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
                 <td><button type="button" class="link-button" tabIndex={-1}>{String(fact.unit)}</button></td>
                 <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
-                <td>{fact.name}</td>
+                <td title={fact.name}>{fact.name}</td>
                 <td class="number">{fact.octets}</td>
-                <td>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
+                <td title={fact.duplicate ? 'came before over another link' : undefined}>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
                 <td>{line.row ? <Mark verdict={line.row.verdict} /> : <span class="status-dim">open it</span>}</td>
               </tr>
             );

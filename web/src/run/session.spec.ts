@@ -135,6 +135,16 @@ describe('a run', () => {
     onMessage({ type: 'run', run: aRun(one), fresh: false });
     expect(await askAll(), 'the same').toEqual(every);
   });
+  it('is left at once when the server that came back refuses it and has no such run', async () => {
+    vi.stubGlobal('fetch', vi.fn(async () => new Response(JSON.stringify({ runs: [] }))));
+    const left = vi.mocked(location.reload);
+    for (const [now, times] of [['live', 0], ['lost', 1]] as const) {
+      state(now);
+      onMessage({ type: 'refusal', reason: 'no run 1' });
+      await new Promise((resolve) => setTimeout(resolve));
+      expect([vi.mocked(fetch).mock.calls.filter(([path]) => path === '/api/v1/runs').length, left.mock.calls.length], now).toEqual([times, times]);
+    }
+  });
   it('that begins while the past of another is looked at is told once, and shown when who looks comes back', () => {
     state('live');
     watched.value = 0;

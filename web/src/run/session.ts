@@ -288,6 +288,7 @@ export function onMessage(message: FromWorker): void {
       requests.delete(message.request);
       break;
     case 'refusal':
+      if (inDoubt) void refreshRuns(); // it may be the run that is shown of which the server knows nothing
       notify(message.reason);
       break;
     case 'trouble':

@@ -24,6 +24,7 @@ const POST_SAMPLES_EVERY_MS = 45; // what is drawn does not wait behind what is 
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
+const NO_FRAME_MS = 300; // ours: a run that has ended sends no live frame to wait for
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
 const post = (message: FromWorker, columns: Column[] = []) => self.postMessage(message, { transfer: columns.flatMap(({ sclk, value }) => [sclk.buffer, value.buffer] as ArrayBuffer[]) });
@@ -149,7 +150,10 @@ function receive(bytes: Uint8Array): void {
       stopAt = Number(welcome.lastSeq);
       post({ type: 'run', run: welcome.runState, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
-      if (run !== 0 && step === 'samples' && check.completeThrough >= stopAt) say('live'); // nothing was missed
+      if (run !== 0 && step === 'samples' && check.completeThrough >= stopAt) { // nothing was missed
+        say('live');
+        setTimeout(() => state === 'live' && fetchDueHistory(), NO_FRAME_MS);
+      }
       break;
     }
     case 'batch':
@@ -186,10 +190,7 @@ function receiveBatch(batch: Batch): void {
   collector.add(batch);
   if (step === 'facts' && check.completeThrough >= stopAt) goOnWithSamples();
   else if (step === 'samples' && state !== 'live' && check.completeThrough >= stopAt) say('live');
-  if (step === 'samples' && historyDue) {
-    historyDue = false;
-    void fetchHistory();
-  }
+  if (step === 'samples') fetchDueHistory();
   postSoon(batch.items.some(({ item }) => item.case === 'samples'));
 }
 
@@ -217,12 +218,12 @@ function goOnWithSamples(): void {
   historyDue = true;
   say('live');
   subscribe();
-  // A run that has ended sends no live frame to wait for.
-  setTimeout(() => {
-    if (!historyDue) return;
-    historyDue = false;
-    void fetchHistory();
-  }, 300);
+}
+
+function fetchDueHistory(): void {
+  if (!historyDue) return;
+  historyDue = false;
+  void fetchHistory();
 }
 
 async function fetchHistory(all = true, live = false): Promise<void> {
