@@ -26,11 +26,14 @@ async function whatObserverDoes(page) {
     }));
     await page.reload();
     await waitFor(() => page.getByTestId('stream-state').innerText(), /connected/);
+    const under_way = new Set();
+    page.on('request', (request) => under_way.add(request));
+    for (const end of ['requestfinished', 'requestfailed']) page.on(end, (request) => under_way.delete(request));
     const tabs = await page.getByRole('tab').evaluateAll((all) => all.map((tab) => tab.dataset.testid));
     let pressed = 0;
     for (const tab of tabs) {
         await page.getByTestId(tab).click();
-        await page.waitForTimeout(300);
+        await waitFor(async () => (await page.getByTestId(tab).getAttribute('aria-selected')) === 'true' && under_way.size === 0, (whole) => whole === true);
         pressed += await page.evaluate(() => {
             const pressable = () => [...document.querySelectorAll('button:enabled:not([data-testid="log-out"]):not([role="tab"])')];
             const all = pressable();
@@ -40,10 +43,13 @@ async function whatObserverDoes(page) {
         });
         for (const key of ['p', '+', '-', '/', 'Escape', 'Escape']) await page.keyboard.press(key);
     }
-    await page.waitForTimeout(300);
+    // What the worker asks now goes out after all that it was given before.
+    const last = page.waitForRequest(/\/packets\?verdict=/);
+    for (const tab of ['tab-channels', 'tab-verdicts']) await page.getByTestId(tab).click();
+    await last;
     assert.ok(subscribed > 0, 'what goes over the socket is seen');
     assert.ok(tabs.length >= 10 && pressed > tabs.length, `${pressed} controls in ${tabs.length} panels`);
-    page.removeAllListeners('request');
+    for (const event of ['request', 'requestfinished', 'requestfailed']) page.removeAllListeners(event);
     page.removeAllListeners('websocket');
     return asked;
 }
