@@ -5,6 +5,7 @@ import type { Status } from '../design/status';
 import { wordsFor } from '../run/api';
 import { isWorst } from '../run/limits';
 import { change, read, store } from '../run/session';
+import type { RunStore } from '../run/store';
 
 export interface AlarmState {
   name: string;
@@ -35,6 +36,12 @@ export const acting = signal<string | undefined>(undefined);
 
 export const listed = computed(() => (alarms.value && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : []));
 export const toAcknowledge = computed(() => listed.value.filter(wantsLook));
+
+/** Of what stands now, acknowledged or not, whatever it is of; until the ground's list of this run is here, of what the stream told of limits. */
+export function severitiesNow(run: RunStore): string[] {
+  if (alarms.value?.run !== run.id) return [...run.alarms.values()].map((alarm) => alarm.severity);
+  return listed.value.filter((alarm) => alarm.state !== 'shelved' && alarm.severity !== 'none' && alarm.severity !== '').map((alarm) => alarm.severity);
+}
 
 export function lookOf(alarm: AlarmState): Status {
   const severity = alarm.severity === 'none' ? alarm.worst : alarm.severity;

@@ -1,10 +1,13 @@
 // @vitest-environment happy-dom
+import { create } from '@bufbuild/protobuf';
 import { render } from 'preact';
 import { act as settled } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { access } from '../access/model';
+import { Header } from '../clocks/view';
+import { AlarmSchema } from '../gen/aeolis/v1/items_pb';
 import { pastRange, useForTest } from '../run/session';
-import { aDictionary, aStore } from '../testing/fixtures';
+import { aDictionary, aStore, item } from '../testing/fixtures';
 import { aServer } from '../testing/server';
 import { act, actionsOn, alarms, calls, listed, lookOf, note, problem, refreshAlarms, shelveFor, sorted, toAcknowledge } from './model';
 import type { AlarmState } from './model';
@@ -70,6 +73,23 @@ describe('alarms', () => {
     server.routes['POST /runs/1/alarms'] = { status: 0 };
     await act('altitude_m', 'acknowledge');
     expect(problem.value).toContain('whether it was taken is not known');
+  });
+  it('of links and of silence count in the header as long as they stand, acknowledged or not; what the stream told of limits, until the list is here', () => {
+    const page = document.createElement('main');
+    const count = () => {
+      settled(() => render(<Header />, page));
+      return page.querySelector('[data-testid=alarm-count]')?.textContent?.trim();
+    };
+    useForTest(aStore([item({ case: 'alarm', value: create(AlarmSchema, { channel: 3, severity: 'warning' }) })]), aDictionary);
+    expect(count()).toBe('▲ 1 alarm: warning');
+    const standing = [an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress' }), an({ name: 'Status', kind: 'staleness', severity: 'watch', worst: 'watch' })];
+    const over = [an({ name: 'a', state: 'returned', severity: 'none', acknowledged: true }), an({ name: 'b', state: 'shelved' })];
+    alarms.value = { run: 1, all: [...standing, ...over] };
+    expect(count()).toBe('■ 2 alarms: distress, watch2 to acknowledge a');
+    alarms.value = { run: 1, all: [...standing.map((each) => ({ ...each, state: 'acknowledged', acknowledged: true })), ...over] };
+    expect(count()).toBe('■ 2 alarms: distress, watch');
+    alarms.value = { run: 1, all: over };
+    expect(count()).toBeUndefined();
   });
   it('that could not be asked for are asked for again, and what was known stays', async () => {
     const known = { run: 1, all: [an({})] };

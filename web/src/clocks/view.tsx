@@ -8,7 +8,7 @@ import { badgeOf, clocksOf, headerLinks, latestSend, streamLine } from './model'
 import type { LinkLine } from './model';
 import { access } from '../access/model';
 import { Who } from '../access/view';
-import { toAcknowledge } from '../alarms/model';
+import { severitiesNow, toAcknowledge } from '../alarms/model';
 import { focusPanel } from '../shortcuts/model';
 import './style.css';
 
@@ -51,7 +51,7 @@ export function Header() {
   const badge = badgeOf(run, past, replay.value !== undefined);
   const clocks = run && clocksOf(run, past?.to);
   const send = run?.going && !past ? latestSend(run) : undefined;
-  const severities = run && !past ? [...run.alarms.values()].map((alarm) => alarm.severity) : [];
+  const severities = run && !past ? severitiesNow(run) : [];
   const waiting = past ? 0 : toAcknowledge.value.length;
   return (
     <header class="header" data-testid="header">
