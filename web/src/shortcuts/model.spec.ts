@@ -1,10 +1,49 @@
 // @vitest-environment happy-dom
-import { expect, it } from 'vitest';
+import { afterEach, expect, it } from 'vitest';
 import guide from '../../../docs/console.md?raw';
-import { SHORTCUTS } from './model';
+import { stage } from '../commands/file';
+import { step } from '../commands/line';
+import { lookAtPast, pastRange, useForTest, withRecording } from '../run/session';
+import { aDictionary, aStore } from '../testing/fixtures';
+import { SHORTCUTS, helpShown, onKey } from './model';
+
+afterEach(() => {
+  [step.value, stage.value, helpShown.value, pastRange.value] = ['type', 'review', false, undefined];
+  document.body.textContent = '';
+});
+
+/** Pressed with the focus on such an element; whether a shortcut took it. */
+function press(key: string, on: Partial<HTMLInputElement> = {}, tag = 'input'): boolean {
+  const element = document.body.appendChild(Object.assign(document.createElement(tag), on));
+  const event = new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true });
+  element.addEventListener('keydown', onKey);
+  element.dispatchEvent(event);
+  return event.defaultPrevented;
+}
 
 it('no key has two meanings, and docs/console.md has each with its words', () => {
   const keys = SHORTCUTS.flatMap((each) => each.keys);
   expect(new Set(keys).size).toBe(keys.length);
   for (const each of SHORTCUTS) expect(guide).toContain(`| \`${each.shown}\` | ${each.words} |`);
+});
+it('a letter acts on a slider and on a box to tick as anywhere, not in what takes text; the slider keeps its arrows', () => {
+  useForTest(aStore(), aDictionary);
+  lookAtPast({ from: -100, to: 0 }, false);
+  expect([press('w', { type: 'range' }), withRecording.value]).toEqual([true, true]);
+  expect([press('w', { type: 'checkbox' }), withRecording.value]).toEqual([true, false]);
+  expect([press('ArrowLeft', { type: 'range' }), press('w', { type: 'search' }), press('w', {}, 'select'), withRecording.value]).toEqual([false, false, false, false]);
+  press('Escape', { type: 'range' });
+  expect(pastRange.value).toBeUndefined();
+});
+it('Esc takes back what is armed from wherever the focus is, before it closes anything; what is only reviewed after that', () => {
+  useForTest(aStore(), aDictionary);
+  for (const [type, tag] of [['search', 'input'], ['range', 'input'], ['', 'button']] as const) {
+    [step.value, stage.value, helpShown.value] = ['armed', 'armed', true];
+    press('Escape', { type }, tag);
+    expect([step.value, stage.value, helpShown.value], type).toEqual(['review', 'review', true]);
+  }
+  press('Escape', {}, 'button');
+  expect([helpShown.value, step.value]).toEqual([false, 'review']);
+  press('Escape', {}, 'button');
+  expect(step.value).toBe('type');
 });

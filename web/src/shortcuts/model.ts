@@ -1,10 +1,11 @@
 // The keys, in one table: what the help shows is what the page does.
 import { signal } from '@preact/signals';
-import { openCommandLine } from '../commands/line';
+import { backFile, stage } from '../commands/file';
+import { back, openCommandLine, step } from '../commands/line';
 import { changePace, togglePause } from '../rehearsal/view';
 import { toggleGuide } from '../guide/model';
 import { toggleRecording, toggleReplay } from '../replay/model';
-import { backToLive, dismissNotice, pastRange, store } from '../run/session';
+import { backToLive, dismissNotice, pastRange, store, takesCommands } from '../run/session';
 import { closeCursor, stepCursor } from '../run/cursor';
 import { closeDetail, stepTimepoint, toggleAnchors } from '../timeline/view';
 import { focusTones } from '../tones/view';
@@ -38,6 +39,14 @@ function toggleTheme(): void {
   const next = root.dataset['theme'] === 'light' ? 'dark' : 'light';
   root.dataset['theme'] = next;
   localStorage.setItem('aeolis-theme', next);
+}
+
+/** Whether anything was. From wherever the focus is. */
+function takeBackArmed(): boolean {
+  const [command, file] = [step.value === 'armed', stage.value === 'armed'];
+  if (command) back();
+  if (file) backFile();
+  return command || file;
 }
 
 export interface Shortcut {
@@ -75,8 +84,10 @@ export const SHORTCUTS: Shortcut[] = [
   {
     keys: ['Escape'], shown: 'Esc', words: 'close what is open, or leave a past view',
     act: () => {
+      if (takeBackArmed()) return;
       if (helpShown.value) helpShown.value = false;
       else if (closeCursor() || closeDetail()) return;
+      else if (step.value !== 'type' && takesCommands()) back();
       else if (pastRange.value) backToLive();
       else dismissNotice();
     },
@@ -93,11 +104,13 @@ export function ignoreHeldEnter(event: KeyboardEvent): void {
 export function onKey(event: KeyboardEvent): void {
   if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
   const target = event.target as HTMLElement | null;
-  const inField = target?.matches('input, select, textarea') ?? false;
-  if (inField) {
-    if (event.key === 'Escape') target?.blur();
+  if (target?.matches('input:not([type=range], [type=checkbox]), select, textarea')) {
+    if (event.key !== 'Escape') return;
+    target.blur();
+    takeBackArmed();
     return;
   }
+  if (target?.matches('[type=range]') && event.key.startsWith('Arrow')) return; // they move the slider
   const key = event.shiftKey && event.key.startsWith('Arrow') ? `Shift+${event.key}` : event.key;
   const shortcut = SHORTCUTS.find((each) => each.keys.includes(key));
   if (!shortcut) return;
