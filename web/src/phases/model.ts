@@ -4,6 +4,7 @@ import type { Dictionary } from '../run/dictionary';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import type { RunStore } from '../run/store';
 import { heardOf } from '../timeline/heard';
+import type { Prediction } from '../timeline/predict';
 
 export interface PhaseStep {
   title: string;
@@ -24,7 +25,9 @@ interface Group {
 }
 
 /** The strip of phases. What the vehicle said last decides, in packets or, where it is further, by tone; before it said anything, all are ahead. */
-export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): PhaseStep[] {
+export function phaseSteps(
+  store: RunStore | undefined, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number, predictions: readonly Prediction[] = [],
+): PhaseStep[] {
   const channel = dictionary.pick(LAYOUT.phase);
   const labels = new Map(channel?.labels.map((label) => [Number(label.value), label.label]));
   const known = new Set(labels.values());
@@ -34,7 +37,10 @@ export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, 
   const groupOf = (label: string | undefined, e_s: number) => groups.findIndex((group) =>
     label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)));
   const entryKnown = store?.entryKnown !== false;
-  const predicted = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
+  // As timeline and "waiting for" have it; without a plan as it was published.
+  const published = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
+  const predicted = (group: Group | undefined) =>
+    (published ? predictions.find((each) => each.name === group?.from)?.e_s ?? group?.predicted_e_s : undefined);
   const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);
@@ -57,13 +63,13 @@ export function phaseSteps(store: RunStore | undefined, dictionary: Dictionary, 
   return groups.map((group, index) => {
     const start = entryKnown ? since.get(index) : undefined;
     const since_e_s = start === undefined || !store ? undefined : start - store.entrySclk;
-    const next_e_s = predicted ? groups[index + 1]?.predicted_e_s : undefined;
+    const next_e_s = predicted(groups[index + 1]);
     return {
       title: group.title,
       state: at < 0 || index > at ? 'ahead' : index === at ? 'now' : 'done',
       detail: index === at && isByTone ? '■ by tone' : index === at && label !== undefined && inWords(label) !== group.title.toLowerCase() ? inWords(label) : '',
       since_e_s,
-      predicted_e_s: predicted ? group.predicted_e_s : undefined,
+      predicted_e_s: predicted(group),
       part: index !== at || since_e_s === undefined || next_e_s === undefined ? undefined
         : Math.max(0, Math.min(1, (seen_e_s - since_e_s) / (next_e_s - since_e_s))),
     };
@@ -80,11 +86,11 @@ function byTone(store: RunStore, groups: readonly Group[], plan: readonly Timepo
   return { group: Math.max(0, begins.findLastIndex((at) => at >= 0 && at <= last)), since };
 }
 
-/** "parachute in 1 m 20 s", as far as it is predicted; "due since 4.0 s" when it should have come. */
+/** "parachute in ≈ 1 m 20 s", as far as it is predicted; what is overdue is predicted for now at the earliest. */
 export function nextWords(steps: readonly PhaseStep[], seen_e_s: number, duration: (seconds: number) => string): string {
   const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
   if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
   const left = next.predicted_e_s - seen_e_s;
   const title = next.title.toLowerCase();
-  return left >= 0 ? `${title} in ≈ ${duration(left)}` : `${title} ≈ ${duration(-left)} later than predicted`;
+  return left > 0 ? `${title} in ≈ ${duration(left)}` : left > -1 ? `${title} is due` : `${title} ≈ ${duration(-left)} later than predicted`;
 }

@@ -1,6 +1,7 @@
 // The strip that says where in the landing we are, to be read across a room.
 import { cutoff, dictionary, runNow, timepoints } from '../run/session';
 import { duration, fromEntry } from '../run/time';
+import { predicted } from '../timeline/now';
 import { nextWords, phaseSteps } from './model';
 import './style.css';
 
@@ -9,7 +10,7 @@ const SHAPES = { done: '✓', now: '▶', ahead: '○' } as const;
 export function Phases() {
   const run = runNow();
   if (!dictionary.value) return null;
-  const steps = phaseSteps(run, dictionary.value, timepoints.value, cutoff.value);
+  const steps = phaseSteps(run, dictionary.value, timepoints.value, cutoff.value, predicted.value);
   const seen_e_s = run ? Math.min(run.seenSclk, cutoff.value) - run.entrySclk : NaN;
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">
