@@ -196,22 +196,24 @@ export function conditions(
   store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], row: TimepointRow, cutoff: number, predicted: readonly Prediction[],
 ): Line[] {
   const now = Math.min(store.seenSclk, cutoff);
-  const value = (names: readonly string[]): number | undefined => {
+  const value = (names: readonly string[], within_s = Infinity): number | undefined => {
     const channel = dictionary.pick(names);
     const sample = channel && store.latest(channel.id, cutoff);
-    return sample?.value;
+    return sample && now - sample.sclk <= within_s ? sample.value : undefined;
   };
   // The vehicle's own times only count while it speaks of this timepoint.
   const current = value(LAYOUT.currentTimepoint);
   const itsOwn = current === undefined ? nextTimepoint(store, plan, cutoff) === row : current === row.id;
   const foreseen = predicted.find((each) => each.id === row.id && !each.fired);
-  const desired = itsOwn ? value(LAYOUT.nextDesired) : undefined;
-  const minimum = itsOwn ? value(LAYOUT.nextMinimum) : undefined;
+  // History has no undefined samples: what is older is the time of the timepoint before.
+  const desired = itsOwn ? value(LAYOUT.nextDesired, FRESH_S) : undefined;
+  const minimum = itsOwn ? value(LAYOUT.nextMinimum, FRESH_S) : undefined;
   const base = row.anchor ? inWords(row.anchor) : 'the one before';
   // An anchor that GNC starts has no time in the plan: what is waited for is the vehicle's own word.
   const declared = row.anchor !== '' && row.desiredOffsetS === 0 && row.plannedES === undefined;
   const words = declared ? `the vehicle declares “${base}”` : row.anchor === '' && row.desiredOffsetS === 0 ? 'with the one before' : `${offsetWords(row.desiredOffsetS)} ${base}`;
-  const lines = [timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk)];
+  const time = timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk);
+  const lines: Line[] = [declared && time.holds ? { words, value: 'not yet', holds: false } : time]; // what is declared fires, and is heard of so
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
     lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} the one before`, minimum, undefined, now, store.entrySclk));
   }
@@ -240,7 +242,7 @@ function timeLine(words: string, due_sclk: number | undefined, foreseen_sclk: nu
   return due_sclk === undefined && foreseen_sclk === undefined ? { words, value: 'no word yet', holds: undefined } : { words, value: 'not yet', holds: false };
 }
 
-const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now
+const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now, nor a time what this timepoint waits for
 
 /** What flight says that this timepoint, and no other, is held by. */
 function latestHeld(store: RunStore, row: TimepointRow, cutoff: number): Explanation | undefined {

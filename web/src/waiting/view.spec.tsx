@@ -89,6 +89,16 @@ describe('waiting for', () => {
     const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
     expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'not yet', holds: false });
   });
+  it('takes no time of the timepoint before for this one’s, where history has a gap for what is undefined', () => {
+    const plan = [...aPlan.slice(0, 2), create(TimepointRowSchema, { id: 7, name: 'parachute_deploy', anchor: 'entry', desiredOffsetS: 50, minimumOffsetS: 2, plannedES: 50 })];
+    const first = (rows: typeof aPlan, told_sclk: number, cutoff: number) => waitingFor(aStore([
+      ...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 1000 }), samples(told_sclk, { 2: 1000, 5: 1 }), samples(1300, { 5: 1 }),
+    ], aRun({ clocks: undefined as never, startSclk: 1300 })), aDictionary, rows, cutoff, [{ id: 7, name: '', e_s: 50, fired: false }]).lines[0];
+    expect(first(plan, 1000, 1005), 'while it is new').toMatchObject({ words: '50 s after entry', value: 'E+00:00.0', holds: true });
+    expect(first(plan, 1000, 1005.5)).toMatchObject({ value: '≈ in 44.5 s', holds: false });
+    expect(first(aPlan, 1000, 1180)).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'no word yet', holds: undefined });
+    expect(first(aPlan, 1000, 1001), 'what is declared is heard of by its timepoint').toMatchObject({ value: 'not yet', holds: false });
+  });
   it('shows the condition that is missing, as flight explained it', () => {
     const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: '<=', bound: 405, holds: false });
     const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] })]);
