@@ -51,12 +51,14 @@ export const LAYOUT = {
   /** Left out of a timepoint's note where it is read as a sentence: marks of whose a number is, (H), (M) and (L), and the prediction, which has a lane. */
   noteMarks: [/\s*\([^()]*\b[HML]\b[^()]*\)/g, /;\s*OD137 .*$/],
   /**
-   * What the vehicle compares for a timepoint, as far as its own report of what it holds says the bound: shown until flight
-   * itself explains what holds it.
+   * What the vehicle compares for a timepoint or moment: shown until flight itself explains what holds it. `bound` is a channel of its
+   * own report, or a parameter that it does not report (dictionaries/msl/parameters.csv). `since`: how long the timepoint is ago.
    */
   watches: [
+    { timepoint: 'heading_alignment', channel: 'speed_mps', comparison: '<=', bound: 1100 },
     { timepoint: 'parachute_deploy', channel: 'speed_mps', comparison: '<=', bound: 'parachute_speed_mps' },
     { timepoint: 'heatshield_separation', channel: 'speed_mps', comparison: '<=', bound: 'heatshield_speed_mps' },
+    { timepoint: 'heatshield_separation', since: 'parachute_deploy', bound: 20 },
   ],
   /** Commands that move timepoints, by their arguments: what they would do is drawn before they are sent. */
   moves: [
@@ -91,6 +93,9 @@ export const LAYOUT = {
     },
   ],
 
+  /** Flight refuses the last of them from so long before the first timepoint on the clock: `do_edl_margin_s` of the mission's parameters. */
+  beginMargin_s: 5,
+
   /** What the review of a rehearsal says of its landing: flight's own words, and where the vehicle believed to be. */
   landing: {
     event: 'TOUCHDOWN', position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
@@ -103,6 +108,17 @@ export const LAYOUT = {
     whose: 'descent stage',
     channels: ['altitude_m', 'speed_mps', 'descent_rate_mps', 'sensed_deceleration_g', 'bank_deg', 'bank_command_deg', 'mach', 'dynamic_pressure_Pa', 'radar_altitude_m', 'range_to_go_m', 'crossrange_m'],
   },
+
+  /** What people call a thing, where its name is jargon; a picture has only the short form in brackets. */
+  words: { sufr: 'straighten up and fly right (SUFR)', sufr_start: 'straighten up and fly right' },
+  /**
+   * What people wait for between timepoints, told by an event and a tone of that name. `before`: the timepoint that comes after it.
+   * `predicted_e_s` is published [od137].
+   */
+  moments: [
+    { name: 'peak_deceleration', before: 'sufr', predicted_e_s: 79.35, plain: 'The hottest and hardest half minute; flight says so once it has passed.' },
+    { name: 'heading_alignment', before: 'sufr', predicted_e_s: undefined, plain: 'From then on it steers straight at the target.' },
+  ],
 
   /** Seconds from entry that the timeline shows when nothing else is chosen. */
   window: { from: -60, to: 470 },

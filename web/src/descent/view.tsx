@@ -7,8 +7,7 @@ import { STATUS } from '../design/status';
 import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 import { landedSclk } from '../run/whose';
-import { inWords } from '../run/dictionary';
-import { isImportant, outages } from '../timeline/model';
+import { isImportant, outages, shortTitle } from '../timeline/model';
 import { phaseSteps } from '../phases/model';
 import { GAP_S } from '../plots/model';
 import { CORRIDOR } from './corridor';
@@ -266,7 +265,7 @@ function moments(
     c.beginPath();
     c.arc(px, py, 3.5, 0, 7);
     c.fill();
-    const words = inWords(firing.name);
+    const words = shortTitle(firing.name);
     const wide = c.measureText(words).width;
     const places = WORDS_AT.flatMap(([dx, dy, align]) => {
       const left = align === 'left' ? px + dx : px + dx - wide;

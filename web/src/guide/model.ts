@@ -11,7 +11,7 @@ import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';
 import { mayAct, mayRehearse } from '../access/model';
-import { missingStep } from '../waiting/model';
+import { missingStep, tooLate } from '../waiting/model';
 
 const KEY = 'aeolis-guide';
 export const guideShown = signal(localStorage.getItem(KEY) !== 'hidden');
@@ -68,6 +68,11 @@ export function guideStep(run: RunStore | undefined, words: Dictionary, plan: re
   if (missing) {
     const { step, state, evidence, against } = missing;
     const number = missing.number + 1;
+    const late = tooLate(run, words, plan, until);
+    if (late !== undefined) {
+      return { number: 1, title: 'Too late for this run: start another', why: late, wants: 'nothing',
+        press: [{ key: 's', words: 'goes to the runs' }, { words: `“end run ${run.id}”, pressed twice, ends this one` }, { words: '“start a rehearsal” begins anew' }] };
+    }
     const nothing: Pick<GuideStep, 'number' | 'press' | 'wants'> = { number, press: [], wants: 'nothing' };
     if (at === 'type' && state === 'sent') {
       return { ...nothing, title: 'Sent. Waiting for the vehicle to say so', why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.' };
@@ -107,11 +112,12 @@ export function guideStep(run: RunStore | undefined, words: Dictionary, plan: re
 
 function afterwards(run: RunStore): GuideStep {
   const landed = run.run.outcome === 'touchdown';
+  const [look, another] = [[{ key: 'v', words: 'the verdicts' }, { key: 'y', words: 'see it again' }], { key: 's', words: 'start another' }];
   return {
     number: GUIDE_STEPS,
     title: landed ? 'You have landed it' : 'This run is over',
     why: landed ? 'The recording is compared with all that was heard live, octet by octet.' : 'All that was known is kept, and what went wrong is among the events.',
-    press: [{ key: 'v', words: 'the verdicts' }, { key: 'y', words: 'see it again' }, { key: 's', words: 'start another' }],
+    press: landed ? [...look, another] : [another, ...look],
     wants: 'nothing',
   };
 }

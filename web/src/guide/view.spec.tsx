@@ -13,31 +13,46 @@ const at = (eS: number, fields: Partial<RunState> = {}) => {
   return run;
 };
 
+const soonPlan = aPlan.slice(1); // of which the first timepoint on the clock is still to come
+
 describe('the guide', () => {
   it('leads key by key through both commands', () => {
-    expect(keys(guideStep(aStore(), aDictionary, aPlan, 'rehearsal', 'type', Infinity))).toEqual(['/', 'set edl parameters', 'Enter']);
-    expect(keys(guideStep(aStore(), aDictionary, aPlan, 'rehearsal', 'review', Infinity))).toEqual(['Enter', 'Esc']);
+    expect(keys(guideStep(aStore(), aDictionary, soonPlan, 'rehearsal', 'type', Infinity))).toEqual(['/', 'set edl parameters', 'Enter']);
+    expect(keys(guideStep(aStore(), aDictionary, soonPlan, 'rehearsal', 'review', Infinity))).toEqual(['Enter', 'Esc']);
     const second = aStore(done(1));
-    expect(guideStep(second, aDictionary, aPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 2, wants: 'command' });
-    expect(keys(guideStep(second, aDictionary, aPlan, 'rehearsal', 'armed', Infinity))).toEqual(['EDL_DO_EDL', 'Enter']);
+    expect(guideStep(second, aDictionary, soonPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 2, wants: 'command' });
+    expect(keys(guideStep(second, aDictionary, soonPlan, 'rehearsal', 'armed', Infinity))).toEqual(['EDL_DO_EDL', 'Enter']);
+  });
+  it('leads out of a run that can begin no more, and not further into it', () => {
+    const now = (eS: number, lightTimeS = 0) => {
+      const run = at(eS);
+      if (run.clocks) run.clocks.lightTimeS = lightTimeS;
+      return guideStep(aStore([], run), aDictionary, aPlan, 'rehearsal', 'type', Infinity);
+    };
+    expect(keys(now(-832))).toEqual(['/', 'set edl parameters', 'Enter']);
+    expect(now(-830)).toMatchObject({ title: 'Too late for this run: start another', wants: 'nothing', why: expect.stringContaining('had to leave by E−13:51') });
+    expect(keys(now(-830))?.[0]).toBe('s');
+    expect([now(-840, 5)?.title, now(-842, 5)?.title]).toEqual(['Too late for this run: start another', 'Tell the vehicle where it is']);
+    const sent = stage({ command: 2n, name: 'EDL_DO_EDL', stage: 'radiated', status: 'ok' });
+    expect(guideStep(aStore([...done(1), sent], at(-820)), aDictionary, aPlan, 'rehearsal', 'type', Infinity)?.title).toContain('Sent');
   });
   it('does not lead to a command that the vehicle’s status still speaks against', () => {
-    const taken = (received: number) => guideStep(aStore([...done(1), samples(899, { 5: received })]), aDictionary, aPlan, 'rehearsal', 'type', Infinity);
+    const taken = (received: number) => guideStep(aStore([...done(1), samples(899, { 5: received })]), aDictionary, soonPlan, 'rehearsal', 'type', Infinity);
     expect(taken(0)).toMatchObject({ number: 2, press: [], wants: 'nothing', why: expect.stringContaining('parameters_received is 0') });
     expect(keys(taken(1))).toEqual(['/', 'do edl', 'Enter']);
   });
   it('says that a command which was sent is not yet one that was taken', () => {
     const sent = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'radiated', status: 'ok' })]);
-    expect(guideStep(sent, aDictionary, aPlan, 'rehearsal', 'type', Infinity)?.title).toContain('Waiting');
+    expect(guideStep(sent, aDictionary, soonPlan, 'rehearsal', 'type', Infinity)?.title).toContain('Waiting');
     const asked = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'released', status: 'pending', needsApproval: true, askedBy: 'ann' })]);
-    expect(guideStep(asked, aDictionary, aPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ title: 'It waits on the ground', wants: 'command', why: expect.stringContaining('waits for a second person') });
+    expect(guideStep(asked, aDictionary, soonPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ title: 'It waits on the ground', wants: 'command', why: expect.stringContaining('waits for a second person') });
   });
   it('says that a command which is held has not left, and asks for it again once it was cancelled or has failed', () => {
     const said = (stageName: string, status: string, evidence: string) => stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: stageName, status, evidence, held: status === 'pending' });
     const held = [said('queued', 'ok', ''), said('released', 'pending', 'held by Ada')];
-    expect(guideStep(aStore(held), aDictionary, aPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 1, title: 'It waits on the ground', press: [], why: expect.stringContaining('is held until it is released') });
+    expect(guideStep(aStore(held), aDictionary, soonPlan, 'rehearsal', 'type', Infinity)).toMatchObject({ number: 1, title: 'It waits on the ground', press: [], why: expect.stringContaining('is held until it is released') });
     for (const last of [said('released', 'failed', 'cancelled by Ada'), said('accepted', 'failed', 'bad_argument')]) {
-      expect(keys(guideStep(aStore([...held, last]), aDictionary, aPlan, 'rehearsal', 'type', Infinity))).toEqual(['/', 'set edl parameters', 'Enter']);
+      expect(keys(guideStep(aStore([...held, last]), aDictionary, soonPlan, 'rehearsal', 'type', Infinity))).toEqual(['/', 'set edl parameters', 'Enter']);
     }
   });
   it('has the dull minutes sped up and the landing slowed down', () => {

@@ -1,4 +1,5 @@
 // The mission's words, as the API tells them, with the look-ups that the panels need.
+import { LAYOUT } from '../layout';
 import type {
   DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone,
 } from '../gen/aeolis/v1/run_pb';
@@ -52,7 +53,7 @@ export class Dictionary {
 
 /** "heatshield_separation" → "heatshield separation". */
 export function inWords(name: string): string {
-  return name.replaceAll('_', ' ').toLowerCase();
+  return (LAYOUT.words as Record<string, string>)[name] ?? name.replaceAll('_', ' ').toLowerCase();
 }
 
 /** A value as people read it: label, or five significant digits and no more than four decimals. */

@@ -14,7 +14,7 @@ export interface Heard {
   verdict: string;
 }
 
-const BELIEVED = 0.5; // ours: a tone that is likelier than all others together
+export const BELIEVED = 0.5; // ours: a tone that is likelier than all others together
 
 let last: { store: RunStore; version: number; plan: readonly TimepointRow[]; cutoff: number; heard: ReadonlyMap<number, Heard> } | undefined;
 

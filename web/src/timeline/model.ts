@@ -26,6 +26,8 @@ export interface Lanes {
   tones: Mark[];
   live: Mark[];
   recorded: Mark[];
+  /** Timepoints of which only a tone told: in the lane of tones. */
+  heardByTone: Mark[];
   liveOutages: Outage[];
   toneOutages: Outage[];
   relay: number;
@@ -39,10 +41,12 @@ export function isImportant(name: string): boolean {
 
 export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Lanes {
   const lanes: Lanes = {
-    plan: [], tones: [], live: [], recorded: [], toneOutages: [], liveOutages: [], relay: store.run.relayProgress,
+    plan: [], tones: [], live: [], recorded: [], heardByTone: [], toneOutages: [], liveOutages: [], relay: store.run.relayProgress,
   };
   const entry = store.entrySclk;
   for (const row of plan) {
+    const heard = heardOf(store, plan, cutoff).get(row.id);
+    if (heard?.by === 'tone') lanes.heardByTone.push(markOf(row.id, row.name, heard.triggered_sclk - entry, ''));
     if (row.plannedES !== undefined) lanes.plan.push(markOf(row.id, row.name, row.plannedES, ''));
   }
   for (const [id, pair] of store.firings) {
@@ -173,3 +177,5 @@ export function nextTimepoint(store: RunStore, plan: readonly TimepointRow[], cu
 }
 
 export const title = inWords;
+/** For a picture: "straighten up and fly right (SUFR)" is "SUFR". */
+export const shortTitle = (name: string): string => /\((\w+)\)$/.exec(inWords(name))?.[1] ?? inWords(name);

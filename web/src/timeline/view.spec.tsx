@@ -1,11 +1,12 @@
 import { describe, expect, it } from 'vitest';
-import { aDictionary, aPlan, aStore, explanation, firing, link, samples, tone } from '../testing/fixtures';
+import { aDictionary, aPlan, aStore, event, explanation, firing, link, samples, tone } from '../testing/fixtures';
 import { create } from '@bufbuild/protobuf';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
 import { DictionaryReplySchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
 import { silenceStatus } from '../design/status';
-import { firedCount, lanesOf, nextTimepoint, outages, pointDetail } from './model';
+import { firedCount, lanesOf, nextTimepoint, outages, pointDetail, shortTitle } from './model';
+import { momentsOf } from './moments';
 
 describe('the timeline', () => {
   it('has no plan for a timepoint whose anchor is undefined', () => {
@@ -56,6 +57,22 @@ describe('the timeline', () => {
     expect(firedCount(store, plan, Infinity)).toEqual({ all: 2, byTone: 1 });
     expect(nextTimepoint(store, plan, Infinity)?.name).toBe('parachute_deploy');
     expect(pointDetail(store, aDictionary, plan, 1, Infinity)).toMatchObject({ state: 'fired', by: 'tone', tone_e_s: -110, verdict: '' });
+  });
+  it('has a timepoint that only its tone told in the lane of tones, by its own number and name', () => {
+    const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
+    const store = aStore([tone({ sclk: 174, tone: 28, name: 'coolant_vent' }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
+    expect(lanesOf(store, plan, Infinity).heardByTone).toEqual([{ id: 0, name: 'coolant_vent', e_s: -826, important: true, bad: false }]);
+  });
+  it('has the short form of a name where a picture has little room', () => {
+    expect(['sufr', 'entry_guidance'].map(shortTitle)).toEqual(['SUFR', 'entry guidance']);
+  });
+  it('knows a moment between timepoints by event or tone, and as passed once the timepoint after it is', () => {
+    const plan = [...aPlan, { ...aPlan[1], id: 9, name: 'sufr', anchor: 'sufr_start' } as (typeof aPlan)[number]];
+    const moments = (...items: Parameters<typeof aStore>[0] & object) => momentsOf(aStore(items), aDictionary, plan, Infinity).map(({ e_s, done }) => [e_s, done]);
+    expect(moments(event({ name: 'PEAK_DECELERATION', sclk: 1080 }))).toEqual([[80, true], [undefined, false]]);
+    expect(moments(tone({ sclk: 1150, tone: 35, name: 'heading_alignment' }))).toEqual([[undefined, false], [150, true]]);
+    expect(moments(firing({ timepoint: 9, name: 'sufr', firedSclk: 1239 }))).toEqual([[undefined, true], [undefined, true]]);
+    expect(momentsOf(aStore(), aDictionary, aPlan, Infinity)).toEqual([]);
   });
   it('as it was heard has nothing that only the recording told, and a tone once it was decided', () => {
     const store = aStore([

@@ -15,7 +15,8 @@ import { anchorLines, moved, predicted } from './now';
 import { STATUS, SOURCES, held, silenceStatus } from '../design/status';
 import { conditionLine, conditions, noteWords } from '../waiting/model';
 import type { Line } from '../waiting/model';
-import { firedCount, isImportant, lanesOf, nextTimepoint, pointDetail, shortReason, title } from './model';
+import { momentsOf } from './moments';
+import { firedCount, isImportant, lanesOf, nextTimepoint, pointDetail, shortReason, shortTitle, title } from './model';
 import type { Lanes, Mark } from './model';
 import './style.css';
 
@@ -110,6 +111,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
   drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   marks(lanes.tones, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), false);
+  marks(lanes.heardByTone, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), true);
   marks(lanes.live, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
   marks(lanes.recorded, x, y(4), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : disc(c, px, py, 3.6, colours.recording)), true);
   const chosen = hits.filter((hit) => hit.id === selected.value);
@@ -203,7 +205,9 @@ function labels(
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
   for (const { id, name, e_s, fired } of predicted.value) if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
-  for (const mark of [...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
+  for (const mark of [...lanes.heardByTone, ...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
+  const [run, dict] = [shownRun(), dictionary.value];
+  (run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : []).forEach(({ name, e_s, done }, i) => e_s !== undefined && known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done }));
   const all = [...known.values()].filter(({ mark }) => mark.important || closeUp).sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
   const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `12px ${colours.sans}`;
@@ -211,7 +215,7 @@ function labels(
   for (const { mark, done } of all) {
     const px = x(mark.e_s);
     if (px < GUTTER || px > width - 14) continue;
-    const words = title(mark.name);
+    const words = shortTitle(mark.name);
     const half = c.measureText(words).width / 2 + 5;
     const at = Math.min(width - 14 - half, Math.max(GUTTER + half, px));
     const row = rows.findIndex((taken) => taken.every(([left, right]) => at + half < left || at - half > right));

@@ -12,6 +12,8 @@ import type { CommandRow, RunStore } from '../run/store';
 import { duration, fromEntry } from '../run/time';
 import { heardOf, lastHeard, speaksOf } from '../timeline/heard';
 import { isImportant, nextTimepoint } from '../timeline/model';
+import { momentsOf } from '../timeline/moments';
+import type { Moment } from '../timeline/moments';
 import type { Prediction } from '../timeline/predict';
 
 /** holds: yes, no, or not known. */
@@ -34,6 +36,8 @@ export interface Waiting {
   coming?: number;
   /** What is to be typed. */
   type?: string;
+  /** Nothing can come of this run: another is to be started. */
+  late?: boolean;
 }
 
 const RELATIONS: Record<string, string> = { '<=': '≤', '==': '=', '>=': '≥', '!=': '≠' };
@@ -64,7 +68,7 @@ export function waitingFor(
   const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1], cutoff) !== undefined;
   const heard = heardOf(store, plan, cutoff);
   const last = plan[lastHeard(plan, heard)];
-  if (!last && !accepted) return beginning(store, dictionary, cutoff);
+  if (!last && !accepted) return beginning(store, dictionary, plan, cutoff);
   const waited = waitedFor(store, plan, cutoff);
   if (!waited) {
     return {
@@ -77,13 +81,20 @@ export function waitingFor(
   }
   const { main, first } = waited;
   const lastWas = last && heard.get(last.id);
+  const moment = momentsOf(store, dictionary, plan, cutoff).find((each) => !each.done && each.before === main.name);
   return {
-    kind: 'waiting', title: `Waiting for ${inWords(main.name)}`, words: noteWords(main.note),
-    lines: conditions(store, dictionary, plan, main, cutoff, predicted),
+    kind: 'waiting', title: `Waiting for ${inWords((moment ?? main).name)}`, words: moment?.plain ?? noteWords(main.note),
+    lines: moment ? momentLines(store, dictionary, plan, moment, cutoff) : conditions(store, dictionary, plan, main, cutoff, predicted),
     // By tone nobody tells of what has none: it may have fired.
-    ...(first !== main && lastWas?.by !== 'tone' && { before: conditions(store, dictionary, plan, first, cutoff, predicted)[0], beforeName: inWords(first.name) }),
+    ...(first !== main && !moment && lastWas?.by !== 'tone' && { before: conditions(store, dictionary, plan, first, cutoff, predicted)[0], beforeName: inWords(first.name) }),
     ...(last && lastWas?.by === 'tone' && { byTone: `${inWords(last.name)}, ${fromEntry(lastWas.triggered_sclk - store.entrySclk)}` }),
   };
+}
+
+function momentLines(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], moment: Moment, cutoff: number): Line[] {
+  const now = Math.min(store.seenSclk, cutoff);
+  const held = latestHeld(store, (fact) => fact.decision === moment.name, cutoff)?.conditions.map(conditionLine) ?? watched(store, dictionary, plan, moment.name, cutoff);
+  return [...(moment.e_s === undefined ? [] : [timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, moment.e_s + store.entrySclk, now, store.entrySclk)]), ...held];
 }
 
 /** A note of the plan as a sentence. */
@@ -152,18 +163,34 @@ const firstSteps = (dictionary: Dictionary) => LAYOUT.firstSteps.filter((step) =
 
 const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after its end, or by UHF once that is on.';
 
-function beginning(store: RunStore, dictionary: Dictionary, cutoff: number): Waiting {
+/**
+ * That this run can begin no more, and by when it had to: the last of the first steps has not left, and would come later than flight takes it,
+ * a light time from now. Said by the clock on top, another light time behind.
+ */
+export function tooLate(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff = Infinity): string | undefined {
+  const step = firstSteps(dictionary).at(-1);
+  const first_e_s = plan.find((row) => row.plannedES !== undefined)?.plannedES;
+  if (!step || first_e_s === undefined || !store.entryKnown || progress(store, step, cutoff).state === 'sent') return undefined;
+  const latest_e_s = first_e_s - LAYOUT.beginMargin_s - 2 * (store.clocks?.lightTimeS ?? store.run.lightTimeS);
+  if (Math.min(store.seenSclk, cutoff) - store.entrySclk < latest_e_s) return undefined;
+  return `“${step.words}” had to leave by ${fromEntry(latest_e_s)}: the vehicle refuses it from ${LAYOUT.beginMargin_s} s before its first timepoint.`;
+}
+
+function beginning(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): Waiting {
   const missing = missingStep(store, dictionary, cutoff);
   if (!missing) return listening(store, dictionary);
   const { step, state, evidence, against } = missing;
   const past = cutoff !== Infinity; // then there was something to be pressed
-  const [title, words] = against ? ['Waiting for the vehicle’s status', `“${step.words}” is refused until it says so.`]
+  const late = tooLate(store, dictionary, plan, cutoff);
+  const [title, words] = late !== undefined ? ['Too late for this run', `${late} ${past ? '' : 'End it and start another.'}`]
+    : against ? ['Waiting for the vehicle’s status', `“${step.words}” is refused until it says so.`]
     : state === 'sent' ? ['Sent. Waiting for the vehicle’s answer', ANSWERS]
     : state === 'on_ground' ? [`“${step.words}” waits on the ground`, `It has not left yet: it ${evidence}.`]
     : [past ? `“${step.words}” had not been sent` : `Press / and type “${step.words}”`, `It ${step.why}.`];
   return {
     kind: 'begin', title, words,
-    ...(state === 'unsent' && !against && !past && { type: step.words }),
+    ...(late !== undefined && !past && { late: true }),
+    ...(state === 'unsent' && !against && !past && late === undefined && { type: step.words }),
     lines: [...firstSteps(dictionary).map((each) => {
       const done = stepEvidence(store, each, cutoff);
       return { words: each.words, value: done ?? progress(store, each, cutoff).evidence, holds: done !== undefined };
@@ -217,14 +244,31 @@ export function conditions(
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
     lines.push(timeLine(`${offsetWords(row.minimumOffsetS)} the one before`, minimum, undefined, now, store.entrySclk));
   }
-  const held = latestHeld(store, row, cutoff);
+  const held = latestHeld(store, (fact) => speaksOf(fact, row), cutoff);
   if (held) return [...lines, ...held.conditions.map(conditionLine)];
-  for (const watch of LAYOUT.watches) {
-    const [is, bound] = [value([watch.channel]), value([watch.bound])];
-    if (watch.timepoint !== row.name || is === undefined || bound === undefined || Number.isNaN(is) || Number.isNaN(bound)) continue;
-    lines.push(conditionLine({ quantity: watch.channel, value: is, comparison: watch.comparison, bound, holds: compare(is, watch.comparison, bound) }));
-  }
-  return lines;
+  return [...lines, ...watched(store, dictionary, plan, row.name, cutoff)];
+}
+
+/** What is compared for the timepoint or moment of this name, as far as it is known; what is old says so, and holds nothing. */
+function watched(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], name: string, cutoff: number): Line[] {
+  const now = Math.min(store.seenSclk, cutoff);
+  const sample = (channel: string) => {
+    const known = dictionary.pick([channel]);
+    return known && store.latest(known.id, cutoff);
+  };
+  return LAYOUT.watches.flatMap((watch): Line[] => {
+    const bound = typeof watch.bound === 'number' ? watch.bound : sample(watch.bound)?.value ?? NaN;
+    if (watch.timepoint !== name || Number.isNaN(bound)) return [];
+    if ('since' in watch) {
+      const since = heardOf(store, plan, cutoff).get(plan.find((row) => row.name === watch.since)?.id ?? NaN)?.fired_sclk;
+      return since === undefined ? [] : [{ words: `at least ${bound} s since ${inWords(watch.since)}`, value: duration(now - since), holds: now - since >= bound }];
+    }
+    const is = sample(watch.channel);
+    if (!is || Number.isNaN(is.value)) return [];
+    const line = conditionLine({ quantity: watch.channel, value: is.value, comparison: watch.comparison, bound, holds: compare(is.value, watch.comparison, bound) });
+    const age = now - is.sclk;
+    return age < FRESH_S ? [line] : [{ ...line, value: `${line.value}, ${duration(age)} ago`, holds: undefined }];
+  });
 }
 
 function offsetWords(offset_s: number | undefined): string {
@@ -244,9 +288,9 @@ function timeLine(words: string, due_sclk: number | undefined, foreseen_sclk: nu
 
 const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now, nor a time what this timepoint waits for
 
-/** What flight says that this timepoint, and no other, is held by. */
-function latestHeld(store: RunStore, row: TimepointRow, cutoff: number): Explanation | undefined {
+/** What flight says that this, and nothing else, is held by. */
+function latestHeld(store: RunStore, isOf: (fact: Explanation) => boolean, cutoff: number): Explanation | undefined {
   const now = Math.min(store.seenSclk, cutoff);
-  const told = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row))?.fact;
+  const told = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && isOf(fact))?.fact;
   return told?.verdict === 'held' && now - told.sclk < FRESH_S ? told : undefined;
 }

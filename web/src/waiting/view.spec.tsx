@@ -7,7 +7,7 @@ import { access } from '../access/model';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
 import { TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
-import { aDictionary, aPlan, aRun, aStore, explanation, firing, samples, stage, tone } from '../testing/fixtures';
+import { aDictionary, aPlan, aRun, aStore, event, explanation, firing, samples, stage, tone } from '../testing/fixtures';
 import { timepoints, useForTest } from '../run/session';
 import type { ToWorker } from '../stream/messages';
 import { noteWords, waitingFor } from './model';
@@ -18,10 +18,12 @@ const commanded = [
   stage({ command: 2n, name: 'EDL_DO_EDL', stage: 'executed', status: 'ok' }),
 ];
 
+const soonPlan = aPlan.slice(1); // of which the first timepoint on the clock is still to come
+
 describe('waiting for', () => {
   it('tells a newcomer what to press first, and then what next', () => {
-    expect(waitingFor(aStore(), aDictionary, aPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
-    expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+    expect(waitingFor(aStore(), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
+    expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “do edl”');
   });
   it('says what the plan notes as a sentence, for more may follow', () => {
     const words = (note: string) => {
@@ -33,21 +35,21 @@ describe('waiting for', () => {
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
-    const waiting = waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]), aDictionary, aPlan, Infinity);
+    const waiting = waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]), aDictionary, soonPlan, Infinity);
     expect(waiting.title).toBe('Waiting for the vehicle’s status');
     expect(waiting.lines.at(-1)).toMatchObject({ words: 'parameters received', value: 'parameters_received is 0', holds: false });
-    expect(waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, aPlan, Infinity).title).toBe('Press / and type “do edl”');
+    expect(waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “do edl”');
   });
   it('takes a tone for an answer where no packet comes', () => {
     const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) => stage({ command: BigInt(i + 1), name, stage: 'radiated', status: 'ok' }));
-    const waiting = waitingFor(aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]), aDictionary, aPlan, Infinity);
+    const waiting = waitingFor(aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]), aDictionary, soonPlan, Infinity);
     expect(waiting.title).toContain('Waiting for the vehicle');
     expect(waiting.lines.map((line) => [line.value, line.holds])).toEqual([['by tone 5', true], ['sent', false]]);
   });
   it('does not call sent what still waits on the ground, and says for what', () => {
     const on = (fields: object) => waitingFor(aStore([
       stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok' }), stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'released', status: 'pending', ...fields }),
-    ]), aDictionary, aPlan, Infinity);
+    ]), aDictionary, soonPlan, Infinity);
     expect([on({ needsApproval: true, askedBy: 'ann' }), on({ held: true }), on({})].map(({ title, lines }) => [title, lines[0]?.value])).toEqual([
       ['“set edl parameters” waits on the ground', 'waits for a second person'], ['“set edl parameters” waits on the ground', 'is held until it is released'], ['“set edl parameters” waits on the ground', 'waits to leave'],
     ]);
@@ -55,11 +57,11 @@ describe('waiting for', () => {
   });
   it('says why a command failed', () => {
     const store = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' })]);
-    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]?.value).toContain('bad_argument');
+    expect(waitingFor(store, aDictionary, soonPlan, Infinity).lines[0]?.value).toContain('bad_argument');
   });
   it('has typed what is missing: the first command again where it was cancelled, nothing while one waits or is under way', () => {
     const said = (stageName: string, status: string, evidence = '') => stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: stageName, status, evidence, held: status === 'pending' });
-    const now = (...words: ReturnType<typeof said>[]) => waitingFor(aStore(words), aDictionary, aPlan, Infinity);
+    const now = (...words: ReturnType<typeof said>[]) => waitingFor(aStore(words), aDictionary, soonPlan, Infinity);
     expect(now().type).toBe('set edl parameters');
     const held = said('released', 'pending', 'held by Ada');
     expect(now(held)).toMatchObject({ title: '“set edl parameters” waits on the ground', words: 'It has not left yet: it is held until it is released.' });
@@ -68,6 +70,30 @@ describe('waiting for', () => {
     expect(now(...sent).title).toBe('Sent. Waiting for the vehicle’s answer');
     expect([now(held).type, now(...sent).type]).toEqual([undefined, undefined]);
     expect(now(...sent, said('executed', 'ok')).type).toBe('do edl');
+  });
+  it('says when it is too late for the run to begin, by when it had to, and asks for nothing to be typed', () => {
+    const run = aRun();
+    if (run.clocks) run.clocks = { ...run.clocks, eS: -700, sclk: 300, seenSclk: 300 };
+    const late = waitingFor(aStore([], run), aDictionary, aPlan, Infinity);
+    expect(late).toMatchObject({ title: 'Too late for this run', late: true, words: expect.stringContaining('E−13:51') });
+    expect(late.type).toBeUndefined();
+  });
+  it('names a moment between timepoints, with what is compared for it, until an event or a tone tells of it', () => {
+    const row = (id: number, name: string, anchor: string) => create(TimepointRowSchema, { id, name, anchor, desiredOffsetS: 0, minimumOffsetS: 0 });
+    const plan = [row(0, 'entry_guidance', 'guidance_start'), row(1, 'sufr', 'sufr_start'), row(2, 'parachute_deploy', 'parachute')];
+    const now = (...items: Parameters<typeof aStore>[0] & object) => waitingFor(aStore([...commanded, firing({ timepoint: 0, name: 'entry_guidance', firedSclk: 890 }), samples(899, { 4: 2000 }), ...items]), aDictionary, plan, Infinity);
+    const peak = event({ name: 'PEAK_DECELERATION', sclk: 895 });
+    expect(now().title).toBe('Waiting for peak deceleration');
+    expect(now(peak)).toMatchObject({ title: 'Waiting for heading alignment', lines: [{ words: 'speed ≤ 1100 m/s', value: '2000 m/s', holds: false }] });
+    const aligned = tone({ sclk: 898, tone: 35, name: 'heading_alignment' });
+    expect(now(peak, aligned).title).toBe('Waiting for straighten up and fly right (SUFR)');
+    expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
+  });
+  it('has how long a timepoint is ago as a condition with its live value', () => {
+    const plan = [...aPlan, create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 })];
+    const lines = (firedSclk: number) => waitingFor(aStore([...commanded, firing({ timepoint: 2, name: 'parachute_deploy', firedSclk }), samples(899, { 4: 150 })]), aDictionary, plan, Infinity).lines;
+    expect(lines(887.5)).toContainEqual({ words: 'at least 20 s since parachute deploy', value: '12.5 s', holds: false });
+    expect(lines(870).at(-1)).toMatchObject({ value: '30.0 s', holds: true });
   });
   it('says of a mission whose commands are not here that there is nothing to press', () => {
     const listening = (dictionary: typeof aDictionary, items: Parameters<typeof aStore>[0] = []) => {
@@ -128,7 +154,7 @@ describe('waiting for', () => {
   });
   it('in a past view has the commands as they were known then, and asks for nothing to be pressed', () => {
     const words = (at: string) => [stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', at }), stage({ command: 1n, stage: 'executed', status: 'ok', at })];
-    const past = (cutoff: number) => waitingFor(aStore(words('2012-219T04:59:00.0')), aDictionary, aPlan, cutoff); // 60 s ago: SCLK 840
+    const past = (cutoff: number) => waitingFor(aStore(words('2012-219T04:59:00.0')), aDictionary, soonPlan, cutoff); // 60 s ago: SCLK 840
     expect([past(830).title, past(830).lines[0]?.value]).toEqual(['“set edl parameters” had not been sent', 'to be sent']);
     expect([past(850).title, past(850).lines[0]?.value]).toEqual(['“do edl” had not been sent', 'executed']);
   });

@@ -43,6 +43,7 @@ export function WaitingFor() {
         <p><progress max={1} value={waiting.coming} aria-label="of the recording" />{' '}
           {modeNow() === 'rehearsal' && mayRehearse() && <EndRun run={run.id} name="stop-downlink" words="stop here, with what has come" />}</p>
       )}
+      {waiting.late && modeNow() === 'rehearsal' && mayRehearse() && <button type="button" class="primary" onClick={() => focusPanel('rehearsal')}>Go to the runs <kbd>s</kbd></button>}
       {waiting.type !== undefined && takesCommands() && (
         <button type="button" class="primary" onClick={() => openCommandLine(waiting.type)}>Open the command line <kbd>/</kbd></button>
       )}

@@ -1,0 +1,29 @@
+// What people wait for that is no timepoint: flight tells it by an event and a tone of the same name.
+import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import { LAYOUT } from '../layout';
+import type { Dictionary } from '../run/dictionary';
+import type { RunStore } from '../run/store';
+import { BELIEVED, heardOf, lastHeard } from './heard';
+
+export interface Moment {
+  name: string;
+  before: string;
+  plain: string;
+  /** When it was, as far as it was told; else when it is predicted. */
+  e_s: number | undefined;
+  /** Told, or passed: the timepoint after it is known. */
+  done: boolean;
+}
+
+/** Those of the plan that is shown, in their order. */
+export function momentsOf(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): Moment[] {
+  const last = lastHeard(plan, heardOf(store, plan, cutoff));
+  return LAYOUT.moments.flatMap(({ name, before, plain, predicted_e_s }) => {
+    const at = plan.findIndex((row) => row.name === before);
+    if (at < 0) return [];
+    const told = store.events.find(({ fact }) => fact.name.toLowerCase() === name && fact.sclk <= cutoff)?.fact.sclk
+      ?? store.tonesBy(cutoff).find(({ fact }) => fact.name === name && fact.likelihood >= BELIEVED)?.fact.sclk;
+    const predicted = dictionary.reply.mission === LAYOUT.predictedFor && at > last ? predicted_e_s : undefined;
+    return { name, before, plain, e_s: told === undefined ? predicted : told - store.entrySclk, done: told !== undefined || at <= last };
+  });
+}
