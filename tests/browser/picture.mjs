@@ -46,9 +46,11 @@ export async function comparePicture(page, name, screenshot) {
 }
 
 const SETTLES_MS = 10_000;
+const RENEWED_AFTER_MS = 1500; // nothing is there to compare with: longer than history and a draw after it take
 
 /** Nothing once `what` looks as stored; else how it differs still. What a page asks for one after the other has come when it has come: on a busy machine that takes seconds. */
 export async function comesToLook(page, name, what) {
+    if (process.env.AEOLIS_RENEW_PICTURES) await page.waitForTimeout(RENEWED_AFTER_MS);
     const end = Date.now() + SETTLES_MS;
     for (;;) {
         const found = await comparePicture(page, name, await what.screenshot({ animations: 'disabled' }));
