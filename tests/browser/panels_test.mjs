@@ -416,7 +416,7 @@ test('the cursor goes by key through plots, tones and timeline, and says what th
     const now = await text('reading-altitude');
     assert.equal(await page.locator('.plot-cursor:visible').count(), 0);
     for (let presses = 0; presses < 60; ++presses) await page.keyboard.press('Shift+ArrowLeft');
-    await shows('cursor-altitude', /E\+\d\d:\d\d\.\d\s[◆●]/);
+    await shows('cursor-altitude', /E\+\d\d:\d\d\.\d\s[◆▣]/);
     await waitFor(() => page.locator('.plot-cursor:visible').count(), (count) => count === 4);
     const at_e_s = secondsFromEntry((await text('cursor-altitude')).replace(/E(.)(\d+:\d+)\.\d.*/, 'E$100:$2'));
     assert.ok(at_e_s > 60 && at_e_s < 300, `${at_e_s}`);

@@ -1,6 +1,6 @@
 import { computed, signal } from '@preact/signals';
 import { useLayoutEffect, useRef } from 'preact/hooks';
-import { STATUS } from '../design/status';
+import { SOURCES, STATUS } from '../design/status';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { contextAt } from '../run/limits';
 import { cutoff, dictionary, runNow, shownRun, stream } from '../run/session';
@@ -22,7 +22,7 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
       <td title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}><span class="alias">{row.alias}</span> {row.name}{row.whose && <span class="alias">, {row.whose}</span>}</td>
       <td class="number value" title={row.value}>{row.value}</td>
       <td>{row.unit}</td>
-      <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ' ▣' : ''}</td>
+      <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ` ${SOURCES.recording.shape}` : ''}</td>
       <td class="limits" title={row.allLimits}>{row.limits}</td>
     </tr>
   );

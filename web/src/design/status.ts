@@ -53,5 +53,5 @@ export const SOURCES = {
   plan: { shape: '○', token: 'dim', word: 'plan' },
   tone: { shape: '■', token: 'by-tone', word: 'by tone' },
   uhf: { shape: '◆', token: 'by-uhf', word: 'by UHF, live' },
-  recording: { shape: '●', token: 'by-recording', word: 'by recording' },
+  recording: { shape: '▣', token: 'by-recording', word: 'by recording' },
 } as const;

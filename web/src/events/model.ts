@@ -1,4 +1,5 @@
 // Events and the explanations that belong to them, newest first.
+import { SOURCES, STATUS } from '../design/status';
 import type { RunStore } from '../run/store';
 
 export interface EventLine {
@@ -15,10 +16,11 @@ export interface EventLine {
 }
 
 export const LEVELS = ['DIAGNOSTIC', 'ACTIVITY_LO', 'ACTIVITY_HI', 'COMMAND', 'WARNING_LO', 'WARNING_HI', 'FATAL'] as const;
+/** None of them says how something is known, nor that it is good: those shapes are others'. */
 const SHAPES: Record<string, string> = {
-  FATAL: '✖', WARNING_HI: '▲', WARNING_LO: '△', COMMAND: '▸', ACTIVITY_HI: '◆', ACTIVITY_LO: '●', DIAGNOSTIC: '·',
+  FATAL: '✖', WARNING_HI: '▲', WARNING_LO: '△', COMMAND: '▸', ACTIVITY_HI: '»', ACTIVITY_LO: '›', DIAGNOSTIC: '–', why: '∵',
 };
-export const levelShape = (level: string) => SHAPES[level] ?? '○';
+export const levelShape = (level: string) => SHAPES[level] ?? STATUS.unknown.shape;
 export const levelWords = (level: string) => level.replace('_HI', ', high').replace('_LO', ', low').toLowerCase();
 
 export interface EventFilter {
@@ -78,7 +80,8 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
 }
 
 export function sourceWords(line: { live: boolean; recorded: boolean }): { shape: string; words: string } {
-  if (line.live && line.recorded) return { shape: '◆▣', words: 'seen live and found in the recording' };
-  if (line.recorded) return { shape: '▣', words: 'known from the recording only' };
-  return { shape: '◆', words: 'seen live; the recording is not here yet' };
+  const { uhf, recording } = SOURCES;
+  if (line.live && line.recorded) return { shape: uhf.shape + recording.shape, words: 'seen live and found in the recording' };
+  if (line.recorded) return { shape: recording.shape, words: 'known from the recording only' };
+  return { shape: uhf.shape, words: 'seen live; the recording is not here yet' };
 }

@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
+import { SOURCES, STATUS } from '../design/status';
 import { aStore, event, explanation } from '../testing/fixtures';
-import { eventLines } from './model';
+import { LEVELS, eventLines, levelShape, sourceWords } from './model';
 
 const all = { from: 'DIAGNOSTIC', search: '', range: undefined } as const;
 
@@ -17,6 +18,12 @@ describe('events', () => {
     const store = aStore([event({ name: 'EARLY', sclk: 800, text: 'one' }), event({ name: 'LATE', sclk: 950, text: 'two' })]);
     expect(eventLines(store, { ...all, range: { from: -250, to: -100 } }, 10).lines.map((line) => line.name)).toEqual(['EARLY']);
     expect(eventLines(store, { ...all, search: 'TWO' }, 10).lines.map((line) => line.name)).toEqual(['LATE']);
+  });
+  it('have levels whose shapes differ, and none of which says how something is known, or that it is good', () => {
+    const shapes = [...LEVELS, 'why'].map(levelShape);
+    expect(new Set(shapes).size).toBe(shapes.length);
+    for (const { shape } of [...Object.values(SOURCES), STATUS.good, STATUS.unknown, STATUS.never]) expect(shapes).not.toContain(shape);
+    expect([[true, false], [false, true], [true, true]].map(([live = false, recorded = false]) => sourceWords({ live, recorded }).shape)).toEqual(['◆', '▣', '◆▣']);
   });
   it('beyond what is shown are counted', () => {
     const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));

@@ -40,7 +40,7 @@ export function Events() {
           return (
             <li key={line.key} class={`event level-${line.level}`} data-event={line.name}>
               <time>{fromEntry(line.e_s, { tenths: true })}</time>
-              <span class="shape" title={line.explanation ? 'explanation' : levelWords(line.level)}>{line.explanation ? '?' : levelShape(line.level)}</span>
+              <span class="shape" title={line.explanation ? 'explanation' : levelWords(line.level)}>{levelShape(line.level)}</span>
               <div>
                 {line.explanation && <small>why: </small>}{line.text}
                 {line.why.map((why) => <small key={why} class="why">why: {why}</small>)}

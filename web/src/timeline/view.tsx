@@ -113,7 +113,7 @@ function drawTimeline({ context: c, width, height, colours }: Surface): void {
   marks(lanes.tones, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), false);
   marks(lanes.heardByTone, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), true);
   marks(lanes.live, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
-  marks(lanes.recorded, x, y(4), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : disc(c, px, py, 3.6, colours.recording)), true);
+  marks(lanes.recorded, x, y(4), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : framed(c, px, py, 4, colours.recording)), true);
   const chosen = hits.filter((hit) => hit.id === selected.value);
   for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
@@ -268,11 +268,10 @@ function ring(c: CanvasRenderingContext2D, x: number, y: number, r: number, colo
   c.arc(x, y, r, 0, 7);
   c.stroke();
 }
-function disc(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
-  c.fillStyle = colour;
-  c.beginPath();
-  c.arc(x, y, r, 0, 7);
-  c.fill();
+function framed(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
+  box(c, x, y, r / 2, colour);
+  c.strokeStyle = colour;
+  c.strokeRect(x - r, y - r, 2 * r, 2 * r);
 }
 function box(c: CanvasRenderingContext2D, x: number, y: number, r: number, colour: string): void {
   c.fillStyle = colour;
