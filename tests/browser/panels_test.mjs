@@ -336,7 +336,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
     await page.getByRole('button', { name: 'GncNavigation', exact: true }).focus();
     await page.keyboard.press('Enter');
     await waitFor(async () => new Set(await page.locator('[data-testid="unit-table"] tbody tr td:nth-child(4)').allInnerTexts()), (names) => names.size === 1 && names.has('GncNavigation'));
-    assert.equal(await focused(page), 'units');
+    await waitFor(() => focused(page), (id) => id === 'units');
     await page.keyboard.press('ArrowDown');
     await shows('packet', /GncNavigation over [^]*octets/);
     const first = await text('packet');
@@ -362,7 +362,7 @@ test('a packet is read by keyboard: its fields light their octets, an octet ligh
     await page.getByTestId('packet-fields').focus();
     await page.keyboard.press('Escape');
     await waitFor(() => page.getByTestId('packet').count(), (count) => count === 0);
-    assert.equal(await focused(page), 'units');
+    await waitFor(() => focused(page), (id) => id === 'units');
     assert.deepEqual(problems, []);
     await page.close();
 });
@@ -429,7 +429,7 @@ test('the cursor goes by key through plots, tones and timeline, and says what th
 
     const newest = await text('tone-title');
     await page.keyboard.press('o');
-    assert.equal(await focused(page), 'tone-symbols');
+    await waitFor(() => focused(page), (id) => id === 'tone-symbols');
     for (let presses = 0; presses < 12; ++presses) await page.keyboard.press('ArrowLeft');
     await shows('tone-evidence', /^at E\+\d\d:\d\d · likelihood/);
     assert.notEqual(await text('tone-title'), newest);
@@ -437,7 +437,7 @@ test('the cursor goes by key through plots, tones and timeline, and says what th
     await waitFor(() => text('tone-title'), (title) => title === newest);
 
     await page.keyboard.press('h');
-    assert.equal(await focused(page), 'anchors');
+    await waitFor(() => focused(page), (id) => id === 'anchors');
     await shows('anchors', /root[^]*entry[^]*pre edl end[^]*-14400 s[^]*defined: offset from entry[^]*touchdown/);
     assert.deepEqual(await findings(page, 'dark'), []);
     await page.keyboard.press('Escape');
