@@ -93,3 +93,32 @@ test('while nothing comes no link is green and no channel up to date', { timeout
     await waitFor(() => page.locator('[data-testid="channel-table"] tr.look-good').count(), (rows) => rows === 0);
     await page.close();
 });
+
+test('a connection that dies without a word is lost within seconds, and comes back where there is a way', { timeout: 120_000 }, async (t) => {
+    const server = await serve(t, 'frozen', ['--scenario', 'nominal_auto', '--pace', '10']);
+    const way = await breakable(server.port);
+    t.after(() => way.close());
+    const { page, problems, text, shows } = await open(way.address);
+    const goesOn = async () => {
+        await shows('stream-state', /● connected/, 30_000);
+        const before = await text('clock-entry');
+        await waitFor(() => text('clock-entry'), (now) => now !== before);
+    };
+    await goesOn();
+    way.freeze();
+    await shows('lost-bar', /NO CONNECTION: everything here is old/, 15_000);
+    assert.match(await text('stream-state'), /✖ NO CONNECTION/);
+    way.thaw();
+    await goesOn();
+    // What stood is dead, what is new goes through: only the socket can tell.
+    way.freeze();
+    way.thaw();
+    await shows('stream-state', /NO CONNECTION/, 30_000);
+    await goesOn();
+    await page.keyboard.press('p');
+    await shows('badge', /paused/);
+    await page.waitForTimeout(12_000); // a run that is paused is silent, and its connection is not lost
+    assert.match(await text('stream-state'), /● connected/);
+    assert.deepEqual(problems, []);
+    await page.close();
+});

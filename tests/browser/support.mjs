@@ -142,12 +142,15 @@ export async function comesToRest(page) {
     }
 }
 
-/** A way to a server on `port` that can be cut and mended, while the server goes on. */
+/** A way to a server on `port` that can be cut and mended, or frozen without a word, while the server goes on. What was frozen stays so; what comes after a thaw goes through. */
 export async function breakable(port) {
     const open = new Set();
     let broken = false;
+    let frozen = false;
+    const swallow = (socket) => socket.unpipe().resume();
     const way = createServer((near) => {
         if (broken) return near.destroy();
+        if (frozen) return open.add(swallow(near.on('error', () => near.destroy())));
         const far = connect(port, '127.0.0.1');
         near.pipe(far).pipe(near);
         for (const [one, other] of [[near, far], [far, near]]) {
@@ -166,6 +169,11 @@ export async function breakable(port) {
     await once(way, 'listening');
     return {
         address: `http://127.0.0.1:${way.address().port}`, cut, mend: () => (broken = false),
+        freeze: () => {
+            frozen = true;
+            for (const socket of open) swallow(socket);
+        },
+        thaw: () => (frozen = false),
         close: () => {
             cut();
             way.close();

@@ -20,6 +20,14 @@ export const turnedAway = signal(0);
 
 const ANSWER_WITHIN_MS = 60_000; // ours: longer than any of these questions may take; whoever waits is told then
 
+let reads = new AbortController();
+
+/** Once the connection is lost: over one that died without a word no answer comes, and whoever asks again each few seconds would wait for it. */
+export function giveUpReads(): void {
+  reads.abort();
+  reads = new AbortController();
+}
+
 /** `within_ms`: Infinity for what takes as long as it takes. */
 export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path: string, body?: object, within_ms = ANSWER_WITHIN_MS): Promise<T> {
   const lost = (what: string) => new Refused(0, method === 'GET' ? what : `${what}: whether it was taken is not known`);
@@ -29,7 +37,7 @@ export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path:
     response = await fetch(`/api/v1${path}`, {
       method, credentials: 'same-origin', cache: 'no-store',
       ...(body && { headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) }),
-      ...(Number.isFinite(within_ms) && { signal: AbortSignal.timeout(within_ms) }),
+      ...(Number.isFinite(within_ms) && { signal: AbortSignal.any([AbortSignal.timeout(within_ms), ...(method === 'GET' ? [reads.signal] : [])]) }),
     });
     text = await response.text(); // an answer may break off after its head
   } catch (error) {

@@ -135,6 +135,13 @@ describe('a run', () => {
     onMessage({ type: 'run', run: aRun(one), fresh: false });
     expect(await askAll(), 'the same').toEqual(every);
   });
+  it('waits for no answer over a connection that is lost, so that what asks again can', async () => {
+    vi.stubGlobal('fetch', vi.fn((_path: string, { signal }: RequestInit) => new Promise((_, reject) => signal?.addEventListener('abort', () => reject(signal.reason as Error)))));
+    state('live');
+    const said = read('/runs/1/alarms').catch((error: Error) => error.message);
+    state('lost');
+    expect(await said).toBe('no answer came');
+  });
   it('is left at once when the server that came back refuses it and has no such run', async () => {
     vi.stubGlobal('fetch', vi.fn(async () => new Response(JSON.stringify({ runs: [] }))));
     const left = vi.mocked(location.reload);

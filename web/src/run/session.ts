@@ -8,7 +8,7 @@ import { modeOf, resumedWords } from '../mode/model';
 import type { Mode } from '../mode/model';
 import { access, admitted, learnAccess, mayAct } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
-import { Refused, call, turnedAway, wordsFor } from './api';
+import { Refused, call, giveUpReads, turnedAway, wordsFor } from './api';
 import { Dictionary } from './dictionary';
 import { namedChannels, wantedRun } from './address';
 import { firstAnswers } from './first_look';
@@ -246,6 +246,7 @@ export function onMessage(message: FromWorker): void {
       stream.value = message;
       if (message.state === 'lost') inDoubt = true;
       if (message.state === 'lost' && before !== 'lost') {
+        giveUpReads();
         void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
         for (const request of requests.values()) {

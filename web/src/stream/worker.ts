@@ -25,6 +25,9 @@ const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so th
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
 const NO_FRAME_MS = 300; // ours: a run that has ended sends no live frame to wait for
+const SILENT_MS = 5000; // ours: a run that goes on has its clocks told ten times a second
+const LOOKS = 3; // ours: what was asked over the socket has had ten seconds by then
+const LOOK_EVERY_MS = 1000;
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
 const post = (message: FromWorker, columns: Column[] = []) => self.postMessage(message, { transfer: columns.flatMap(({ sclk, value }) => [sclk.buffer, value.buffer] as ArrayBuffer[]) });
@@ -52,6 +55,9 @@ let step: 'facts' | 'samples' = 'facts';
 let historyDue = false;
 let stopAt = 0; // what the run had when the subscription began: from there on it is live
 let lost: { after: number; attempts: number } | undefined; // while a break lasts: what was complete when it began
+let lookAt_ms = Infinity; // when it is to be asked whether the server is still there
+let looks = 0; // since the socket spoke
+let asks = new AbortController(); // of what was asked before the connection died: no answer comes over it
 let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
 
 function say(next: StreamState): void {
@@ -85,28 +91,62 @@ function connect(): void {
   const mine = new WebSocket(socketUrl, ['aeolis.v1.protobuf']);
   mine.binaryType = 'arraybuffer';
   socket = mine;
+  heard();
   mine.onopen = () => {
     attempt = 0;
     say('catching_up');
     subscribe();
   };
   mine.onmessage = (event: MessageEvent<ArrayBuffer>) => {
-    if (socket === mine) receive(new Uint8Array(event.data));
-  };
-  mine.onclose = () => {
     if (socket !== mine) return;
-    socket = undefined;
-    ++attempt;
-    if (state === 'live') lost = { after: check.completeThrough, attempts: 0 };
-    if (lost) lost.attempts = attempt;
-    say('lost');
-    retry = setTimeout(connect, backoffSeconds(attempt) * 1000);
+    heard();
+    receive(new Uint8Array(event.data));
   };
+  mine.onclose = () => lose(mine);
+}
+
+function lose(its: WebSocket): void {
+  if (socket !== its) return;
+  socket = undefined;
+  ++attempt;
+  if (state === 'live') lost = { after: check.completeThrough, attempts: 0 };
+  if (lost) lost.attempts = attempt;
+  say('lost');
+  retry = setTimeout(connect, backoffSeconds(attempt) * 1000);
+}
+
+function heard(): void {
+  lookAt_ms = performance.now() + SILENT_MS;
+  looks = 0;
+}
+
+/**
+ * A connection can die without a word. After a silence the server is asked something small: without an answer the connection is lost. Where it
+ * answers, the socket may be dead by itself: while a run goes on or is awaited it is asked, too.
+ */
+async function watchSilence(): Promise<void> {
+  const its = socket;
+  if (!its || performance.now() < lookAt_ms) return;
+  lookAt_ms = Infinity;
+  ++looks;
+  const answers = await fetch('/healthz', { cache: 'no-store', signal: AbortSignal.timeout(SILENT_MS) }).then(() => true, () => false);
+  if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
+  lookAt_ms = performance.now() + SILENT_MS;
+  const speaks = !known || ['waiting', 'running', 'paused'].includes(known.state);
+  if (answers && !(speaks && looks >= LOOKS)) {
+    if (speaks) subscribe();
+    return;
+  }
+  asks.abort();
+  asks = new AbortController();
+  lose(its);
+  its.close(); // nobody waits for its goodbye
 }
 
 /** Forget the run and take up another from its beginning. */
 function restart(run: number): void {
   currentRun = run;
+  looks = 0;
   known = undefined;
   lost = undefined;
   check = new SequenceCheck();
@@ -239,7 +279,8 @@ async function fetchHistory(all = true, live = false): Promise<void> {
       }
     }
   } catch (error) {
-    post({ type: 'trouble', words: `history: ${error instanceof Error ? error.message : String(error)}` });
+    if ((error as Error).name === 'AbortError') historyDue = true; // once there is a connection
+    else post({ type: 'trouble', words: `history: ${error instanceof Error ? error.message : String(error)}` });
   }
 }
 
@@ -250,7 +291,7 @@ const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
 
 /** The answer, once it has begun; throws the server's words with its status. */
 async function get(path: string): Promise<Response> {
-  const response = await fetch(apiUrl + path);
+  const response = await fetch(apiUrl + path, { signal: asks.signal });
   if (response.ok) return response;
   const text = await response.text();
   let error = text.slice(0, 300);
@@ -280,6 +321,7 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       packetOf = new Map(Object.entries(message.packets).map(([id, all]) => [Number(id), all]));
       collector = new ColumnCollector(packetOf);
       connect();
+      setInterval(() => void watchSilence(), LOOK_EVERY_MS);
       break;
     case 'watch':
       wantedRun = message.run;
