@@ -1,5 +1,6 @@
 // The table of channels: value, unit, age, alarm and stale state.
 import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';
+import { STATUS } from '../design/status';
 import type { Status } from '../design/status';
 import { LAYOUT } from '../layout';
 import type { Dictionary } from '../run/dictionary';
@@ -47,7 +48,7 @@ export function channelsShown(dictionary: Dictionary, filter: string): { channel
 /** `context`: the state of EDL at `cutoff`. `lost`: nothing comes, whatever age the clocks say that stand still with it. */
 export function channelRow(store: RunStore | undefined, channel: DictionaryChannel, context: string | undefined, cutoff: number, lost = false): ChannelRow {
   const sample = store?.latest(channel.id, cutoff);
-  const age = sample && store ? Math.max(0, Math.min(store.seenSclk, cutoff) - sample.sclk) : undefined;
+  const age = sample && store ? ageOf(store, sample.sclk, cutoff) : undefined;
   const limits = limitsIn(channel, context);
   return {
     id: channel.id, name: channel.name, alias: channel.alias, text: channel.text, unit: channel.unit, whose: whoseAt(store, channel.name, sample?.sclk ?? -Infinity),
@@ -64,9 +65,23 @@ function lookOf(
   // In a past view the alarms of now do not apply: the limits of then are asked again.
   const severity = cutoff === Infinity ? store?.alarms.get(channel.id)?.severity : outside(limits, value);
   if (severity !== undefined) return isWorst(severity) ? 'alarm' : 'caution';
-  if (lost && cutoff === Infinity) return 'stale';
+  return isStale(store, channel, age, cutoff, lost) ? 'stale' : 'good';
+}
+
+const ageOf = (store: RunStore, sclk: number, cutoff: number): number => Math.max(0, Math.min(store.seenSclk, cutoff) - sclk);
+
+function isStale(store: RunStore | undefined, channel: DictionaryChannel, age: number, cutoff: number, lost: boolean): boolean {
+  if (lost && cutoff === Infinity) return true;
   const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
   // What is held of the past is thinned: between two samples of it nothing can be said.
   const held_s = cutoff === Infinity ? 0 : store?.spacing(channel.id) ?? 0;
-  return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s)) ? 'stale' : 'good';
+  return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s));
+}
+
+/** "◌ 41 s": how old what a channel said last is, where it does not say what is now. For every figure, by the rule of the table. */
+export function staleWords(store: RunStore | undefined, channel: DictionaryChannel | undefined, cutoff: number, lost: boolean): string | undefined {
+  const sample = channel && store?.latest(channel.id, cutoff);
+  if (!sample || !store) return undefined;
+  const age = ageOf(store, sample.sclk, cutoff);
+  return isStale(store, channel, age, cutoff, lost) ? `${STATUS.stale.shape} ${age < 60 ? `${age.toFixed(0)} s` : duration(age)}` : undefined;
 }

@@ -1,7 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aRun, aStore, samples } from '../testing/fixtures';
 import { contextAt } from '../run/limits';
-import { channelRow, channelsShown } from './model';
+import { channelRow, channelsShown, staleWords } from './model';
 
 function row(store: ReturnType<typeof aStore>, name: string, cutoff = Infinity, lost = false) {
   const channel = aDictionary.pick([name]);
@@ -21,6 +21,13 @@ describe('channels', () => {
     expect([row(aStore(old), 'altitude_m', 502)?.look, row(aStore(old), 'altitude_m', 520)?.look]).toEqual(['good', 'stale']);
     expect(row(aStore(old, aRun({ state: 'finished' })), 'altitude_m')?.look).toBe('stale');
     expect([false, true].map((lost) => row(going, 'altitude_m', Infinity, lost)?.look)).toEqual(['good', 'stale']);
+  });
+  it('give every figure the same judgement, with its age in words', () => {
+    const words = (store: ReturnType<typeof aStore>, cutoff = Infinity, lost = false) => staleWords(store, aDictionary.pick(['altitude_m']), cutoff, lost);
+    expect([896, 898].map((sclk) => words(aStore([samples(sclk, { 3: 1 })])))).toEqual(['◌ 4 s', undefined]);
+    const old = aStore([samples(500, { 3: 1 }), samples(501, { 3: 1 })]);
+    expect([words(old), words(old, 502), words(old, 520), words(old, 502, true)]).toEqual(['◌ 6 m 39 s', undefined, '◌ 19 s', undefined]);
+    expect([words(aStore([samples(900, { 3: 1 })]), Infinity, true), words(aStore())]).toEqual(['◌ 0 s', undefined]);
   });
   it('say that nothing came once they were asked for, and that a value is undefined', () => {
     const store = aStore();

@@ -3,19 +3,18 @@ import { useLayoutEffect, useRef } from 'preact/hooks';
 import { SOURCES, STATUS } from '../design/status';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { contextAt } from '../run/limits';
-import { cutoff, dictionary, runNow, shownRun, stream } from '../run/session';
+import { cutoff, dictionary, isLost, runNow, shownRun } from '../run/session';
 import { watchSight, whenDue } from './due';
 import { channelRow, channelsShown } from './model';
 import './style.css';
 
 const filter = signal('');
 const shown = computed(() => (dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 }));
-const lost = computed(() => stream.value.state === 'lost');
 const context = computed(() => contextAt(runNow(), dictionary.value, cutoff.value));
 
 function Row({ channel, place }: { channel: DictionaryChannel; place: number }) {
   whenDue(place);
-  const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, lost.value);
+  const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, isLost.value);
   return (
     <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`}>
       <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>

@@ -1,6 +1,16 @@
+// @vitest-environment happy-dom
+import { create } from '@bufbuild/protobuf';
+import { render } from 'preact';
+import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
+import { TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
+import { LAYOUT } from '../layout';
+import { Dictionary } from '../run/dictionary';
+import { timepoints, useForTest } from '../run/session';
+import { aDictionary, aStore, firing, samples } from '../testing/fixtures';
 import { CORRIDOR } from './corridor';
 import { LEAST_M, fraction, halfWidth, isClear, placeIn, wayOf } from './model';
+import { Descent } from './view';
 
 describe('the descent picture', () => {
   it('gives the last ten metres as much room as the last hundred kilometres have for each factor of ten', () => {
@@ -34,4 +44,20 @@ describe('the descent picture', () => {
       expect(isClear([x, x / 2 + 22, x + 30, x / 2 + 38], way), `below it at ${x}`).toBe(true);
     }
   });
+});
+
+it('figures that nothing has come for are dim, with their age, and where they were is no verdict; at touchdown they are of then', () => {
+  const root = document.createElement('div');
+  const msl = new Dictionary({ ...aDictionary.reply, mission: LAYOUT.predictedFor });
+  const shown = (sclk: number, more: Parameters<typeof aStore>[0] = []) => {
+    act(() => {
+      useForTest(aStore([samples(sclk, { 3: 60000, 4: 5800 }), ...more]), msl);
+      timepoints.value = [create(TimepointRowSchema, { id: 9, name: LAYOUT.landed })];
+      render(<Descent />, root);
+    });
+    return ['descent-now.stale', 'descent-now [data-testid=descent-stale] dd', 'panel-extra'].map((each) => root.querySelector(`.${each}`)?.textContent);
+  };
+  expect(shown(899)).toEqual([undefined, undefined, expect.stringMatching(/predicted corridor/)]);
+  expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s', '']);
+  expect(shown(850, [firing({ timepoint: 9, name: LAYOUT.landed, firedSclk: 850 })])[1]).toBeUndefined();
 });

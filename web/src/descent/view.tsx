@@ -4,7 +4,8 @@ import type { Surface } from '../draw/canvas';
 import { LAYOUT } from '../layout';
 import { Panel } from '../design/panel';
 import { STATUS } from '../design/status';
-import { cutoff, dictionary, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
+import { staleWords } from '../channels/model';
+import { cutoff, dictionary, isLost, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
 import type { RunStore } from '../run/store';
 import { landedSclk } from '../run/whose';
 import { isImportant, outages, shortTitle } from '../timeline/model';
@@ -111,12 +112,19 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
 /** Whose the figures are, once it is not the vehicle's. */
 const whoseWords = (run: RunStore | undefined) => (lastInstant(run, cutoff.value) < cutoff.value ? `${LAYOUT.afterLanding.whose}, the rover hangs below it` : undefined);
 
-/** Where the figures stand, in the corner below, and under them whose they are: as style.css has them. */
+/** How old the figures are, where they are not of now; at touchdown they are of then. */
+function staleNow(run: RunStore | undefined): string | undefined {
+  if (whoseWords(run) !== undefined) return undefined;
+  const of = (names: readonly string[]) => staleWords(run, dictionary.value?.pick(names), cutoff.value, isLost.value);
+  return of(LAYOUT.altitude) ?? of(LAYOUT.speed);
+}
+
+/** Where the figures stand, in the corner below, and under them whose they are, or how old: as style.css has them. */
 function figures({ context: c, width, height, colours }: Surface): Box[] {
   const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1;
   const whose = whoseWords(shownRun());
   c.font = `12.5px ${colours.sans}`;
-  const line_px = whose === undefined ? 0 : 15;
+  const line_px = (whose ?? staleNow(shownRun())) === undefined ? 0 : 15;
   const bottom_px = matchMedia('(max-width: 1500px)').matches ? 46 : 62;
   const all: Box[] = [[width - RIGHT - figure_px * 3.6, height - bottom_px - line_px - 2 * figure_px, width, height]];
   return whose === undefined ? all : [...all, [width - 36 - c.measureText(whose).width, height - bottom_px - line_px, width, height - bottom_px]];
@@ -202,14 +210,15 @@ function draw(surface: Surface): void {
     c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
     return;
   }
-  c.fillStyle = colours.text;
-  c.strokeStyle = colours.page;
+  const stale = staleNow(run) !== undefined; // where it was, hollow
+  c.fillStyle = stale ? colours.panel : colours.text;
+  c.strokeStyle = stale ? colours.dim : colours.page;
   c.lineWidth = 3;
   c.beginPath();
   c.arc(x(now.speed), y(now.altitude), 9, 0, 7);
   c.stroke();
   c.fill();
-  c.strokeStyle = colours.text;
+  c.strokeStyle = stale ? colours.dim : colours.text;
   c.lineWidth = 2;
   c.beginPath();
   c.arc(x(now.speed), y(now.altitude), 16, 0, 7);
@@ -303,7 +312,8 @@ export function Descent() {
   const v = speed && run?.latest(speed.id, until)?.value;
   const inKm = (h ?? 0) >= 10000;
   const whose = whoseWords(run);
-  const place = h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
+  const stale = staleNow(run);
+  const place = stale !== undefined || h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
   return (
     <Panel name="descent" title={<>Descent<span class="how">, how high and how fast</span></>} extra={
       <>
@@ -313,11 +323,12 @@ export function Descent() {
     }>
       <div class="descent-box">
         <Canvas label="Altitude against speed, with the predicted corridor" draw={draw} testId="descent-canvas" keyOf={() =>
-          `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value}`} />
-        {h !== undefined && <dl class="descent-now" title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
+          `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value} ${isLost.value}`} />
+        {h !== undefined && <dl class={`descent-now ${stale ? 'stale' : ''}`} title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
           <div><dt>high</dt><dd><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</dd></div>
           <div><dt>fast</dt><dd><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</dd></div>
           {whose !== undefined && <div class="descent-whose" data-testid="descent-whose"><dt>whose</dt><dd>{whose}</dd></div>}
+          {stale && <div class="descent-whose" data-testid="descent-stale"><dt>how old</dt><dd>{stale}</dd></div>}
         </dl>}
       </div>
     </Panel>

@@ -2,6 +2,7 @@
 import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { expect, it, vi } from 'vitest';
+import { cursor } from '../run/cursor';
 import { backToLive, lookAtPast, useForTest } from '../run/session';
 import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
 import { Plots } from './view';
@@ -42,4 +43,21 @@ it('a plot of the past is drawn again when only what it knows of it changes, wit
   act(() => render(null, root));
   backToLive();
   vi.restoreAllMocks();
+});
+
+it('the figure beside a plot goes stale as the channel does, and not under the cursor, where it is of then', () => {
+  const root = document.createElement('div');
+  const shown = (at?: number) => {
+    act(() => {
+      cursor.value = at;
+      render(<Plots />, root);
+    });
+    return ['.stale [data-testid=stale-altitude]', '.stale [data-testid=reading-altitude]', '[data-testid=reading-altitude]'].map((each) => root.querySelector(each)?.textContent?.trim());
+  };
+  useForTest(aStore([samples(899, { 3: 65100 })]), aDictionary);
+  expect(shown()).toEqual([undefined, undefined, '65.10']);
+  act(() => useForTest(aStore([samples(859, { 3: 65100 })]), aDictionary));
+  expect(shown()).toEqual(['◌ 41 s', '65.10', '65.10']);
+  expect(shown(-141)).toEqual([undefined, undefined, '65.10']);
+  cursor.value = undefined;
 });

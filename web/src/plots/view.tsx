@@ -10,11 +10,12 @@ import { LAYOUT } from '../layout';
 import type { DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { Panel } from '../design/panel';
 import { SOURCES, silenceStatus } from '../design/status';
+import { staleWords } from '../channels/model';
 import { cursor } from '../run/cursor';
 import { inWords } from '../run/dictionary';
 import { isWorst, limitsOver } from '../run/limits';
 import { namedChannels } from '../run/address';
-import { cutoff, dictionary, shownRun, tick } from '../run/session';
+import { cutoff, dictionary, isLost, shownRun, tick } from '../run/session';
 import type { Series } from '../run/series';
 import { fromEntry } from '../run/time';
 import { whoseAt } from '../run/whose';
@@ -215,13 +216,15 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   const value = at === undefined ? now : shown?.value;
   const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter((each) => each !== false && each !== undefined);
   const whose = run && whoseAt(run, channel.name, at === undefined ? run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity : run.entrySclk + at);
+  const stale = at === undefined ? staleWords(run, channel, cutoff.value, isLost.value) : undefined;
   const name = title.toLowerCase();
   return (
     <Panel name={`plot-${name}`} title={title} extra={
-      <span class={`reading ${at === undefined ? '' : 'at-cursor'}`}>
+      <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
+        {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
         {whose && <span class="whose" data-testid={`whose-${name}`}>{whose} </span>}
         {at !== undefined ? <span class="cursor-time" data-testid={`cursor-${name}`}>{fromEntry(at, { tenths: true })} {shown && (shown.recorded ? SOURCES.recording : SOURCES.uhf).shape}</span>
-          : !whose && <span class="legend">{sources.map((each) => <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>{each.shape} <i>{each.word.split(/[ ,]/)[1]}</i> </span>)}</span>}
+          : !whose && !stale && <span class="legend">{sources.map((each) => <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>{each.shape} <i>{each.word.split(/[ ,]/)[1]}</i> </span>)}</span>}
         {' '}<output data-testid={`reading-${name}`}>{value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}</output> {unit}
       </span>
     }>

@@ -20,6 +20,7 @@ import { RunStore } from './store';
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
   state: 'connecting', attempt: 0, gaps: 0, serverVersion: '',
 });
+export const isLost = computed(() => stream.value.state === 'lost');
 export const store = signal<RunStore | undefined>(undefined);
 /** What belongs to the run that is shown: once it is another one, as it was at first. */
 export function signalOfRun<T>(first: T): Signal<T> {

@@ -1,6 +1,7 @@
 // What the vehicle waits for and which condition is missing, in plain words; and before that, what to press.
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
+import { staleWords } from '../channels/model';
 import { outcomeWords } from '../clocks/model';
 import { compare, preconditionsOf } from '../commands/model';
 import type { Precondition } from '../commands/model';
@@ -266,8 +267,8 @@ function watched(store: RunStore, dictionary: Dictionary, plan: readonly Timepoi
     const is = sample(watch.channel);
     if (!is || Number.isNaN(is.value)) return [];
     const line = conditionLine({ quantity: watch.channel, value: is.value, comparison: watch.comparison, bound, holds: compare(is.value, watch.comparison, bound) });
-    const age = now - is.sclk;
-    return age < FRESH_S ? [line] : [{ ...line, value: `${line.value}, ${duration(age)} ago`, holds: undefined }];
+    const stale = staleWords(store, dictionary.pick([watch.channel]), cutoff, false);
+    return stale === undefined ? [line] : [{ ...line, value: `${line.value}, ${stale}`, holds: undefined }];
   });
 }
 

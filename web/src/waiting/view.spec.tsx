@@ -5,10 +5,10 @@ import { act } from 'preact/test-utils';
 import { describe, expect, it } from 'vitest';
 import { access } from '../access/model';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
-import { TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
+import { DictionaryChannelSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
 import { aDictionary, aPlan, aRun, aStore, event, explanation, firing, samples, stage, tone } from '../testing/fixtures';
-import { timepoints, useForTest } from '../run/session';
+import { stream, timepoints, useForTest } from '../run/session';
 import type { ToWorker } from '../stream/messages';
 import { noteWords, waitingFor } from './model';
 import { WaitingFor } from './view';
@@ -88,6 +88,24 @@ describe('waiting for', () => {
     const aligned = tone({ sclk: 898, tone: 35, name: 'heading_alignment' });
     expect(now(peak, aligned).title).toBe('Waiting for straighten up and fly right (SUFR)');
     expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
+  });
+  it('knows nothing of what is compared once it is stale, nor of any condition while nothing comes', () => {
+    const words = new Dictionary({ ...aDictionary.reply, channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })] });
+    const store = (sclk: number) => aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 850 }), samples(850, { 9: 405 }), samples(sclk, { 4: 400 })]);
+    const watched = (sclk: number) => waitingFor(store(sclk), words, aPlan, Infinity).lines.at(-1);
+    expect([watched(899), watched(859)]).toEqual([{ words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true }, { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined }]);
+    const root = document.createElement('div');
+    act(() => {
+      useForTest(store(899), words);
+      timepoints.value = aPlan;
+      render(<WaitingFor />, root);
+    });
+    const classes = () => [...root.querySelectorAll('li')].map((line) => line.className);
+    expect(classes()).toContain('holds');
+    act(() => void (stream.value = { ...stream.value, state: 'lost' }));
+    expect(new Set(classes())).toEqual(new Set(['unknown']));
+    useForTest(undefined, undefined);
+    timepoints.value = [];
   });
   it('has how long a timepoint is ago as a condition with its live value', () => {
     const plan = [...aPlan, create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 })];

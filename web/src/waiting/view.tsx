@@ -2,7 +2,7 @@ import { STATUS, held } from '../design/status';
 import { openCommandLine } from '../commands/line';
 import { mayRehearse } from '../access/model';
 import { EndRun } from '../rehearsal/view';
-import { cutoff, dictionary, modeNow, runNow, takesCommands, timepoints } from '../run/session';
+import { cutoff, dictionary, isLost, modeNow, runNow, takesCommands, timepoints } from '../run/session';
 import { ModeMark } from '../mode/view';
 import { focusPanel } from '../shortcuts/model';
 import { predicted } from '../timeline/now';
@@ -23,19 +23,23 @@ export function WaitingFor() {
     );
   }
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
+  const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting'; // the clocks stand still, what is compared is of then
   return (
     <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting">
       <ModeMark />
       <h2 aria-live="polite">{waiting.title}</h2>
       <p>{waiting.words}</p>
       <ul>
-        {waiting.lines.map((line) => (
-          <li key={line.words} class={held(line.holds)}>
-            <span title={STATUS[held(line.holds)].word}>{STATUS[held(line.holds)].shape}</span>
-            <span>{line.words}</span>
-            <output>{line.value}</output>
-          </li>
-        ))}
+        {waiting.lines.map((line) => {
+          const look = held(isOld ? undefined : line.holds);
+          return (
+            <li key={line.words} class={look}>
+              <span title={STATUS[look].word}>{STATUS[look].shape}</span>
+              <span>{line.words}</span>
+              <output>{line.value}</output>
+            </li>
+          );
+        })}
       </ul>
       {waiting.before && <p class="before" data-testid="waiting-before">First <b>{waiting.beforeName}</b>, {waiting.before.words}: <output>{waiting.before.value}</output></p>}
       {waiting.byTone && <p class="by-tone" data-testid="waiting-by-tone">■ by tone, the last that was heard of: {waiting.byTone}</p>}
