@@ -121,7 +121,7 @@ function staleNow(run: RunStore | undefined): string | undefined {
 
 /** Where the figures stand, in the corner below, and under them whose they are, or how old: as style.css has them. */
 function figures({ context: c, width, height, colours }: Surface): Box[] {
-  const figure_px = Math.min(46, Math.max(24, height * 0.13)) * 1.1;
+  const figure_px = Math.min(110, Math.max(24, Math.min(height * 0.13, width * 0.09))) * 1.1;
   const whose = whoseWords(shownRun());
   c.font = `12.5px ${colours.sans}`;
   const line_px = (whose ?? staleNow(shownRun())) === undefined ? 0 : 15;
@@ -205,7 +205,7 @@ function draw(surface: Surface): void {
   const now = points[points.length - 1];
   if (!now) {
     c.fillStyle = colours.dim;
-    c.font = `14px ${colours.sans}`;
+    c.font = `${Math.min(14, (width - LEFT) / 33)}px ${colours.sans}`;
     c.textAlign = 'left';
     c.fillText('The vehicle is above this picture, or has not told its height yet.', LEFT + 14, 30);
     return;

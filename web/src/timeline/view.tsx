@@ -64,11 +64,17 @@ function shown(run: RunStore | undefined): { from: number; to: number } {
 
 let hits: { x: number; y: number; id: number }[] = [];
 
-function drawTimeline({ context: c, width, height, colours }: Surface): void {
+/** By how much it is drawn larger than on the console, where it has a panel of a large screen to itself. */
+let grown = 1;
+
+function drawTimeline({ context: c, width: width_px, height: height_px, colours }: Surface): void {
+  grown = Math.max(1, Math.min(2, width_px / 900, height_px / 400));
+  c.scale(grown, grown);
+  const [width, height] = [width_px / grown, height_px / grown];
   const run = shownRun();
   const { from, to } = shown(run);
   const x = (e_s: number) => GUTTER + ((e_s - from) / (to - from)) * (width - GUTTER - 14);
-  const lane_px = Math.max(16, Math.min(25, (height - TOP - LABELS) / LANES.length));
+  const lane_px = Math.max(16, Math.min(grown > 1 ? 40 : 25, (height - TOP - LABELS) / LANES.length));
   const y = (lane: number) => TOP + lane_px * (lane + 0.5);
   const bottom = TOP + lane_px * LANES.length;
   hits = [];
@@ -298,17 +304,17 @@ function triangle(c: CanvasRenderingContext2D, x: number, y: number, colour: str
 function selectAt(px: number, py: number): void {
   let best: (typeof hits)[number] | undefined;
   for (const hit of hits) {
-    const distance = Math.hypot(hit.x - px, hit.y - py);
-    if (distance < 14 && (!best || distance < Math.hypot(best.x - px, best.y - py))) best = hit;
+    const distance = (each: typeof hit) => Math.hypot(each.x - px / grown, each.y - py / grown);
+    if (distance(hit) < 14 && (!best || distance(hit) < distance(best))) best = hit;
   }
   select(best?.id);
 }
 
 function timeAt(px: number, width: number): number {
   const { from, to } = shown(shownRun());
-  return from + ((px - GUTTER) / (width - GUTTER - 14)) * (to - from);
+  return from + ((px / grown - GUTTER) / (width / grown - GUTTER - 14)) * (to - from);
 }
-const within = (px: number, width: number) => (px < GUTTER ? undefined : timeAt(px, width));
+const within = (px: number, width: number) => (px / grown < GUTTER ? undefined : timeAt(px, width));
 
 const CHOICES: [Choice & string, string, string][] = [
   ['landing', 'landing', '1'], ['minute', 'last minute', '2'], ['run', 'whole run', '3'],

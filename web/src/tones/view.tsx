@@ -110,6 +110,7 @@ function draw(surface: Surface): void {
     c.fillText(String(tone), LEFT - 8, y(tone));
   }
   const step = timeStep(to - from, Math.floor(width / 100));
+  c.fillStyle = colours.dim;
   c.textAlign = 'center';
   for (const e_s of ticks(from, to, step)) if (x(e_s) < width - 26) c.fillText(axisTime(e_s, step), x(e_s), height - 8);
   c.save();

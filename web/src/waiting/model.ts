@@ -262,7 +262,7 @@ function watched(store: RunStore, dictionary: Dictionary, plan: readonly Timepoi
     if (watch.timepoint !== name || Number.isNaN(bound)) return [];
     if ('since' in watch) {
       const since = heardOf(store, plan, cutoff).get(plan.find((row) => row.name === watch.since)?.id ?? NaN)?.fired_sclk;
-      return since === undefined ? [] : [{ words: `at least ${bound} s since ${inWords(watch.since)}`, value: duration(now - since), holds: now - since >= bound }];
+      return since === undefined ? [] : [{ words: `since ${inWords(watch.since)} ≥ ${bound} s`, value: duration(now - since), holds: now - since >= bound }];
     }
     const is = sample(watch.channel);
     if (!is || Number.isNaN(is.value)) return [];

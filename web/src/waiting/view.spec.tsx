@@ -110,7 +110,7 @@ describe('waiting for', () => {
   it('has how long a timepoint is ago as a condition with its live value', () => {
     const plan = [...aPlan, create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 })];
     const lines = (firedSclk: number) => waitingFor(aStore([...commanded, firing({ timepoint: 2, name: 'parachute_deploy', firedSclk }), samples(899, { 4: 150 })]), aDictionary, plan, Infinity).lines;
-    expect(lines(887.5)).toContainEqual({ words: 'at least 20 s since parachute deploy', value: '12.5 s', holds: false });
+    expect(lines(887.5)).toContainEqual({ words: 'since parachute deploy ≥ 20 s', value: '12.5 s', holds: false });
     expect(lines(870).at(-1)).toMatchObject({ value: '30.0 s', holds: true });
   });
   it('says of a mission whose commands are not here that there is nothing to press', () => {

@@ -25,7 +25,7 @@ export function WaitingFor() {
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
   const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting'; // the clocks stand still, what is compared is of then
   return (
-    <section class={`panel waiting waiting-${waiting.kind}`} data-testid="waiting">
+    <section class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`} data-testid="waiting">
       <ModeMark />
       <h2 aria-live="polite">{waiting.title}</h2>
       <p>{waiting.words}</p>
