@@ -1,4 +1,5 @@
 import { create, toBinary } from '@bufbuild/protobuf';
+import type { MessageInitShape } from '@bufbuild/protobuf';
 import { afterEach, beforeEach, expect, it, vi } from 'vitest';
 import { RunStateSchema } from '../gen/worker/aeolis/v1/run_pb';
 import { ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
@@ -24,10 +25,13 @@ class FakeSocket {
     this.onopen();
   }
   welcome(state: string) {
-    const runState = create(RunStateSchema, { run: 1n, state });
-    this.onmessage({ data: toBinary(ServerMessageSchema, create(ServerMessageSchema, { message: { case: 'welcome', value: { runState } } })).slice().buffer });
+    this.says({ case: 'welcome', value: { runState: aRun(state) } });
+  }
+  says(message: MessageInitShape<typeof ServerMessageSchema>['message']) {
+    this.onmessage({ data: toBinary(ServerMessageSchema, create(ServerMessageSchema, { message })).slice().buffer });
   }
 }
+const aRun = (state: string, venue = 'rehearsal') => create(RunStateSchema, { run: 1n, state, venue });
 const states = () => said.flatMap((message) => (message.type === 'stream' ? [message.state] : []));
 const passes = (seconds: number) => vi.advanceTimersByTimeAsync(seconds * 1000);
 let healthz: () => Promise<unknown>;
@@ -61,24 +65,25 @@ it('after five seconds of silence asks whether the server is there, and goes the
   sockets[0]?.welcome('running');
   expect(states().at(-1), 'the dead one is not listened to').toBe('lost');
 });
-it('of a server that answers asks the socket, too, and takes that for dead when it says nothing to it; one that speaks stays', async () => {
+it('of a server that answers takes the socket for dead where a rehearsal that goes on is silent for fifteen seconds; one that speaks stays', async () => {
   healthz = () => Promise.resolve({});
   sockets[0]?.opens();
-  sockets[0]?.welcome('paused');
-  const before = sockets[0]?.sent as number;
-  await passes(12);
-  expect([states().at(-1), (sockets[0]?.sent as number) - before]).toEqual(['live', 2]);
-  sockets[0]?.welcome('paused');
+  sockets[0]?.welcome('running');
   await passes(14);
-  expect(states().at(-1)).toBe('live');
-  await passes(4);
+  sockets[0]?.says({ case: 'runState', value: aRun('running') });
+  await passes(14);
+  expect(states()).not.toContain('lost');
+  await passes(5);
   expect(states()).toContain('lost');
 });
-it('leaves the socket of a run that is over in peace, as long as the server answers', async () => {
+it('leaves the socket in peace where silence is in order, as long as the server answers: paused, over, of a real venue', async () => {
   healthz = () => Promise.resolve({});
   sockets[0]?.opens();
-  sockets[0]?.welcome('finished');
+  sockets[0]?.welcome('running');
   const before = sockets[0]?.sent;
-  await passes(60);
+  for (const silent of [aRun('paused'), aRun('finished'), aRun('running', 'downlink')]) {
+    sockets[0]?.says({ case: 'runState', value: silent });
+    await passes(60);
+  }
   expect([states().at(-1), sockets[0]?.sent, sockets.length]).toEqual(['live', before, 1]);
 });

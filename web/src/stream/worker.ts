@@ -26,7 +26,7 @@ const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
 const NO_FRAME_MS = 300; // ours: a run that has ended sends no live frame to wait for
 const SILENT_MS = 5000; // ours: a run that goes on has its clocks told ten times a second
-const LOOKS = 3; // ours: what was asked over the socket has had ten seconds by then
+const LOOKS = 3; // ours: of a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
@@ -122,7 +122,8 @@ function heard(): void {
 
 /**
  * A connection can die without a word. After a silence the server is asked something small: without an answer the connection is lost. Where it
- * answers, the socket may be dead by itself: while a run goes on or is awaited it is asked, too.
+ * answers, the socket is dead by itself when a rehearsal that goes on is silent for long. It is not asked: a second subscription beside one whose
+ * answer is under way could have facts come twice, or samples left out.
  */
 async function watchSilence(): Promise<void> {
   const its = socket;
@@ -132,11 +133,8 @@ async function watchSilence(): Promise<void> {
   const answers = await fetch('/healthz', { cache: 'no-store', signal: AbortSignal.timeout(SILENT_MS) }).then(() => true, () => false);
   if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
   lookAt_ms = performance.now() + SILENT_MS;
-  const speaks = !known || ['waiting', 'running', 'paused'].includes(known.state);
-  if (answers && !(speaks && looks >= LOOKS)) {
-    if (speaks) subscribe();
-    return;
-  }
+  const speaks = state === 'live' && known?.state === 'running' && known.venue !== 'downlink'; // a real venue is silent when nothing comes
+  if (answers && !(speaks && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
   lose(its);
@@ -146,7 +144,6 @@ async function watchSilence(): Promise<void> {
 /** Forget the run and take up another from its beginning. */
 function restart(run: number): void {
   currentRun = run;
-  looks = 0;
   known = undefined;
   lost = undefined;
   check = new SequenceCheck();
@@ -206,6 +203,7 @@ function receive(bytes: Uint8Array): void {
       post({ type: 'refusal', reason: message.value.reason });
       break;
     case 'runState':
+      if (known?.run === message.value.run) known = message.value;
       post({ type: 'run', run: message.value, fresh: false });
       break;
   }
