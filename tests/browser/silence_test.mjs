@@ -11,7 +11,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
     await shows('waiting', /Waiting for entry interface[^]*■ by tone, the last that was heard of: heartbeat/, 60_000);
     await setPace(page, 20);
     await shows('phase-now', /Entry[^]*■ by tone/, 60_000);
-    await waitFor(() => text('waiting'), /Waiting for parachute deploy[^]*by tone, the last that was heard of: (heartbeat entry|sufr)/, 60_000);
+    await waitFor(() => text('waiting'), /Waiting for parachute deploy[^]*by tone, the last that was heard of: (heartbeat entry|straighten up)/, 60_000);
     await shows('phase-now', /Parachute[^]*■ by tone/, 60_000);
     await page.keyboard.press('p');
     await shows('badge', /paused/);
