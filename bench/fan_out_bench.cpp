@@ -67,7 +67,7 @@ Figures bare(LoopbackClients& all) {
     must(::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && ::listen(listener, 4096) == 0, "listen");
     socklen_t size = sizeof address;
     must(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) == 0, "getsockname");
-    all.connect(ntohs(address.sin_port), {clients, 0, false, ""});
+    all.connect(ntohs(address.sin_port), {clients, 0, false, {}});
     std::vector<int> sockets;
     for (std::size_t i = 0; i < clients; ++i) {
         sockets.push_back(::accept(listener, nullptr, nullptr));
@@ -96,7 +96,7 @@ Figures served(LoopbackClients& all, std::size_t a_tick) {
     must(::pthread_getcpuclockid(server.network().native_handle(), &network) == 0, "pthread_getcpuclockid");
     v1::ClientMessage subscription;
     subscription.mutable_subscribe()->set_all_channels(true);
-    all.connect(server.port(), {clients, 0, true, subscription.SerializeAsString()});
+    all.connect(server.port(), {clients, 0, true, {subscription.SerializeAsString()}});
     std::this_thread::sleep_for(std::chrono::milliseconds{300});
     all.forget();
     const double before = cpu_s(network);

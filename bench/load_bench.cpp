@@ -1,5 +1,5 @@
 // The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
-// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled. Those that joined first, in the
+// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled: all the same channels, then each some of its own. Those that joined first, in the
 // middle and last are looked at, and the stalled one when it reads again. And the start of the real program on an archive of
 // a hundred runs, up to the first answer with data.
 
@@ -199,8 +199,23 @@ void goal(const std::string& what, double figure, double most, const char* unit)
     met = met && figure <= most;
 }
 
+/// A client's subscription: 30 channels of the first kind of packet; or ten of each of three kinds, other ones for each client.
+enum class Channels { same, own };
+std::string subscription_of(std::size_t client, Channels channels) {
+    v1::ClientMessage message;
+    auto& subscribe = *message.mutable_subscribe();
+    for (std::size_t i = 0; i < watched_channels; ++i) {
+        const std::size_t kind = channels == Channels::same ? 0 : (client + 11 * (i / 10)) % packet_kinds;
+        const std::size_t within = channels == Channels::same ? i : (client * 7 + i % 10) % channels_a_packet;
+        subscribe.add_channels(static_cast<std::uint32_t>(kind * channels_a_packet + within));
+    }
+    subscribe.set_max_rate_hz(sample_rate_hz);
+    subscribe.set_without_units(true);
+    return message.SerializeAsString();
+}
+
 /// Threads and connections as `aeolis serve` has them, with packets made here in place of a landing.
-void under_load() {
+void under_load(Channels channels) {
     std::array<LoopbackClients, 2> others; // who joins between the first and the middle one, and after it
     spdlog::set_level(spdlog::level::err);
     const test::TemporaryFolder folder;
@@ -236,21 +251,22 @@ void under_load() {
     state.set_attained_pace(1.0);
     web->post([&hub, state] { hub.run_state(state); });
 
-    v1::ClientMessage subscription;
-    for (std::uint32_t i = 0; i < watched_channels; ++i)
-        subscription.mutable_subscribe()->add_channels(i);
-    subscription.mutable_subscribe()->set_max_rate_hz(sample_rate_hz);
-    subscription.mutable_subscribe()->set_without_units(true);
     std::uint64_t sent_packets = 0, sent_events = 0, sent_tones = 0, sent_stages = 0;
     std::uint64_t resident = 0;
     double behind_s = 0.0;
     {
-        const auto asked = subscription.SerializeAsString();
-        Watcher first{"the first to join", web->port(), asked}, stalled{"the one that was stalled", web->port(), asked, true};
-        others[0].connect(web->port(), {(clients - watched) / 2, 0, true, asked});
-        Watcher middle{"one in the middle", web->port(), asked};
-        others[1].connect(web->port(), {(clients - watched) / 2, 0, true, asked});
-        Watcher last{"the last to join", web->port(), asked};
+        std::size_t joined = 0;
+        const auto next = [&] { return subscription_of(joined++, channels); };
+        const auto half = [&] {
+            std::vector<std::string> subscriptions((clients - watched) / 2);
+            std::ranges::generate(subscriptions, next);
+            return LoopbackClients::Settings{subscriptions.size(), 0, true, subscriptions};
+        };
+        Watcher first{"the first to join", web->port(), next()}, stalled{"the one that was stalled", web->port(), next(), true};
+        others[0].connect(web->port(), half());
+        Watcher middle{"one in the middle", web->port(), next()};
+        others[1].connect(web->port(), half());
+        Watcher last{"the last to join", web->port(), next()};
         const std::array all{&first, &middle, &last, &stalled};
         std::this_thread::sleep_for(std::chrono::milliseconds{500});
         for (auto& each : others)
@@ -300,8 +316,9 @@ void under_load() {
         while (!std::ranges::all_of(all, has_all) && now_s() - stopped < 10.0)
             std::this_thread::sleep_for(std::chrono::milliseconds{10});
         const double caught_up_s = now_s() - stopped;
-        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels at %.0f Hz, one of them stalled\n",
-                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels, sample_rate_hz);
+        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels %s at %.0f Hz, one of them stalled\n",
+                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels,
+                    channels == Channels::same ? "that are the same" : "of their own", sample_rate_hz);
         std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n", static_cast<double>(others[0].octets() + others[1].octets()) / seconds * 1e-6, 1e3 * behind_s);
         for (Watcher* each : all) {
             const std::string who = std::string{", "} + each->name;
@@ -382,7 +399,8 @@ void start() {
 } // namespace
 
 int main() {
-    under_load();
+    under_load(Channels::same);
+    under_load(Channels::own);
     start();
     return met ? 0 : 1;
 }

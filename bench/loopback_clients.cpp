@@ -136,21 +136,40 @@ void read_until_closed(Board& board, int phase, const std::vector<int>& sockets,
 struct Order {
     std::size_t clients = 0, stalled = 0;
     bool websocket = true;
-    std::uint32_t octets = 0; ///< of the subscription, which follows
+    std::uint32_t subscriptions = 0; ///< that follow, each behind its number of octets
 };
+
+void read_all(int orders, void* into, std::size_t octets) {
+    for (auto* at = static_cast<char*>(into); octets > 0;) {
+        const auto got = ::read(orders, at, octets);
+        must(got > 0, "read");
+        at += got;
+        octets -= static_cast<std::size_t>(got);
+    }
+}
+
+std::vector<std::string> read_subscriptions(int orders, std::size_t count) {
+    std::vector<std::string> subscriptions(count);
+    for (auto& each : subscriptions) {
+        std::uint32_t octets = 0;
+        read_all(orders, &octets, sizeof octets);
+        each.resize(octets);
+        read_all(orders, each.data(), octets);
+    }
+    return subscriptions;
+}
 
 [[noreturn]] void be_clients(Board& board, int orders) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (;;) {
         Order order;
         if (::read(orders, &order, sizeof order) != sizeof order) ::_exit(0);
-        std::string subscription(order.octets, '\0');
-        if (order.octets > 0) must(::read(orders, subscription.data(), order.octets) == static_cast<ssize_t>(order.octets), "read");
+        const auto subscriptions = read_subscriptions(orders, order.subscriptions);
         const int phase = board.phase;
         std::vector<int> sockets;
         for (std::size_t i = 0; i < order.clients; ++i) {
             sockets.push_back(connect_to(board.port));
-            if (order.websocket) open_stream(sockets.back(), subscription);
+            if (order.websocket) open_stream(sockets.back(), subscriptions[i % subscriptions.size()]);
         }
         board.settled = phase;
         read_until_closed(board, phase, {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)}, order.websocket);
@@ -198,10 +217,12 @@ LoopbackClients::~LoopbackClients() {
 void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {
     board_->port = port;
     const int phase = ++board_->phase;
-    const Order order{settings.clients, settings.stalled, settings.websocket, static_cast<std::uint32_t>(settings.subscription.size())};
+    const Order order{settings.clients, settings.stalled, settings.websocket, static_cast<std::uint32_t>(settings.subscriptions.size())};
     must(::write(pipe_, &order, sizeof order) == sizeof order, "write");
-    if (!settings.subscription.empty())
-        must(::write(pipe_, settings.subscription.data(), settings.subscription.size()) == static_cast<ssize_t>(settings.subscription.size()), "write");
+    for (const auto& each : settings.subscriptions) {
+        const auto octets = static_cast<std::uint32_t>(each.size());
+        must(::write(pipe_, &octets, sizeof octets) == sizeof octets && ::write(pipe_, each.data(), octets) == static_cast<ssize_t>(octets), "write");
+    }
     while (board_->settled != phase)
         ::usleep(1000);
 }

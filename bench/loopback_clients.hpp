@@ -36,7 +36,7 @@ class LoopbackClients {
     struct Settings {
         std::size_t clients = 1000, stalled = 0; ///< stalled: the last of them subscribe and never read
         bool websocket = true; ///< else what comes is only read
-        std::string subscription; ///< a ClientMessage, sent once by each
+        std::vector<std::string> subscriptions; ///< ClientMessages; each client sends one, by turns
     };
     /// Before any thread is started. Raises the limit of open files as far as it goes.
     LoopbackClients();

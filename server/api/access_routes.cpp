@@ -152,6 +152,7 @@ void Api::audit(const Asked& asked) {
     const auto after = query->count("after", UINT32_MAX), limit = query->count("limit", audit_page_max);
     if (!after) return asked.respond(error_response(400, after.error()));
     if (!limit) return asked.respond(error_response(400, limit.error()));
+    if (*limit && **limit == 0) return asked.respond(error_response(400, "limit: 0 asks for nothing"));
     aside(asked.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
         const auto entries = reader.audit(after, limit);
         if (!entries) return error_response(500, entries.error());
@@ -167,7 +168,7 @@ void Api::audit(const Asked& asked) {
             shown.set_outcome(entry.outcome);
             shown.set_hash(entry.hash);
         }
-        if (entries->size() == limit && limit > 0) list.set_next_after(entries->back().entry);
+        if (entries->size() == limit) list.set_next_after(entries->back().entry);
         return json_response(list);
     });
 }

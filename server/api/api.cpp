@@ -239,6 +239,8 @@ void Api::run_question(const Asked& asked) {
         return respond(error_response(404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
     auto query = QueryText::parse(asked.request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error()));
+    if (!question->formats.empty()) // before the archive is asked for what nobody could take
+        if (const auto format = query->one_of("format", question->formats); !format) return respond(error_response(400, format.error()));
     const auto& dictionary = parts_.dictionary;
     // What the archive cannot know of the run that goes on: its pace and its clocks.
     const auto current = current_run();
@@ -284,14 +286,16 @@ void Api::ask(const Asked& asked, QueryText query, RunQuestion question, Haste h
 }
 
 void Api::list_runs(const Asked& asked) {
-    auto query = QueryText::parse(asked.request.query, {"format"});
+    const auto query = QueryText::parse(asked.request.query, {"format"});
     if (!query) return asked.respond(error_response(400, query.error()));
-    aside(asked.respond, [current = current_run(), query = std::move(*query)](archive::Reader& reader) {
+    auto format = query->one_of("format", list_formats);
+    if (!format) return asked.respond(error_response(400, format.error()));
+    aside(asked.respond, [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
         auto runs = reader.runs();
         if (!runs) return error_response(500, runs.error());
         for (auto& run : *runs->mutable_runs())
             if (run.run() == current.run()) run = current;
-        return list_response(query, *runs, {"runs"});
+        return list_response(format, *runs, {"runs"});
     }, Haste::soon);
 }
 

@@ -1,14 +1,25 @@
 #pragma once
 
+#include <charconv>
 #include <string>
 
 namespace aeolis::server {
 
-/// A field of a line, by RFC 4180.
+/// Whether a spreadsheet would compute it rather than show it.
+inline bool is_formula(const std::string& text) {
+    if (text.empty() || std::string_view{"=+-@\t\r"}.find(text.front()) == std::string_view::npos) return false;
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error != std::errc{} || end != text.data() + text.size();
+}
+
+/// A field of a line, by RFC 4180. Words of people and of other missions may begin like a formula: these have an apostrophe in front, by
+/// which a spreadsheet takes them for the text that they are.
 inline std::string csv_text(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    const std::string shown = is_formula(text) ? "'" + text : text;
+    if (shown.find_first_of(",\"\r\n") == std::string::npos) return shown;
     std::string quoted = "\"";
-    for (const char c : text)
+    for (const char c : shown)
         quoted.append(c == '"' ? 2 : 1, c);
     return quoted + '"';
 }

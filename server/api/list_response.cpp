@@ -1,12 +1,12 @@
 #include "server/api/list_response.hpp"
 
-#include "server/api/api.hpp"
 #include "server/api/csv_text.hpp"
 #include "server/api/json.hpp"
 #include "server/api/json_object.hpp"
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/reflection.h>
@@ -19,25 +19,37 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
+constexpr double dated_s_max = 1.0e9; // ours: an SCLK that is further from where the clocks meet, thirty years, is none
+
 struct Column {
     std::string name;
     std::vector<const FieldDescriptor*> path; ///< messages, then what has the value
+    bool scet = false;                        ///< that SCLK as SCET
 };
 
 bool is_message(const FieldDescriptor& field) {
     return field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
 }
 
-void add_columns(const Descriptor& row, const std::vector<std::string_view>& kinds, const Column& above, std::vector<Column>& columns) {
+/// "sclk", "fired_sclk".
+bool is_sclk(const FieldDescriptor& field) {
+    return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && field.name().ends_with("sclk") && !field.is_repeated();
+}
+
+void add_columns(const Descriptor& row, const std::vector<std::string_view>& kinds, bool dated, const Column& above, std::vector<Column>& columns) {
     for (int i = 0; i < row.field_count(); ++i) {
         const auto* field = row.field(i);
         if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end()) continue;
         Column column{above.name + (above.path.empty() ? "" : ".") + field->name(), above.path};
         column.path.push_back(field);
         if (is_message(*field) && !field->is_repeated())
-            add_columns(*field->message_type(), kinds, column, columns);
+            add_columns(*field->message_type(), kinds, dated, column, columns);
         else
-            columns.push_back(std::move(column));
+            columns.push_back(column);
+        if (!dated || !is_sclk(*field)) continue;
+        column.scet = true;
+        column.name.replace(column.name.size() - 4, 4, "scet");
+        columns.push_back(std::move(column));
     }
 }
 
@@ -79,7 +91,11 @@ std::string repeated_text(const Message& message, const FieldDescriptor& field) 
     return text;
 }
 
-std::string cell_text(const Message& row, const Column& column) {
+std::string scet_text(const ClockCorrelation& clock, Sclk sclk) {
+    return std::abs(sclk - clock.sclk) < dated_s_max ? day_of_year_text(clock.scet_of(sclk)) : std::string{};
+}
+
+std::string cell_text(const Message& row, const Column& column, const std::optional<ClockCorrelation>& clock) {
     const Message* message = &row;
     for (std::size_t i = 0; i + 1 < column.path.size(); ++i) {
         if (!message->GetReflection()->HasField(*message, column.path[i])) return {};
@@ -88,6 +104,7 @@ std::string cell_text(const Message& row, const Column& column) {
     const auto& field = *column.path.back();
     if (field.is_repeated()) return repeated_text(*message, field);
     if (field.has_presence() && !message->GetReflection()->HasField(*message, &field)) return {};
+    if (column.scet) return scet_text(*clock, Sclk{message->GetReflection()->GetDouble(*message, &field)});
     return value_text(*message, field, -1);
 }
 
@@ -101,11 +118,10 @@ void append_line(std::string& csv, const std::vector<Column>& columns, TextOf te
 
 } // namespace
 
-HttpResponse list_response(const QueryText& query, const Message& list, const Rows& rows) {
+HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows, const std::optional<ClockCorrelation>& clock) {
     const auto& reflection = *list.GetReflection();
     const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
     const auto* next_after = list.GetDescriptor()->FindFieldByName("next_after");
-    const auto format = query.text("format").value_or("json");
     HttpResponse response;
     if (next_after != nullptr) response.next_after = std::to_string(reflection.GetUInt64(list, next_after));
     if (format == "json") {
@@ -114,15 +130,13 @@ HttpResponse list_response(const QueryText& query, const Message& list, const Ro
         response.content_type = "application/x-ndjson";
         for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
             response.body += to_json(row) + '\n';
-    } else if (format == "csv") {
+    } else {
         response.content_type = "text/csv; charset=utf-8";
         std::vector<Column> columns;
-        add_columns(*field->message_type(), rows.kinds, {}, columns);
+        add_columns(*field->message_type(), rows.kinds, clock.has_value(), {}, columns);
         append_line(response.body, columns, [](const Column& column) { return column.name; });
         for (const auto& row : reflection.GetRepeatedFieldRef<Message>(list, field))
-            append_line(response.body, columns, [&](const Column& column) { return cell_text(row, column); });
-    } else {
-        return error_response(400, fmt::format("format: '{}' is none of json, csv, jsonl", format));
+            append_line(response.body, columns, [&](const Column& column) { return cell_text(row, column, clock); });
     }
     return response;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
-#include "server/api/query_text.hpp"
+#include "common/time.hpp"
 #include "server/net/http_message.hpp"
 
+#include <array>
 #include <google/protobuf/message.h>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -15,12 +17,18 @@ struct Rows {
     std::vector<std::string_view> kinds{}; ///< "event"
 };
 
-/// A list as it is asked for by the parameter "format"; where the next page begins is in the header Aeolis-Next-After, too.
+/// The formats of a list, the first where none is asked for.
 ///
-/// json   the list, the default
+/// json   the list
 /// csv    a header, then a line a row by RFC 4180, with a column a field in the schema's order, by its path: "event.name". What a row
-///        does not have is empty. Octets are hexadecimal; of a repeated field one cell has all, with blanks between, messages as JSON
+///        does not have is empty. Octets are hexadecimal; of a repeated field one cell has all, with blanks between, messages as JSON.
+///        Beside each SCLK stands SCET, where it is known by which clock
 /// jsonl  a line a row, each as in the list
-HttpResponse list_response(const QueryText& query, const google::protobuf::Message& list, const Rows& rows);
+inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "jsonl"};
+
+/// Where the next page begins is in the header Aeolis-Next-After, too.
+/// @param format  one of list_formats
+/// @param clock   of the run whose rows they are
+HttpResponse list_response(std::string_view format, const google::protobuf::Message& list, const Rows& rows, const std::optional<ClockCorrelation>& clock = {});
 
 } // namespace aeolis::server

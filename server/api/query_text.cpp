@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace aeolis::server {
 
@@ -59,6 +60,13 @@ Result<std::optional<std::uint64_t>> QueryText::count(std::string_view name, std
         return Error{fmt::format("{}: '{}' is not a whole number from 0", name, *given)};
     if (value > max) return Error{fmt::format("{}: {} is more than {}", name, value, max)};
     return std::optional{value};
+}
+
+Result<std::string> QueryText::one_of(std::string_view name, std::span<const std::string_view> words) const {
+    auto word = text(name);
+    if (!word) return std::string{words.front()};
+    if (std::ranges::find(words, *word) != words.end()) return std::move(*word);
+    return Error{fmt::format("{}: '{}' is none of {}", name, *word, fmt::join(words, ", "))};
 }
 
 std::vector<std::string> QueryText::list(std::string_view name) const {

@@ -4,6 +4,7 @@
 #include "server/api/json.hpp"
 #include "server/api/list_response.hpp"
 #include "server/api/query_text.hpp"
+#include "server/api/series_text.hpp"
 #include "server/api/state_at.hpp"
 #include "server/archive/items.hpp"
 #include "telemetry/text.hpp"
@@ -19,6 +20,8 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::uint64_t seq_max = UINT64_MAX >> 1; // SQLite's integers are signed
+constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
+constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
 constexpr double scet_text_s = 1.0e-3;             // day-of-year texts are cut to it: the tick within it is the one that was read off
 
 template <typename Message>
@@ -29,9 +32,28 @@ HttpResponse answer(const Result<Message>& result) {
     return response;
 }
 
+/// By which clock SCLK becomes SCET; none: nobody knows it.
+std::optional<ClockCorrelation> clock_of(archive::Reader& reader, archive::RunId run) {
+    const auto state = reader.run(run);
+    const auto clock = state ? archive::correlation_of(*state) : ClockCorrelation{};
+    return clock.scet == Scet{} ? std::nullopt : std::optional{clock};
+}
+
+/// Of the formats of this question the one that is asked for.
+std::string format_of(const QueryText& query, std::span<const std::string_view> formats) {
+    return query.text("format").value_or(std::string{formats.front()});
+}
+
+struct Asking {
+    archive::Reader& reader;
+    archive::RunId run;
+    const QueryText& query;
+};
 template <typename List>
-HttpResponse answer_rows(const QueryText& query, const Result<List>& list, const Rows& rows) {
-    return list ? list_response(query, *list, rows) : error_response(400, list.error());
+HttpResponse answer_rows(const Asking& asking, const Result<List>& list, const Rows& rows) {
+    if (!list) return error_response(400, list.error());
+    const auto format = format_of(asking.query, list_formats);
+    return list_response(format, *list, rows, format == "csv" ? clock_of(asking.reader, asking.run) : std::nullopt);
 }
 
 struct Page {
@@ -56,18 +78,6 @@ Result<bool> flag_of(const QueryText& query, std::string_view name) {
 
 HttpResponse run_itself(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
     return answer(reader.run(run));
-}
-
-/// A row a sample; the reader of a spreadsheet or of a script wants no JSON.
-std::string csv_of(const v1::ChannelSeriesList& list) {
-    std::string csv = "channel,unit,sclk_s,value,source\n";
-    for (const auto& series : list.channels()) {
-        const auto name = csv_text(series.name()), unit = csv_text(series.unit()); // a formula may have commas
-        for (int i = 0; i < series.sclk_size(); ++i)
-            fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, unit, series.sclk(i),
-                           series.value(i), series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
-    }
-    return csv;
 }
 
 Result<v1::ChannelSeriesList> derived(archive::Reader& reader, archive::RunId run, const std::string& expression,
@@ -96,9 +106,7 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     if (!points) return error_response(400, points.error());
     if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
     if (*points) series.points = static_cast<std::size_t>(**points);
-    const auto format = query.text("format").value_or("json");
-    if (format != "json" && format != "csv" && format != "protobuf")
-        return error_response(400, fmt::format("format: '{}' is none of json, csv, protobuf", format));
+    const auto format = format_of(query, series_formats);
     if (const auto source = query.text("source")) {
         if (*source != "realtime" && *source != "recorded")
             return error_response(400, fmt::format("source: '{}' is neither realtime nor recorded", *source));
@@ -110,8 +118,9 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     if (*provenance && (expression || format == "csv")) return error_response(400, "provenance: of named channels only, as json or protobuf");
     series.provenance = *provenance;
     const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
-    if (format == "json" || !result) return answer(result);
-    if (format == "csv") return {200, "text/csv; charset=utf-8", "no-store", csv_of(*result)};
+    if (!result) return error_response(400, result.error());
+    if (format == "json") return {200, "application/json", "no-store", series_json(*result)};
+    if (format == "csv") return {200, "text/csv; charset=utf-8", "no-store", series_csv(*result)};
     return {200, "application/x-protobuf", "no-store", result->SerializeAsString()};
 }
 
@@ -143,7 +152,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     packets.range = *range;
     packets.after = page->after;
     packets.limit = page->limit;
-    return answer_rows(query, reader.packets(run, packets), {"packets"});
+    return answer_rows({reader, run, query}, reader.packets(run, packets), {"packets"});
 }
 
 HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
@@ -168,7 +177,7 @@ HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
     events.after = page->after;
     events.limit = page->limit;
     events.duplicates = *duplicates;
-    return answer_rows(query, reader.events(run, events), {"events", {"event"}});
+    return answer_rows({reader, run, query}, reader.events(run, events), {"events", {"event"}});
 }
 
 /// The decisions that flight can explain, as the dictionary words them.
@@ -196,7 +205,7 @@ HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive
     explanations.after = page->after;
     explanations.limit = page->limit;
     explanations.duplicates = *duplicates;
-    return answer_rows(query, reader.explanations(run, explanations), {"explanations", {"explanation"}});
+    return answer_rows({reader, run, query}, reader.explanations(run, explanations), {"explanations", {"explanation"}});
 }
 
 HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
@@ -204,13 +213,13 @@ HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, c
     if (!range) return error_response(400, range.error());
     const auto page = page_of(query, archive::rows_page_max, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
-    return answer_rows(query, reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}), {"tones", {"tone"}});
+    return answer_rows({reader, run, query}, reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}), {"tones", {"tone"}});
 }
 
 HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    return answer_rows(query, reader.commands(run, {*range, query.text("text").value_or("")}), {"commands"});
+    return answer_rows({reader, run, query}, reader.commands(run, {*range, query.text("text").value_or("")}), {"commands"});
 }
 
 /// What happened to alarms; or how they stand now.
@@ -219,28 +228,28 @@ HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunI
     if (!page) return error_response(400, page.error());
     const auto state = query.text("state");
     if (!state)
-        return answer_rows(query, reader.alarms(run, page->after, page->limit), {"changes", {"alarm", "staleness", "alarm_action", "link"}});
+        return answer_rows({reader, run, query}, reader.alarms(run, page->after, page->limit), {"changes", {"alarm", "staleness", "alarm_action", "link"}});
     if (*state != "current") return error_response(400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
-    return answer_rows(query, reader.alarm_states(run, ground.now), {"alarms"});
+    return answer_rows({reader, run, query}, reader.alarm_states(run, ground.now), {"alarms"});
 }
 
 HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
-    return answer_rows(query, reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}), {"notes", {"note"}});
+    return answer_rows({reader, run, query}, reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}), {"notes", {"note"}});
 }
 
-HttpResponse interventions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText&) {
+HttpResponse interventions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     if (!ground.instructor) {
         const auto state = reader.run(run);
         if (!state) return error_response(400, state.error());
         if (state->state() == "running") return error_response(403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
     }
-    return answer(reader.interventions(run));
+    return answer_rows({reader, run, query}, reader.interventions(run), {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
 }
 
 HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
-    return answer_rows(query, reader.timepoints(run), {"timepoints"});
+    return answer_rows({reader, run, query}, reader.timepoints(run), {"timepoints"});
 }
 
 HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText&) {
@@ -263,11 +272,8 @@ std::string csv_of(const v1::ProofReport& report) {
 /// As JSON, or where format=csv asks for it as a table.
 template <typename Report>
 HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make, std::string (*as_csv)(const Report&)) {
-    const auto format = query.text("format").value_or("json");
-    if (format != "json" && format != "csv")
-        return error_response(400, fmt::format("format: '{}' is neither json nor csv", format));
     const auto report = make();
-    if (format == "json" || !report) return answer(report);
+    if (format_of(query, report_formats) == "json" || !report) return answer(report);
     return {200, "text/csv; charset=utf-8", "no-store", as_csv(*report)};
 }
 
@@ -287,21 +293,21 @@ HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId
 }
 
 const std::array questions{
-    RunQuestionEntry{"", {}, run_itself},
-    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "source", "provenance", "format"}, channels},
-    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, packets},
-    RunQuestionEntry{"tones", {"text", "from", "to", "after", "limit", "format"}, tones},
-    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, events},
-    RunQuestionEntry{"commands", {"text", "from", "to", "format"}, commands},
-    RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, alarms},
-    RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, notes},
-    RunQuestionEntry{"interventions", {}, interventions},
-    RunQuestionEntry{"timepoints", {"format"}, timepoints},
-    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"}, explanations},
-    RunQuestionEntry{"recording", {}, recording},
-    RunQuestionEntry{"proof", {"format"}, proof},
-    RunQuestionEntry{"report", {"format"}, report},
-    RunQuestionEntry{"state", {"at"}, state},
+    RunQuestionEntry{"", {}, {}, run_itself},
+    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "source", "provenance", "format"}, series_formats, channels},
+    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
+    RunQuestionEntry{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
+    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
+    RunQuestionEntry{"commands", {"text", "from", "to", "format"}, list_formats, commands},
+    RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
+    RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
+    RunQuestionEntry{"interventions", {"format"}, list_formats, interventions},
+    RunQuestionEntry{"timepoints", {"format"}, list_formats, timepoints},
+    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, explanations},
+    RunQuestionEntry{"recording", {}, {}, recording},
+    RunQuestionEntry{"proof", {"format"}, report_formats, proof},
+    RunQuestionEntry{"report", {"format"}, report_formats, report},
+    RunQuestionEntry{"state", {"at"}, {}, state},
 };
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include "server/api/api.hpp"
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -14,10 +15,11 @@ struct Ground {
     bool instructor;        ///< who asks may rehearse
 };
 
-/// A question to one run: the last part of its path, the parameters it knows, and how it is answered.
+/// A question to one run: the last part of its path, the parameters it knows, the formats of its answer, and how it is answered.
 struct RunQuestionEntry {
     std::string_view name; ///< "events" of /api/v1/runs/{run}/events; "" for the run itself
     std::vector<std::string_view> parameters;
+    std::span<const std::string_view> formats; ///< of the parameter "format", which is one of them; empty: JSON only
     HttpResponse (*answer)(const Ground&, archive::Reader&, archive::RunId, const QueryText&);
 };
 

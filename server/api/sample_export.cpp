@@ -43,7 +43,8 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
                 tell(Error{fmt::format("this is a fault of the server: {}", bug.what())});
             }
         };
-        if (!queries.ask(job, gone)) tell(Error{"too many questions wait"});
+        // A page takes milliseconds, and what has begun is not to break off because many ask: it waits with the pages of the stream.
+        if (!queries.ask(job, gone, Haste::soon)) tell(Error{"too many questions wait"});
     }
 };
 

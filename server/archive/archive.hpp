@@ -12,7 +12,7 @@
 namespace aeolis::archive {
 
 inline constexpr std::int32_t application_id = 0x41454F4C; ///< "AEOL": what file(1) and we know the file by
-inline constexpr std::int32_t schema_version = 7;          ///< PRAGMA user_version
+inline constexpr std::int32_t schema_version = 8;          ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///

@@ -12,7 +12,7 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr std::size_t exact_samples_of_all_max = 2'000'000; ///< ours: some 100 MB as JSON; each origin and gap counts as one
+constexpr std::size_t exact_samples_of_all_max = 1'000'000; ///< ours: some 55 MB as JSON; each origin and gap counts as one
 constexpr std::size_t window_samples = 100'000; ///< ours: that are in hand at once; at most four times as many
 constexpr std::size_t page_samples = 10'000;    ///< ours: the same for one page, a megabyte of text
 
@@ -37,6 +37,14 @@ Result<std::vector<const dictionary::Channel*>> find_channels(const dictionary::
         channels.push_back(channel);
     }
     return channels;
+}
+
+/// By name and by alias a channel is one.
+std::vector<const dictionary::Channel*> without_repeats(const std::vector<const dictionary::Channel*>& channels) {
+    std::vector<const dictionary::Channel*> once;
+    for (const auto* channel : channels)
+        if (std::ranges::find(once, channel) == once.end()) once.push_back(channel);
+    return once;
 }
 
 void write(v1::ChannelSeries& series, std::span<const Sample> samples) {
@@ -156,7 +164,7 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
     if (!channels) return channels.error();
     v1::ChannelSeriesList list;
     std::size_t given = 0;
-    for (const auto* channel : *channels) {
+    for (const auto* channel : without_repeats(*channels)) {
         auto series = one_series(*state_, instant->run, *channel, *range, query);
         if (!series) return series.error();
         if (query.provenance)
@@ -300,8 +308,7 @@ Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const 
     } else {
         auto found = find_channels(reader.dictionary, channels);
         if (!found) return found.error();
-        for (const auto* channel : *found) // by name and by alias it is one
-            if (std::ranges::find(windows.channels_, channel) == windows.channels_.end()) windows.channels_.push_back(channel);
+        windows.channels_ = without_repeats(*found);
     }
     if (after) {
         windows.cursor_ = *after;

@@ -21,12 +21,22 @@ bool still_named(int descriptor, const std::filesystem::path& file) {
 
 } // namespace
 
+/// What root leaves behind must not lock out whose the archive is: the file of the lock is theirs.
+void give_to_owner(int descriptor, const std::filesystem::path& archive) {
+    struct stat owner {};
+    const auto folder = std::filesystem::absolute(archive).parent_path();
+    if (::geteuid() != 0 || (::stat(archive.c_str(), &owner) != 0 && ::stat(folder.c_str(), &owner) != 0)) return;
+    if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return; // a file system without owners
+}
+
 Result<WriterLock> WriterLock::take(const std::filesystem::path& archive) {
     auto file = archive;
     file += "-writer";
     for (;;) {
-        const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-        if (descriptor < 0) return Error{archive.string() + ": cannot be written: " + std::strerror(errno)};
+        int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+        if (descriptor < 0 && errno == EACCES) descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC); // another's: enough for a lock
+        if (descriptor < 0) return Error{archive.string() + ": cannot be written: " + file.string() + ": " + std::strerror(errno)};
+        give_to_owner(descriptor, archive);
         if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
             ::close(descriptor);
             return Error{archive.string() + " is being written by another process"};

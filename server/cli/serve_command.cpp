@@ -1,6 +1,6 @@
 #include "server/cli/commands.hpp"
+#include "server/cli/log_line.hpp"
 #include "server/cli/shipped_paths.hpp"
-#include "server/api/json_object.hpp"
 #include "server/cli/xtce_file.hpp"
 #include "server/net/console_backend.hpp"
 
@@ -8,7 +8,6 @@
 #include <charconv>
 #include <csignal>
 #include <fmt/format.h>
-#include <spdlog/pattern_formatter.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <thread>
@@ -34,24 +33,9 @@ std::optional<Listen> listen_of(const std::string& text) {
     return listen;
 }
 
-/// A log line as one JSON object. spdlog's patterns do not escape what they print.
-class JsonLine final : public spdlog::formatter {
-  public:
-    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
-        time_.format(message, line);
-        const std::string_view text{message.payload.data(), message.payload.size()};
-        fmt::format_to(std::back_inserter(line), R"("level":"{}","message":{}}})", to_string_view(message.level), json_text(text));
-        line.push_back('\n');
-    }
-    std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonLine>(); }
-
-  private:
-    spdlog::pattern_formatter time_{R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",)", spdlog::pattern_time_type::utc, ""};
-};
-
 void set_log(const ServeOptions& options) {
     spdlog::set_level(spdlog::level::from_str(options.log_level));
-    if (options.log_format == "json") spdlog::set_formatter(std::make_unique<JsonLine>());
+    spdlog::set_formatter(options.log_format == "json" ? json_lines() : text_lines());
 }
 
 std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {

@@ -9,6 +9,8 @@
 #include <boost/beast/websocket.hpp>
 #include <boost/beast/websocket/ssl.hpp>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
 namespace aeolis::server::net {
@@ -18,6 +20,10 @@ namespace websocket = beast::websocket;
 
 constexpr const char* server_ends = "the server ends";
 constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
+/// Ours: that the kernel may hold for a client and has not sent. What waits beyond it waits in the session, where it is thinned; and a ping is
+/// not so far behind other octets that a slow client seems dead.
+using UnsentMax = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
+constexpr int unsent_octets_max = 64 << 10;
 constexpr std::chrono::milliseconds turn_max{20}; // ours: of all writers together (live, a thousand take 8), until whoever asks something else is heard
 
 /// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
@@ -77,6 +83,7 @@ Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_vie
     }));
     socket_.read_message_max(0); // the limit is kept below: Beast's own closes without a word
     error_code error;
+    beast::get_lowest_layer(socket_).socket().set_option(UnsentMax{unsent_octets_max}, error); // without it the stream works, too
     co_await socket_.async_accept(request, asio::redirect_error(awaiting, error));
     co_return !error;
 }

@@ -25,6 +25,28 @@ bool begins_interval(double sclk, std::optional<double> previous, double interva
     return !previous || std::floor(sclk / interval_s) != std::floor(*previous / interval_s);
 }
 
+/// The samples of some channels, which ascend.
+v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>& channels, bool ascend) {
+    v1::Samples chosen;
+    const auto& ids = samples.ids();
+    const auto add = [&](int i) {
+        chosen.add_ids(ids[i]);
+        chosen.add_values(samples.values(i));
+    };
+    if (!ascend) {
+        for (int i = 0; i < ids.size(); ++i)
+            if (std::ranges::binary_search(channels, ids[i])) add(i);
+        return chosen;
+    }
+    auto at = ids.begin();
+    for (auto channel = std::ranges::lower_bound(channels, ids[0]); channel != channels.end(); ++channel) {
+        at = std::lower_bound(at, ids.end(), *channel);
+        if (at == ids.end()) break;
+        if (*at == *channel) add(static_cast<int>(at - ids.begin()));
+    }
+    return chosen;
+}
+
 } // namespace
 
 Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
@@ -33,24 +55,19 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
 }
 
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
-    for (const auto& [item, previous_sclk] : items) {
+    for (const auto& [item, before] : items) {
         if (item->has_unit() && (!shape.units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
         if (!item->has_samples()) {
             *batch.add_items() = *item;
             continue;
         }
         const auto& samples = item->samples();
-        if (interval_s > 0.0 && !begins_interval(samples.sclk(), previous_sclk, interval_s)) continue;
-        const bool thinned = interval_s > 0.0 && previous_sclk && samples.sclk() - *previous_sclk < interval_s;
+        if (interval_s > 0.0 && !begins_interval(samples.sclk(), before.previous_sclk, interval_s)) continue;
+        const bool thinned = interval_s > 0.0 && before.previous_sclk && samples.sclk() - *before.previous_sclk < interval_s;
         if (shape.all_channels) {
             *batch.add_items() = *item;
         } else {
-            v1::Samples chosen;
-            for (int i = 0; i < samples.ids_size(); ++i) {
-                if (!std::ranges::binary_search(shape.channels, samples.ids(i))) continue;
-                chosen.add_ids(samples.ids(i));
-                chosen.add_values(samples.values(i));
-            }
+            auto chosen = some_of(samples, shape.channels, before.ascend);
             if (chosen.ids_size() == 0) continue;
             chosen.set_sclk(samples.sclk());
             chosen.set_source(samples.source());
@@ -62,9 +79,12 @@ void select_items(const StreamShape& shape, double interval_s, std::span<const I
     }
 }
 
-std::optional<double> SampleSpacing::next(const v1::Item& item) {
-    if (!item.has_samples() || item.samples().ids_size() == 0) return std::nullopt;
-    const auto& samples = item.samples();
+SamplesBefore SampleSpacing::next(const v1::Item& item) {
+    if (!item.has_samples() || item.samples().ids_size() == 0) return {};
+    return {previous(item.samples()), std::ranges::is_sorted(item.samples().ids())};
+}
+
+std::optional<double> SampleSpacing::previous(const v1::Samples& samples) {
     const std::uint64_t packet = (std::uint64_t{samples.ids(0)} << 8) | static_cast<std::uint64_t>(samples.source());
     for (auto& [known, sclk] : last_)
         if (known == packet) return std::exchange(sclk, samples.sclk());
@@ -85,9 +105,9 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
         spacing_ = {};
     } else {
         Held held{std::move(batch), {}};
-        held.previous_sclk.reserve(held.batch->items.size());
+        held.samples.reserve(held.batch->items.size());
         for (const auto& item : held.batch->items)
-            held.previous_sclk.push_back(spacing_.next(item));
+            held.samples.push_back(spacing_.next(item));
         held_items_ += held.batch->items.size();
         held_.push_back(std::move(held));
         while (held_items_ > items_max) {
@@ -100,6 +120,9 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
 
 void StreamHub::run_state(v1::RunState state) {
     if (state.run() != state_.run()) {
+        before_ = std::move(state_);
+        before_.set_last_seq(last_seq_);
+        before_version_ = state_version_;
         last_seq_ = state.last_seq(); // of a run that is over, as the archive has it; of a new one 0
         held_.clear();
         held_items_ = 0;
@@ -164,10 +187,10 @@ StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence af
         }
     }
     std::vector<ItemBefore> items;
-    for (const auto& held : held_) {
-        if (held.batch->last_seq <= after) continue;
-        for (std::size_t i = 0; i < held.batch->items.size() && items.size() < message_items_max; ++i)
-            if (held.batch->items[i].seq() > after) items.push_back({&held.batch->items[i], held.previous_sclk[i]});
+    const auto last_of = [](const Held& held) { return held.batch->last_seq; };
+    for (auto held = std::ranges::upper_bound(held_, after, {}, last_of); held != held_.end() && items.size() < message_items_max; ++held) {
+        for (std::size_t i = 0; i < held->batch->items.size() && items.size() < message_items_max; ++i)
+            if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->samples[i]});
     }
     Fresh fresh;
     fresh.through = items.empty() ? last_seq_ : items.back().item->seq();

@@ -35,11 +35,15 @@ struct StreamShape {
     bool operator==(const StreamShape&) const = default;
 };
 
-/// A published item, and when (SCLK) the same packet's samples came before it: so that thinning needs no memory of
-/// what one client got, and clients share their encoding.
+/// What is known of an item's samples before anyone asks for some of them.
+struct SamplesBefore {
+    std::optional<double> previous_sclk; ///< when the same packet's came before: so thinning needs no memory of what one client got
+    bool ascend = false;                 ///< their channels do: some are found without looking at all
+};
+/// A published item.
 struct ItemBefore {
     const v1::Item* item = nullptr;
-    std::optional<double> previous_sclk;
+    SamplesBefore samples;
 };
 
 /// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
@@ -47,12 +51,14 @@ struct ItemBefore {
 /// Units: those received live, where the shape has any; the recording's are at /packets.
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch);
 
-/// Tells previous_sclk for items in their order.
+/// Tells it for items in their order.
 class SampleSpacing {
   public:
-    std::optional<double> next(const v1::Item& item);
+    SamplesBefore next(const v1::Item& item);
 
   private:
+    std::optional<double> previous(const v1::Samples& samples);
+
     std::vector<std::pair<std::uint64_t, double>> last_; ///< by packet (its first channel) and source
 };
 
@@ -98,6 +104,9 @@ class StreamHub {
     std::uint64_t current_run() const { return state_.run(); } ///< 0: none yet
     const v1::RunState& state() const { return state_; }
     std::uint64_t state_version() const { return state_version_; }
+    /// The run before the current one, as it stood last; run 0: none since the server started.
+    const v1::RunState& before() const { return before_; }
+    std::uint64_t before_version() const { return before_version_; } ///< of state_version(), when that was told
     const v1::Clocks& latest_clocks() const { return clocks_; }
     std::uint64_t clocks_version() const { return clocks_version_; }
     archive::Sequence last_seq() const { return last_seq_; } ///< published, of the current run
@@ -120,7 +129,7 @@ class StreamHub {
   private:
     struct Held {
         std::shared_ptr<const pipeline::PublishedBatch> batch;
-        std::vector<std::optional<double>> previous_sclk; ///< an item each
+        std::vector<SamplesBefore> samples; ///< an item each
     };
     struct Cached {
         StreamShape shape;
@@ -133,7 +142,8 @@ class StreamHub {
     std::uint16_t dictionary_id_;
     Services services_;
     std::vector<StreamSession*> sessions_;
-    v1::RunState state_;
+    v1::RunState state_, before_;
+    std::uint64_t before_version_ = 0;
     v1::Clocks clocks_;
     std::uint64_t state_version_ = 0, clocks_version_ = 0;
     archive::Sequence last_seq_ = 0;

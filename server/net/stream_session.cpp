@@ -107,7 +107,7 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     const std::uint64_t run = subscribe.run() == 0 ? hub_.current_run() : subscribe.run();
     if (auto refusal = refusal_of_pace(subscribe.pace(), run); !refusal.empty()) return refuse(std::move(refusal));
     ++subscription_;
-    again_ = nullptr;
+    again_ = next_question_ = nullptr;
     waiting_for_run_ = stall_told_ = false;
     due_.reset();
     shape_.all_channels = subscribe.all_channels();
@@ -118,6 +118,7 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     pace_ = subscribe.pace();
     newest_run_ = subscribe.run() == 0 && pace_ == 0.0; // what is sent again goes on to its end, also when another run begins
     if (run == 0 || run == hub_.current_run()) {
+        older_run_.Clear();
         if (pace_ > 0.0) {
             older_run_ = hub_.state();
             older_run_.set_last_seq(hub_.last_seq());
@@ -127,7 +128,6 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
         wake_();
         return;
     }
-    waiting_for_run_ = true;
     read_run(run, subscribe.after_seq());
 }
 
@@ -142,18 +142,41 @@ std::string StreamSession::refusal_of_pace(double pace, std::uint64_t run) const
 }
 
 void StreamSession::read_run(std::uint64_t run, archive::Sequence after) {
-    hub_.services().read_run(run, [self = weak_from_this(), run, after, subscription = subscription_](Result<v1::RunState> state) {
-        const auto session = self.lock();
-        if (!session || session->subscription_ != subscription) return;
-        if (!state && state.error().internal)
-            return session->stall(state.error().message, [session = session.get(), run, after] { session->read_run(run, after); });
-        session->waiting_for_run_ = false;
-        if (!state) return session->refuse(state.error().message);
-        session->subscribed_ = true;
-        session->older_run_ = std::move(*state);
-        session->follow(run, after);
-        session->wake_();
+    waiting_for_run_ = true;
+    ask([this, run, after, subscription = subscription_] {
+        hub_.services().read_run(run, [self = weak_from_this(), run, after, subscription](Result<v1::RunState> state) {
+            const auto session = self.lock();
+            if (!session) return;
+            session->answered();
+            if (session->subscription_ != subscription) return;
+            if (!state && state.error().internal)
+                return session->stall(state.error().message, [session = session.get(), run, after] { session->read_run(run, after); });
+            session->waiting_for_run_ = false;
+            if (!state) {
+                session->refuse(state.error().message);
+                if (session->newest_run_) session->follow(session->hub_.current_run(), 0);
+                return;
+            }
+            session->subscribed_ = true;
+            session->older_run_ = std::move(*state);
+            session->follow(run, after);
+            session->wake_();
+        });
     });
+}
+
+void StreamSession::ask(std::function<void()> question) {
+    if (asking_) {
+        next_question_ = std::move(question);
+        return;
+    }
+    asking_ = true;
+    question();
+}
+
+void StreamSession::answered() {
+    asking_ = false;
+    if (auto next = std::exchange(next_question_, nullptr)) ask(std::move(next));
 }
 
 void StreamSession::stall(const std::string& why, std::function<void()> again) {
@@ -217,8 +240,17 @@ Encoded StreamSession::next_due() {
     }
     if (!subscribed_ || waiting_for_run_) return nullptr;
     if (newest_run_ && run_ != hub_.current_run()) {
-        ++subscription_;
-        follow(hub_.current_run(), 0);
+        if (auto state = last_state_of_run()) return state;
+        const bool from_archive = older_run_.run() == run_; // it is read to its end
+        if (!gave_all_of_run() && !from_archive) {
+            ++subscription_; // whatever page is on its way, it is asked for again
+            read_run(run_, cursor_);
+            return nullptr;
+        }
+        if (gave_all_of_run()) {
+            ++subscription_;
+            follow(hub_.current_run(), 0);
+        }
     }
     if (welcome_due_) return welcome();
     if (run_ == 0) return nullptr;
@@ -242,6 +274,20 @@ Encoded StreamSession::next_due() {
         return encode(message, shape_.format);
     }
     return nullptr;
+}
+
+bool StreamSession::gave_all_of_run() const {
+    if (run_ == 0) return true;
+    if (older_run_.run() == run_) return exhausted_ && !page_;
+    return hub_.before().run() == run_ && cursor_ >= hub_.before().last_seq();
+}
+
+Encoded StreamSession::last_state_of_run() {
+    if (hub_.before().run() != run_ || cursor_ < hub_.before().last_seq() || state_sent_ >= hub_.before_version()) return nullptr;
+    state_sent_ = hub_.before_version();
+    v1::ServerMessage message;
+    *message.mutable_run_state() = hub_.before();
+    return encode(message, shape_.format);
 }
 
 Encoded StreamSession::next_items() {
@@ -328,6 +374,10 @@ Encoded StreamSession::from_page() {
 
 void StreamSession::ask_archive() {
     reading_ = true;
+    ask([this] { read_page(); });
+}
+
+void StreamSession::read_page() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
@@ -336,7 +386,9 @@ void StreamSession::ask_archive() {
         archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
         [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
             const auto session = self.lock();
-            if (!session || session->subscription_ != subscription) return;
+            if (!session) return;
+            session->answered();
+            if (session->subscription_ != subscription) return;
             session->reading_ = false;
             const auto again = [session = session.get()] { session->ask_archive(); };
             if (!page) return session->stall(page.error().message, again);

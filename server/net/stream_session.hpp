@@ -15,13 +15,15 @@ namespace aeolis::server {
 ///
 /// In       the client's messages                        Out   next_message(), when the connection can write
 /// Rule     items go out in order, each once. What the hub still holds comes from there; older items from the
-///          archive, page by page. So a client that is slow, or came late, reads the archive and catches up.
+///          archive, page by page. So a client that is slow, or came late, reads the archive and catches up. Who follows whichever
+///          run goes on gets all of one, and how it ended, before the next
 /// Pace     a run that is over goes out as fast as the archive is read, or, where the subscription has a pace, as it reached Earth: an
 ///          item each when it is due, in a batch each replay_interval at most. Who replays follows nothing else: no run's state, no clocks
 /// Faults   what the archive does not give is said once, and asked for again with every check() until it comes; meanwhile no clocks
 ///          go out either: a console that gets nothing must not look as if it were live
 /// Thread   the network thread only
 /// Memory   replies_max short replies and one page of the archive
+/// Load     one question at a time is with the archive, whatever the client asks for meanwhile
 class StreamSession : public std::enable_shared_from_this<StreamSession> {
   public:
     static constexpr std::size_t replies_max = 64;        ///< ours: a client that sends and never reads is closed
@@ -75,6 +77,13 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     /// Of the page what goes out next: all of it, json_items, or with a pace what has its time; none: nothing yet.
     std::optional<archive::ItemPage> take_page();
     void ask_archive();
+    void read_page();
+    /// Whether all of the run that it follows has been given, how it ended last.
+    bool gave_all_of_run() const;
+    Encoded last_state_of_run();
+    /// Asks now, or when the answer to what was asked before has come; of what waits only the newest is asked.
+    void ask(std::function<void()> question);
+    void answered();
     bool follows_current() const { return !replay_ && run_ != 0 && run_ == hub_.current_run(); }
 
     StreamHub& hub_;
@@ -95,6 +104,8 @@ class StreamSession : public std::enable_shared_from_this<StreamSession> {
     ReplayPace::Clock::time_point next_batch_{};       ///< none goes out before
     archive::Sequence cursor_ = 0;       ///< served up to here
     archive::Sequence sent_through_ = 0; ///< what the client was told
+    bool asking_ = false;                 ///< a question is with the archive
+    std::function<void()> next_question_; ///< null: none waits
     bool reading_ = false, exhausted_ = false, was_live_ = false;
     std::function<void()> again_; ///< what the archive did not give; null: nothing
     bool stall_told_ = false;     ///< and nothing came since

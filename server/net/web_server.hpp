@@ -51,7 +51,7 @@ class WebServer {
         std::chrono::milliseconds request_max{30'000}; ///< ours: for the next request to arrive whole, and for an answer to go on
         std::chrono::milliseconds silence_max{20'000}; ///< ours: a WebSocket peer that answers no ping for so long is dead
         /// Ours: of bodies that lie in memory until their clients have taken them. What would go beyond is answered with 503, but
-        /// not what has half a megaoctet at most, as the console's own files, nor what is alone: a series of 2 000 000 samples has some 120 MB.
+        /// not what has half a megaoctet at most, as the console's own files, nor what is alone: series of 1 000 000 samples have some 55 MB.
         std::size_t answers_octets_max = 256 << 20;
         std::size_t streams = streams_max; ///< open at once; one more gets 503
     };

@@ -68,6 +68,13 @@ class BoundedQueue {
         const std::scoped_lock lock{mutex_};
         return values_.size();
     }
+    /// Of each value that waits, first in first, while nobody adds or takes one.
+    template <typename Do>
+    void each(Do what) {
+        const std::scoped_lock lock{mutex_};
+        for (T& value : values_)
+            what(value);
+    }
 
   private:
     std::optional<T> take(std::unique_lock<std::mutex>& lock) {

@@ -292,8 +292,7 @@ void PipelineThread::take(Delivery& delivery) {
     ++deliveries_;
     note_received(delivery);
     // First, for what is not taken now is not durable either: they wait no longer than this thread does.
-    for (auto& answer : delivery.answers)
-        answers_.push_back(std::move(answer));
+    take_answers(delivery);
     for (auto& entry : delivery.entries) {
         const auto accept = [&] { return std::visit([&](auto& each) { return pipeline_.accept(each); }, entry); };
         // Refused only while too much waits for a failing disk: then that must be committed first.
@@ -303,6 +302,11 @@ void PipelineThread::take(Delivery& delivery) {
     if (!delivery.links.empty()) pipeline_.link_totals(std::move(delivery.links));
     for (auto& tell : delivery.when_durable)
         when_durable_.push_back(std::move(tell));
+}
+
+void PipelineThread::take_answers(Delivery& delivery) {
+    for (auto& answer : std::exchange(delivery.answers, {}))
+        answers_.push_back(std::move(answer));
 }
 
 void PipelineThread::commit_what_is_due() {
@@ -354,6 +358,9 @@ bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
         }
         blocked_ = true;
         tell_audit_kept({});
+        jobs_.each([this](Job& job) { // those behind this one wait for the disk no more than it does
+            if (auto* delivery = std::get_if<Delivery>(&job)) take_answers(*delivery);
+        });
         tell_answers(fault());
         pending_octets_ = pipeline_.pending_octets();
         std::this_thread::sleep_for(retry_interval);

@@ -119,6 +119,7 @@ class PipelineThread {
     /// Done on the thread, and waited for.
     void perform(Action action);
     void take(Delivery& delivery);
+    void take_answers(Delivery& delivery);
     /// Repeats `attempt` until it succeeds; false when that is given up.
     bool insist(const std::function<Result<void>()>& attempt);
     /// One attempt at what is due; when it fails, the next after retry_interval.

@@ -4,6 +4,9 @@
 #include "tests/support/catch.hpp"
 
 #include <fstream>
+#include <iostream>
+#include <sys/stat.h>
+#include <unistd.h>
 
 using namespace aeolis;
 using namespace aeolis::archive;
@@ -108,6 +111,20 @@ TEST_CASE("an archive has one writer", "[archive]") {
     CHECK(second.error().message == file.string() + " is being written by another process");
     first = Error{"closed"};
     CHECK(Archive::open(file).ok());
+}
+
+TEST_CASE("what root writes leaves a lock that whose the archive is can take", "[archive]") {
+    if (::geteuid() != 0) return void(std::cout << "SKIPPED: only root has files that are not its own\n");
+    TemporaryFolder folder;
+    const auto file = folder / "a.db";
+    { REQUIRE(Archive::open(file).ok()); }
+    constexpr uid_t nobody = 65534;
+    REQUIRE(::chown(file.c_str(), nobody, nobody) == 0);
+    const auto held = Archive::open(file);
+    REQUIRE(held.ok());
+    struct stat lock {};
+    REQUIRE(::stat((file.string() + "-writer").c_str(), &lock) == 0);
+    CHECK(lock.st_uid == nobody);
 }
 
 TEST_CASE("a file that another program holds is refused in one line that names it", "[archive]") {

@@ -3,6 +3,7 @@
 #include "common/space_packet.hpp"
 #include "flight/load.hpp"
 #include "server/api/json.hpp"
+#include "server/archive/sqlite.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 #include "tests/support/catch.hpp"
@@ -280,6 +281,36 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     says("archive vacuum --archive " + in("b.db"), "octets, before");
     CHECK(run(program(), "export --run 1 --archive " + in("b.db")).code == 1);
     std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("each question in SQL of docs/archive.md is answered on a landing that was flown", "[cli][archive][R43]") {
+    if (program() == nullptr) return;
+    const aeolis::test::TemporaryFolder folder;
+    const auto archive = (folder / "a.db").string();
+    REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + archive).code == 0);
+    auto database = aeolis::archive::sqlite::Database::open(archive, aeolis::archive::sqlite::Mode::read_only);
+    REQUIRE(database.ok());
+    std::ifstream page{AEOLIS_SOURCE_DIR "/docs/archive.md"};
+    const std::string text{std::istreambuf_iterator<char>{page}, {}};
+    std::size_t questions = 0;
+    for (auto at = text.find("```sql\n"); at != std::string::npos; at = text.find("```sql\n", at)) {
+        const auto begin = at + std::string_view{"```sql\n"}.size();
+        at = text.find("\n```", begin);
+        std::istringstream block{text.substr(begin, at - begin)};
+        for (std::string question; std::getline(block, question, ';');) {
+            if (question.find_first_not_of(" \n") == std::string::npos) continue;
+            ++questions;
+            INFO(question);
+            auto statement = database->prepare(question.c_str());
+            REQUIRE(statement.ok());
+            const auto row = statement->step();
+            REQUIRE(row.ok());
+            // Nobody wrote a note, nothing waited for a person, and every live unit is as it was recorded.
+            const bool of_people = question.find("shift_log") != std::string::npos || question.find("command_wait_log") != std::string::npos;
+            CHECK(*row == !(of_people || question.find("r.octets <> u.octets") != std::string::npos));
+        }
+    }
+    CHECK(questions >= 12);
 }
 
 TEST_CASE("a landing is reported as it was flown, each timepoint and event by plan, tone, UHF and recording, which agree",

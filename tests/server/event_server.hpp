@@ -45,6 +45,11 @@ class EventServer {
     std::uint16_t port() const { return server_->port(); }
     std::thread& network() { return network_; }
     archive::Sequence last_seq() const { return seq_; } ///< published
+    std::uint64_t octets_given() const { ///< to all clients, as far as their sockets take them
+        std::promise<std::uint64_t> octets;
+        server_->post([&] { octets.set_value(hub_->figures.octets); });
+        return octets.get_future().get();
+    }
     std::size_t clients() const {
         std::promise<std::size_t> count;
         server_->post([&] { count.set_value(hub_->sessions()); });

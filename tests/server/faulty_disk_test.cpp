@@ -467,6 +467,33 @@ TEST_CASE("an archive that is removed while it is written is put back with all t
     }
 }
 
+TEST_CASE("who waits for an answer while the disk refuses is told so, also when others wait before it", "[disk][gateway]") {
+    FaultyDisk disk;
+    TemporaryFolder folder;
+    const auto dictionary = small_dictionary();
+    server::PipelineThread pipeline{std::move(Archive::open(folder / "a.db")).value(), dictionary, server::PipelineThread::Faults::hold, {}};
+    REQUIRE(pipeline.begin({}).ok());
+    disk.fail_at(1, FaultyDisk::Fault::full, true);
+    const std::vector<std::uint8_t> octets(60'000, 0x55); // no packet of ours: kept as it is
+    for (int i = 0; i < 2'000 && !pipeline.blocked(); ++i) {
+        server::Delivery delivery;
+        delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::relay_link, Ert{i}, octets});
+        REQUIRE(pipeline.deliver(std::move(delivery)));
+        while (pipeline.figures().waiting > 8 && !pipeline.blocked())
+            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    }
+    REQUIRE(pipeline.blocked());
+    std::promise<std::string> told;
+    auto answer = told.get_future();
+    server::Delivery command;
+    command.answers.emplace_back([&](const std::string& fault) { told.set_value(fault); });
+    REQUIRE(pipeline.deliver(std::move(command)));
+    REQUIRE(answer.wait_for(std::chrono::seconds{30}) == std::future_status::ready);
+    CHECK_THAT(answer.get(), Catch::Contains("full"));
+    disk.mend();
+    CHECK(pipeline.finish({}).ok());
+}
+
 TEST_CASE("another file in the archive's place is left alone, and the archive is put back when it is gone", "[archive][disk]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";

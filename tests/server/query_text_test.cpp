@@ -14,6 +14,15 @@ TEST_CASE("a query's values are decoded", "[http]") {
     CHECK_FALSE(query->number("to")->has_value());
 }
 
+TEST_CASE("a value that is one of some words is the first of them when it is left out, and none other", "[http]") {
+    constexpr std::array<std::string_view, 2> formats{"json", "csv"};
+    const auto format = [&](const char* text) { return QueryText::parse(text, {"format"})->one_of("format", formats); };
+    CHECK(*format("") == "json");
+    CHECK(*format("format=csv") == "csv");
+    CHECK(format("format=CSV").error().message == "format: 'CSV' is none of json, csv");
+    CHECK_FALSE(format("format="));
+}
+
 TEST_CASE("a wrong query is refused by the name of what is wrong", "[http]") {
     CHECK(QueryText::parse("form=1", {"from", "to"}).error().message ==
           "unknown parameter 'form'; known here: from, to");

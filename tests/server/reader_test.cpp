@@ -330,6 +330,16 @@ TEST_CASE("a run is predicted by the design with which it began; one that has ke
     CHECK(Reader::open(file, today)->as_flown(RunId{1})->prediction_note() == older->prediction_note());
 }
 
+TEST_CASE("a channel that is named twice, or by name and alias, is given once", "[reader][bounds]") {
+    Recorded run(true);
+    const auto alias = run.dictionary.channel("altitude_m")->alias;
+    const auto list = run.reader.series(RunId{1}, {{"altitude_m", "speed_mps", "altitude_m", alias}, {}, {}});
+    REQUIRE(list.ok());
+    REQUIRE(list->channels_size() == 2);
+    CHECK(list->channels(0).name() == "altitude_m");
+    CHECK(list->channels(1).name() == "speed_mps");
+}
+
 TEST_CASE("a run of another dictionary shows its packets, and says why it shows no series", "[reader]") {
     Recorded run(true);
     auto other = small_dictionary();

@@ -86,6 +86,22 @@ TEST_CASE("aligned to a step a silence makes no lines", "[export]") {
                                                                             "107,7,8,1\n");
 }
 
+TEST_CASE("aligned to tenths the times are those of the decimal text, not sums of what a tenth is as a double", "[export]") {
+    const auto speed = id("speed_mps");
+    std::vector<ChannelValue> samples;
+    for (int i = 0; i < 4; ++i)
+        samples.push_back({speed, double(i), Sclk{100.0 + 0.25 * i}, Source::realtime});
+    auto lines = std::move(SampleText::make(words(), {"speed_mps"}, {"csv", "0.1"})).value();
+    lines.set_entry(Sclk{0.0});
+    std::string text;
+    lines.append(text, samples);
+    lines.finish(text);
+    CHECK(text == "100,100,0\n"
+                  "100.3,100.3,1\n"
+                  "100.5,100.5,2\n"
+                  "100.8,100.8,3\n");
+}
+
 TEST_CASE("the text is the same in whatever pieces the samples come", "[export]") {
     const auto all = some();
     for (const char* align : {"", "speed_mps", "0.5", "3"})
@@ -104,6 +120,9 @@ TEST_CASE("what cannot be aligned is named", "[export]") {
     CHECK(refused({}, {"csv", "1"}) == "align: the columns are the channels that are named, and none is");
     CHECK(refused({"speed_mps"}, {"csv", "altitude_m"}) == "align: 'altitude_m' is neither one of the channels nor seconds");
     CHECK(refused({"speed_mps", "speed_mps"}, {"csv", "1"}) == "channel 'speed_mps' is named twice");
+    const auto alias = words().channel("speed_mps")->alias;
+    REQUIRE_FALSE(alias.empty());
+    CHECK(refused({"speed_mps", alias}, {"csv", "1"}) == "channel '" + alias + "' is named twice");
     CHECK(refused({"altitud"}, {"csv", "1"}) == "no channel 'altitud'");
     for (const char* step : {"0", "-1", "nan", "inf", "1e-9", "1e9"})
         CHECK_THAT(refused({"speed_mps"}, {"csv", step}), Catch::StartsWith("align: "));

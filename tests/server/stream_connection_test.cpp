@@ -186,6 +186,29 @@ TEST_CASE("a peer that answers no ping is let go, also while the kernel takes no
     CHECK(heard > 0);
 }
 
+TEST_CASE("of what a client does not read little is with the kernel: the rest waits where it can be thinned", "[stream][bounds]") {
+    EventServer events;
+    asio::io_context io;
+    websocket::stream<beast::tcp_stream> socket{io};
+    auto& tcp = beast::get_lowest_layer(socket);
+    tcp.socket().open(asio::ip::tcp::v4());
+    tcp.socket().set_option(asio::socket_base::receive_buffer_size{64 << 10});
+    tcp.socket().connect({asio::ip::make_address("127.0.0.1"), events.port()});
+    socket.set_option(websocket::stream_base::decorator(
+        [](websocket::request_type& request) { request.set(beast::http::field::sec_websocket_protocol, "aeolis.v1.protobuf"); }));
+    socket.handshake("localhost", "/api/v1/stream");
+    socket.binary(true);
+    v1::ClientMessage message;
+    message.mutable_subscribe()->set_all_channels(true);
+    socket.write(asio::buffer(message.SerializeAsString()));
+    for (int i = 0; i < 160; ++i) { // 8 MB, of which a kernel takes some four where it may
+        publish(events, 512, 100);
+        std::this_thread::sleep_for(2ms);
+    }
+    CHECK(events.octets_given() > 50'000);
+    CHECK(events.octets_given() < 1'000'000);
+}
+
 TEST_CASE("when the server ends, each stream is closed as going away, with the reason", "[stream]") {
     EventServer events;
     std::vector<StreamClient> clients;

@@ -10,6 +10,7 @@
 #include <future>
 #include <limits>
 #include <mutex>
+#include <random>
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -71,7 +72,7 @@ struct Venue {
         };
         services.read_run = [this](std::uint64_t run, const auto& done) {
             if (!broken.empty()) return done(Error{broken, true});
-            if (run != flown_before) return done(Error{"no run " + std::to_string(run)});
+            if (run != flown_before && run != 1) return done(Error{"no run " + std::to_string(run)});
             v1::RunState state;
             state.set_run(run);
             state.set_last_seq(items_of(run).size());
@@ -272,7 +273,7 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
 
 TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     const auto item = samples_item(1, 5.0);
-    const std::vector<ItemBefore> items{{&item, std::nullopt}};
+    const std::vector<ItemBefore> items{{&item, {std::nullopt, true}}};
     v1::Batch batch;
     select_items({StreamFormat::json, false, {speed}, 0.0}, 0.0, items, batch);
     REQUIRE(batch.items_size() == 1);
@@ -281,6 +282,29 @@ TEST_CASE("only the channels of the subscription are sent", "[stream]") {
     batch.clear_items();
     select_items({StreamFormat::json, false, {99}, 0.0}, 0.0, items, batch);
     CHECK(batch.items_size() == 0);
+}
+
+TEST_CASE("channels that ascend are found as those that do not", "[stream]") {
+    std::mt19937 random{7};
+    for (int round = 0; round < 300; ++round) {
+        v1::Item item;
+        item.set_seq(1);
+        std::vector<std::uint32_t> wanted;
+        for (std::uint32_t id = 0; id < 60; ++id) {
+            if (random() % 3 == 0) {
+                item.mutable_samples()->add_ids(id);
+                item.mutable_samples()->add_values(id * 0.5);
+            }
+            if (random() % (1 + round % 20) == 0) wanted.push_back(id);
+        }
+        if (!item.has_samples()) continue;
+        const auto chosen = [&](bool ascend) {
+            v1::Batch batch;
+            select_items({StreamFormat::json, false, wanted, 0.0}, 0.0, std::vector<ItemBefore>{{&item, {std::nullopt, ascend}}}, batch);
+            return batch.SerializeAsString();
+        };
+        CHECK(chosen(true) == chosen(false));
+    }
 }
 
 TEST_CASE("a client that wants nothing of what came last is told with the run's state that all of it is there", "[stream][R42]") {
@@ -362,6 +386,72 @@ TEST_CASE("a client of the newest run is moved to the next one", "[stream]") {
     client.complete_through = 0;
     client.read_all();
     CHECK(client.messages.back().welcome().run_state().run() == 2);
+}
+
+namespace {
+
+/// The run that goes on ends, and another begins, before anyone reads.
+void next_run(Venue& venue) {
+    auto over = venue.hub.state();
+    over.set_state("finished");
+    venue.hub.run_state(over);
+    v1::RunState next;
+    next.set_run(2);
+    venue.hub.run_state(next);
+}
+
+} // namespace
+
+TEST_CASE("who is behind when the next run begins gets the rest of the one before, and then the next", "[stream][R42]") {
+    Venue venue;
+    venue.publish_events(5'000); // more than two pages
+    Client client{venue.hub};
+    client.subscribe(0);
+    REQUIRE(client.session->next_message()); // the welcome; then it stalls
+    next_run(venue);
+    for (int i = 0; i < 8; ++i) {
+        client.read_all();
+        venue.answer();
+    }
+    CHECK(client.saw_exactly(1, 5'000));
+    CHECK(client.messages.back().welcome().run_state().run() == 2);
+    CHECK(client.refusals.empty());
+    CHECK_FALSE(client.session->behind());
+}
+
+TEST_CASE("how a run ended is told also when the next one begins in the same turn", "[stream][R42]") {
+    Venue venue;
+    venue.publish_events(3);
+    Client client{venue.hub};
+    client.subscribe(0);
+    client.read_all();
+    next_run(venue);
+    client.read_all();
+    REQUIRE(client.messages.size() >= 2);
+    const auto& before = client.messages[client.messages.size() - 2].run_state();
+    CHECK(before.run() == 1);
+    CHECK(before.state() == "finished");
+    CHECK(before.last_seq() == 3);
+    CHECK(client.messages.back().welcome().run_state().run() == 2);
+    CHECK(venue.pages_read == 0);
+}
+
+TEST_CASE("one question of a client is with the archive at a time, however often it subscribes", "[stream][bounds]") {
+    Venue venue;
+    venue.store_events(100);
+    Client client{venue.hub};
+    for (int i = 0; i < 1'000; ++i) {
+        client.subscribe(static_cast<archive::Sequence>(i % 50), 0.0, true, 1);
+        while (client.session->next_message()) {}
+    }
+    CHECK(venue.pages_read == 1);
+    CHECK(venue.waiting.size() == 1);
+    venue.answer();
+    CHECK(venue.pages_read == 2); // what the last subscription wants
+    client.complete_through = 999 % 50;
+    venue.answer();
+    client.read_all();
+    CHECK(client.saw_exactly(999 % 50 + 1, 100));
 }
 
 TEST_CASE("what the archive does not give is told once, comes when it can be read again, and until then nothing looks live", "[stream][disk][R42]") {

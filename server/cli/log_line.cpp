@@ -1,0 +1,71 @@
+#include "server/cli/log_line.hpp"
+
+#include "server/api/json_object.hpp"
+
+#include <fmt/format.h>
+#include <iterator>
+#include <spdlog/pattern_formatter.h>
+
+namespace aeolis::server {
+namespace {
+
+class TextLine final : public spdlog::formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+        head_.format(message, line);
+        const auto text = printable({message.payload.data(), message.payload.size()});
+        line.append(text.data(), text.data() + text.size());
+        line.push_back('\n');
+    }
+    std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<TextLine>(); }
+
+  private:
+    spdlog::pattern_formatter head_{"[%Y-%m-%d %H:%M:%S.%e] [%^%l%$] ", spdlog::pattern_time_type::local, ""};
+};
+
+// spdlog's patterns do not escape what they print.
+class JsonLine final : public spdlog::formatter {
+  public:
+    void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
+        time_.format(message, line);
+        const std::string_view text{message.payload.data(), message.payload.size()};
+        fmt::format_to(std::back_inserter(line), R"("level":"{}","message":{}}})", to_string_view(message.level), json_text(text));
+        line.push_back('\n');
+    }
+    std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonLine>(); }
+
+  private:
+    spdlog::pattern_formatter time_{R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",)", spdlog::pattern_time_type::utc, ""};
+};
+
+} // namespace
+
+std::string printable(std::string_view text) {
+    std::string shown;
+    shown.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto octet = static_cast<unsigned char>(text[i]);
+        const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
+        if (octet == '\n')
+            shown += "\\n";
+        else if (octet == '\t')
+            shown += "\\t";
+        else if (octet < 0x20 || octet == 0x7F)
+            fmt::format_to(std::back_inserter(shown), "\\x{:02x}", octet);
+        else if (octet == 0xC2 && next >= 0x80 && next < 0xA0) // in UTF-8 those from 80 to 9f
+            fmt::format_to(std::back_inserter(shown), "\\x{:02x}", static_cast<unsigned char>(text[++i]));
+        else
+            shown += text[i];
+    }
+    return shown;
+}
+
+std::unique_ptr<spdlog::formatter> text_lines() {
+    return std::make_unique<TextLine>();
+}
+
+std::unique_ptr<spdlog::formatter> json_lines() {
+    return std::make_unique<JsonLine>();
+}
+
+} // namespace aeolis::server
