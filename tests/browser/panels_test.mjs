@@ -498,7 +498,7 @@ test('after landing height and speed say whose they are, and no word of the desc
             return [...window.written['descent-canvas'], ...figures];
         });
         assert.ok(written.some((each) => /rover hangs below/.test(each.words)));
-        assert.ok(['Parachute', 'touchdown', 'engine priming', 'parachute deploy'].filter((words) => written.some((each) => each.words === words)).length >= 3, written.map((each) => each.words).join());
+        assert.ok(['Parachute', 'touchdown', 'powered approach', 'parachute deploy'].filter((words) => written.some((each) => each.words === words)).length >= 3, written.map((each) => each.words).join());
         written.forEach((one, i) => written.slice(i + 1).forEach((other) => {
             if (Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1 && Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 1) found.push(`${width}: “${one.words}” lies over “${other.words}”`);
         }));

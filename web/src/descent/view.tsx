@@ -248,6 +248,12 @@ function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
 /** Where the words of a moment may stand beside it, the best first. */
 const WORDS_AT = [[-14, -14, 'right'], [-18, -30, 'right'], [-22, -46, 'right'], [-18, 4, 'right'], [-26, -62, 'right'], [16, 14, 'left'], [16, 34, 'left'], [-30, -78, 'right'], [-34, -94, 'right'], [-26, 22, 'right'], [-30, 40, 'right'], [-34, 58, 'right'], [16, 54, 'left']] as const;
 
+/** What begins a phase has its name before others have theirs, the newest of these first. */
+function rank(firing: { name: string } | undefined): number {
+  const phase = LAYOUT.phases.findIndex(({ from }) => from !== undefined && from === firing?.name);
+  return phase < 0 ? 0 : -phase;
+}
+
 function moments(
   c: CanvasRenderingContext2D, points: { sclk: number; speed: number; altitude: number }[], x: (v: number) => number,
   y: (h: number) => number, width: number, bottom: number, taken: readonly Box[], colours: Surface['colours'],
@@ -260,7 +266,8 @@ function moments(
   const now = points[points.length - 1];
   if (now) boxes.push([x(now.speed) - 18, y(now.altitude) - 18, x(now.speed) + 18, y(now.altitude) + 18]); // the dot
   const fired = [...run.firings.values()].map((pair) => pair.live ?? pair.recorded)
-    .filter((firing) => firing !== undefined && isImportant(firing.name) && firing.firedSclk <= cutoff.value);
+    .filter((firing) => firing !== undefined && isImportant(firing.name) && firing.firedSclk <= cutoff.value)
+    .sort((one, other) => rank(one) - rank(other));
   for (const firing of fired) {
     if (!firing) continue;
     let nearest: (typeof points)[number] | undefined;
