@@ -76,12 +76,12 @@ it('of a server that answers takes the socket for dead where a rehearsal that go
   await passes(5);
   expect(states()).toContain('lost');
 });
-it('leaves the socket in peace where silence is in order, as long as the server answers: paused, over, of a real venue', async () => {
+it('leaves the socket in peace where silence is in order, as long as the server answers: paused, over, of a real venue, its archive refusing', async () => {
   healthz = () => Promise.resolve({});
   sockets[0]?.opens();
   sockets[0]?.welcome('running');
   const before = sockets[0]?.sent;
-  for (const silent of [aRun('paused'), aRun('finished'), aRun('running', 'downlink')]) {
+  for (const silent of [aRun('paused'), aRun('finished'), aRun('running', 'downlink'), { ...aRun('running'), archiveFault: 'a.db: disk full' }]) {
     sockets[0]?.says({ case: 'runState', value: silent });
     await passes(60);
   }

@@ -133,7 +133,8 @@ async function watchSilence(): Promise<void> {
   const answers = await fetch('/healthz', { cache: 'no-store', signal: AbortSignal.timeout(SILENT_MS) }).then(() => true, () => false);
   if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
   lookAt_ms = performance.now() + SILENT_MS;
-  const speaks = state === 'live' && known?.state === 'running' && known.venue !== 'downlink'; // a real venue is silent when nothing comes
+  // A real venue is silent when nothing comes, and a rehearsal waits while its archive takes nothing.
+  const speaks = state === 'live' && known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
   if (answers && !(speaks && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
