@@ -87,3 +87,27 @@ it('leaves the socket in peace where silence is in order, as long as the server 
   }
   expect([states().at(-1), sockets[0]?.sent, sockets.length]).toEqual(['live', before, 1]);
 });
+
+it('takes samples up where their subscription is welcomed: what comes before lacks them, and history is asked for only then', async () => {
+  const batch = (afterSeq: bigint, completeThrough: bigint) => sockets[0]?.says({ case: 'batch', value: { run: 1n, afterSeq, completeThrough, items: [{ seq: completeThrough }] } });
+  const history = () => vi.mocked(fetch).mock.calls.filter(([path]) => String(path).includes('/channels')).length;
+  const through = () => said.flatMap((message) => (message.type === 'batch' ? [message.batch.completeThrough] : [])).at(-1);
+  vi.resetModules(); // anew, with something plotted
+  await import('./worker');
+  (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({ data: { type: 'open', run: 0, packets: {}, plotted: ['altitude_m'], others: [] } });
+  const socket = sockets.at(-1);
+  sockets[0] = socket as FakeSocket;
+  socket?.opens();
+  socket?.says({ case: 'welcome', value: { runState: aRun('running'), lastSeq: 2n } });
+  batch(0n, 2n); // all facts are here: samples are asked for
+  expect([socket?.sent, history()]).toEqual([2, 0]);
+  batch(2n, 5n); // still of the subscription without samples
+  await passes(1);
+  expect([history(), through()]).toEqual([0, 2]);
+  socket?.says({ case: 'welcome', value: { runState: aRun('running'), lastSeq: 5n } });
+  expect(history()).toBe(1);
+  batch(2n, 5n); // with samples
+  await passes(1);
+  expect(through()).toBe(5);
+  expect(socket?.sent, 'nothing was missing').toBe(2);
+});

@@ -24,7 +24,6 @@ const POST_SAMPLES_EVERY_MS = 45; // what is drawn does not wait behind what is 
 const PLOTTED_POINTS = 6000; // of a channel that is drawn: a few a pixel, so that one step of zoom still has detail
 const OTHER_POINTS = 400; // of the others: for the table and a first look
 const CHANNELS_A_QUESTION = 64; // the server takes no more
-const NO_FRAME_MS = 300; // ours: a run that has ended sends no live frame to wait for
 const SILENT_MS = 5000; // ours: a run that goes on has its clocks told ten times a second
 const LOOKS = 3; // ours: of a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
@@ -58,6 +57,7 @@ let lost: { after: number; attempts: number } | undefined; // while a break last
 let lookAt_ms = Infinity; // when it is to be asked whether the server is still there
 let looks = 0; // since the socket spoke
 let asks = new AbortController(); // of what was asked before the connection died: no answer comes over it
+let welcomed = false; // by the subscription that was asked for last: what comes before is of the one it replaces, and lacks what that left out
 let exact = false; // the run is named, for the server that came back no longer calls it the one that is going on
 
 function say(next: StreamState): void {
@@ -76,7 +76,7 @@ function send(message: MessageInitShape<typeof ClientMessageSchema>['message']):
 }
 
 function subscribe(): void {
-  send({
+  welcomed = !send({
     case: 'subscribe',
     value: {
       run: BigInt(exact ? currentRun || wantedRun : wantedRun), afterSeq: BigInt(check.completeThrough),
@@ -173,6 +173,7 @@ function receive(bytes: Uint8Array): void {
   switch (message.case) {
     case 'welcome': {
       const welcome = message.value;
+      welcomed = true;
       serverVersion = welcome.serverVersion;
       const run = Number(welcome.runState?.run ?? 0);
       if (run === 0 && currentRun !== 0) {
@@ -188,9 +189,9 @@ function receive(bytes: Uint8Array): void {
       stopAt = Number(welcome.lastSeq);
       post({ type: 'run', run: welcome.runState, fresh });
       if (run !== 0 && step === 'facts' && stopAt === 0) goOnWithSamples();
-      if (run !== 0 && step === 'samples' && check.completeThrough >= stopAt) { // nothing was missed
-        say('live');
-        setTimeout(() => state === 'live' && fetchDueHistory(), NO_FRAME_MS);
+      if (run !== 0 && step === 'samples') {
+        if (check.completeThrough >= stopAt) say('live'); // nothing was missed
+        fetchDueHistory(); // from here on what comes has its samples; what was there before is in the archive
       }
       break;
     }
@@ -201,6 +202,7 @@ function receive(bytes: Uint8Array): void {
       post({ type: 'reply', reply: message.value });
       break;
     case 'refusal':
+      welcomed = true; // where it was of a subscription, the one before goes on
       post({ type: 'refusal', reason: message.value.reason });
       break;
     case 'runState':
@@ -211,6 +213,7 @@ function receive(bytes: Uint8Array): void {
 }
 
 function receiveBatch(batch: Batch): void {
+  if (!welcomed) return;
   const run = Number(batch.run);
   if (run !== currentRun) {
     // The next run has begun on a subscription to "the one that is going on".
@@ -229,7 +232,6 @@ function receiveBatch(batch: Batch): void {
   collector.add(batch);
   if (step === 'facts' && check.completeThrough >= stopAt) goOnWithSamples();
   else if (step === 'samples' && state !== 'live' && check.completeThrough >= stopAt) say('live');
-  if (step === 'samples') fetchDueHistory();
   postSoon(batch.items.some(({ item }) => item.case === 'samples'));
 }
 
