@@ -46,9 +46,10 @@ test('alone on a large screen what is waited for, the lanes of the timeline and 
     const { page } = await open(blackout.address);
     const px = (selector) => page.locator(selector).first().evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);
     await page.goto(`${blackout.address}/?panel=waiting`);
-    assert.ok((await px('.waiting h2')) >= 50 && (await px('.waiting li')) >= 36);
+    await waitFor(() => px('.waiting h2'), (size) => size >= 50);
+    await waitFor(() => px('.waiting li'), (size) => size >= 36);
     await page.goto(`${blackout.address}/?panel=descent`);
-    assert.ok((await px('[data-testid=altitude]')) >= 100);
+    await waitFor(() => px('[data-testid=altitude]'), (size) => size >= 100);
     await page.addInitScript(() => {
         window.lanes = {};
         const { fillText } = CanvasRenderingContext2D.prototype;
