@@ -19,22 +19,25 @@ bool still_named(int descriptor, const std::filesystem::path& file) {
            held.st_dev == named.st_dev;
 }
 
-} // namespace
-
 /// What root leaves behind must not lock out whose the archive is: the file of the lock is theirs.
 void give_to_owner(int descriptor, const std::filesystem::path& archive) {
     struct stat owner {};
+    struct stat held {};
+    // Whoever may write the folder may also have put another file there: only an empty one that has no other name is given away.
+    if (::fstat(descriptor, &held) != 0 || !S_ISREG(held.st_mode) || held.st_size != 0 || held.st_nlink != 1) return;
     const auto folder = std::filesystem::absolute(archive).parent_path();
     if (::geteuid() != 0 || (::stat(archive.c_str(), &owner) != 0 && ::stat(folder.c_str(), &owner) != 0)) return;
     if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return; // a file system without owners
 }
 
+} // namespace
+
 Result<WriterLock> WriterLock::take(const std::filesystem::path& archive) {
     auto file = archive;
     file += "-writer";
     for (;;) {
-        int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-        if (descriptor < 0 && errno == EACCES) descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC); // another's: enough for a lock
+        int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
+        if (descriptor < 0 && errno == EACCES) descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW); // another's: enough for a lock
         if (descriptor < 0) return Error{archive.string() + ": cannot be written: " + file.string() + ": " + std::strerror(errno)};
         give_to_owner(descriptor, archive);
         if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
