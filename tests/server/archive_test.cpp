@@ -127,6 +127,17 @@ TEST_CASE("what root writes leaves a lock that whose the archive is can take", "
     CHECK(lock.st_uid == nobody);
 }
 
+TEST_CASE("a link in the place of the writer's lock is not followed, and what it leads to stays whose it was", "[archive]") {
+    TemporaryFolder folder;
+    const auto file = folder / "a.db", other = folder / "another's";
+    { std::ofstream{other} << ""; }
+    std::filesystem::create_symlink(other, file.string() + "-writer");
+    const auto refused = Archive::open(file);
+    REQUIRE_FALSE(refused.ok());
+    CHECK(refused.error().message.find("a.db-writer") != std::string::npos);
+    CHECK(std::filesystem::exists(other));
+}
+
 TEST_CASE("a file that another program holds is refused in one line that names it", "[archive]") {
     TemporaryFolder folder;
     const auto file = folder / "held.db";
