@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFile, readdir } from 'node:fs/promises';
 import path from 'node:path';
-import { after, before, test } from 'node:test';
+import { before, test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 import { madeUpCampaign } from './made_up_campaign.mjs';
 import { comesToLook, comparePicture } from './picture.mjs';
@@ -20,7 +20,6 @@ before(async () => {
     server = await serve(undefined, 'panels', ['--scenario', 'nominal_auto', '--pace', '0']);
     await waitFor(async () => (await server.get('/runs')).runs[0]?.state, (state) => state === 'finished', 60_000);
 });
-after(() => server?.stop());
 
 test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 400_000 }, async () => {
     const found = [];

@@ -66,21 +66,24 @@ export async function browser() {
     });
 }
 
-/** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it. */
+/** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it, any other with the file. */
 export function workplace() {
     let made;
+    const servers = [];
     const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
     after(async () => {
         const [chrome, folder] = await both();
+        await Promise.all(servers.map((server) => server.stop()));
         await chrome.close();
         await folder.remove();
     });
     return {
         open: async (address, size, script) => open((await both())[0], address, size, script),
-        /** With the archive NAME of this file's folder; without `t` it is the caller's to stop. */
+        /** With the archive NAME of this file's folder. */
         serve: async (t, name, more = [], options = {}) => {
             const [, { folder }] = await both();
             const server = await serve({ archive: path.join(folder, `${name}.db`), more, ...options });
+            servers.push(server);
             t?.after(() => server.stop());
             return server;
         },
