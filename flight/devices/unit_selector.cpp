@@ -50,6 +50,10 @@ void UnitSelector::on(const EdlBegun&, Outbox&) {
     reports_ = true;
 }
 
+void UnitSelector::on(const StandBy&, Outbox&) {
+    reports_ = false;
+}
+
 void UnitSelector::on(const UnitsSelected& taken_over, Outbox& out) {
     select(taken_over.units, out);
 }

@@ -8,10 +8,10 @@ namespace aeolis::flight {
 /// The one owner of the choice between redundant units. Each device manager addresses the unit that it is told; none
 /// changes over by itself, and from "do edl" on the choice stands: EDL has no time to switch. R2, R5
 ///
-/// In      SelectUnitsCommand; EdlBegun from Edl; ClockTick; UnitsSelected (as prime held them, for a computer that
+/// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (as prime held them, for a computer that
 ///         takes over)
 /// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels of
-///         the choice, each 10 s and when it changes, but none from a computer that only follows prime
+///         the choice, each 10 s and when it changes, but none from a computer that only follows or stands by
 /// Faults  a selection after "do edl" is refused (wrong_phase): nothing is changed
 class UnitSelector {
   public:
@@ -19,6 +19,7 @@ class UnitSelector {
 
     void on(const SelectUnitsCommand& command, Outbox& out);
     void on(const EdlBegun& begun, Outbox& out);
+    void on(const StandBy& stand_by, Outbox& out);
     void on(const UnitsSelected& taken_over, Outbox& out);
     void on(const ClockTick& tick, Outbox& out);
 

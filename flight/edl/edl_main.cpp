@@ -42,7 +42,8 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     explain_held(output_, held_, out);
     if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
     update_phase(tick.now, out);
-    record_channels(tick.now, out);
+    // After a restart it learns in its second cycle what it was about: until then it would speak of a vehicle that has not begun.
+    if (!after_restart) record_channels(tick.now, out);
     constraint_monitor_.report(out);
     tell_state(tick.now, out);
     out.send(ModuleId::sync, Confirm{ModuleId::edl});

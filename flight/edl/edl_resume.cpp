@@ -45,7 +45,7 @@ void EdlMain::restart(Sclk now, Outbox& out) {
     // By what the other computer was last told: it takes over from just that state on which this one stands by.
     if (timeline_.begun() && !pre_edl(load_.told_until.value_or(now))) {
         activity_ = Activity::stands_by;
-        out.send(ModuleId::mfsk, StandBy{});
+        for (const ModuleId silent : {ModuleId::mfsk, ModuleId::units}) out.send(silent, StandBy{});
         return out.event(evr::PRIME_STANDS_BY{});
     }
     out.send(ModuleId::mfsk, ToneRequest{tone::computer_started, now});

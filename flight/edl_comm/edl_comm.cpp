@@ -5,6 +5,20 @@
 #include <algorithm>
 
 namespace aeolis::flight {
+namespace {
+
+static_assert(packet::CommStatusB::octets == packet::CommStatus::octets && packet::SyncStatusB::octets == packet::SyncStatus::octets,
+              "the same fields, under names of computer B");
+
+/// What both computers say of themselves at all times has names of its own for each; all else is the vehicle's, whoever flies it.
+Apid apid_of(String string, Apid apid) {
+    if (string == String::a) return apid;
+    if (apid == packet::CommStatus::apid) return packet::CommStatusB::apid;
+    if (apid == packet::SyncStatus::apid) return packet::SyncStatusB::apid;
+    return apid;
+}
+
+}  // namespace
 
 EdlComm::EdlComm(const Load& load)
     : octets_per_cycle_(load.uhf_rate_bps / 8.0 * seconds_per_tick), string_(load.string), plan_(load.telemetry_plan) {
@@ -22,10 +36,11 @@ void EdlComm::on(const Record& record, Outbox& out) {
     TelemetryPacket packet;
     packet.size = static_cast<std::uint16_t>(record.size + tm_overhead_octets);
     std::copy_n(record.data.begin(), record.size, packet.octets.begin() + tm_data_offset_octets);
-    auto& stream = streams_[record.apid.value % streams_.size()];
-    seal_tm_packet(std::span{packet.octets}.first(packet.size), record.apid, stream.count, record.time, dictionary_id);
+    const Apid apid = apid_of(string_, record.apid);
+    auto& stream = streams_[apid.value % streams_.size()];
+    seal_tm_packet(std::span{packet.octets}.first(packet.size), apid, stream.count, record.time, dictionary_id);
     stream.count = (stream.count + 1) & 0x3FFF;
-    const TelemetryPlanRow& plan = planned(plan_, record.apid);
+    const TelemetryPlanRow& plan = planned(plan_, apid);
     // Only what is recorded may be sent: real time stays a subset of the recording.
     if (append_to_recording(plan.priority, packet, out)) offer_to_link(plan, stream, packet, out);
     products_.on(record);

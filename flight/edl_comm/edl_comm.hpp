@@ -23,6 +23,7 @@ namespace aeolis::flight {
 ///         A record that no packet can hold is refused as an unexpected message
 /// Whole packets go together in a Proximity-1 frame, expedited, of this computer's own physical channel. When more waits, a
 /// frame is not sent before it can hold 256 octets (ours: at 8 kb/s a quarter of a second, and 5 % for the frame itself).
+/// What computer B says of itself goes as CommStatusB and SyncStatusB, so that a channel is of one computer.
 /// Records are packets, each with a CRC-16 over all of it; NVM is outside the computer and outlives its resets.
 class EdlComm {
   public:

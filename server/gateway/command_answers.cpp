@@ -25,7 +25,9 @@ void CommandGateway::receive(std::span<const std::uint8_t> packet, bool live, Er
     if (decommutator_.decode(packet, decoded_)) return;
     const auto& container = dictionary_.packets[decoded_.packet];
     if (live) note_channels(container, ert);
-    if (live && clcw_ && decoded_.packet == clcw_->packet && decoded_.value[clcw_->field]) hear_clcw(ert, stages);
+    if (live)
+        for (const FieldPlace& clcw : clcw_)
+            if (decoded_.packet == clcw.packet && decoded_.value[clcw.field]) hear_clcw(static_cast<std::uint32_t>(*decoded_.value[clcw.field]), ert, stages);
     if (underway_.empty()) return;
     if (container.event) note_answer(ert, stages);
     note_report(container, packet, ert, stages);

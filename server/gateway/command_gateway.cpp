@@ -64,14 +64,16 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                                std::vector<commands::NamedValue> solution, std::vector<std::string> second_person,
                                commands::TrackingSchedule stations, std::optional<Scet> entry)
-    : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), clcw_(clcw_place(dictionary)),
+    : dictionary_(dictionary), decommutator_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)),
       link_(light_time_s), solution_(std::move(solution)), second_person_(std::move(second_person)),
       stations_(std::move(stations)), deadlines_(dictionary, entry, light_time_s), heard_(dictionary.channels.size()) {}
 
-std::optional<CommandGateway::FieldPlace> CommandGateway::clcw_place(const dictionary::Dictionary& dictionary) {
+std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictionary::Dictionary& dictionary) {
+    std::vector<FieldPlace> places;
     for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
-        if (const auto field = telemetry::field_index(dictionary.packets[packet], "clcw")) return FieldPlace{packet, *field};
-    return std::nullopt;
+        for (const std::string_view name : {"clcw", "clcw_b"})
+            if (const auto field = telemetry::field_index(dictionary.packets[packet], name)) places.push_back({packet, *field});
+    return places;
 }
 
 Result<void> CommandGateway::takes(std::size_t more) const {

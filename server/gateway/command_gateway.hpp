@@ -165,10 +165,10 @@ class CommandGateway {
     void doubt_after(std::uint64_t undone, Ert now, std::vector<archive::StageRecord>& stages);
     /// When a pass begins: what the vehicle has not acknowledged would be radiated again, so its preconditions are looked at again.
     void begin_pass(Ert now, std::vector<archive::StageRecord>& stages);
-    static std::optional<FieldPlace> clcw_place(const dictionary::Dictionary& dictionary);
+    static std::vector<FieldPlace> clcw_places(const dictionary::Dictionary& dictionary);
     Underway* underway(std::optional<std::uint64_t> number);
     void radiate(Ert now, std::vector<archive::StageRecord>& stages);
-    void hear_clcw(Ert ert, std::vector<archive::StageRecord>& stages);
+    void hear_clcw(std::uint32_t word, Ert ert, std::vector<archive::StageRecord>& stages);
     void note_frames(Ert now, std::vector<archive::StageRecord>& stages);
     std::vector<commands::LatestValue> latest(Ert now) const;
     void note_channels(const dictionary::Packet& packet, Ert ert);
@@ -182,7 +182,7 @@ class CommandGateway {
     telemetry::Decommutator decommutator_;
     telemetry::Decoded decoded_;
     double light_time_s_;
-    std::optional<FieldPlace> clcw_; ///< where telemetry has it; none in a dictionary without
+    std::vector<FieldPlace> clcw_; ///< where telemetry has it, of each computer; none in a dictionary without
     commands::CommandQueue queue_;
     commands::CommandLink link_;
     std::vector<std::vector<std::uint8_t>> uplinks_;

@@ -170,9 +170,9 @@ void CommandGateway::note_frames(Ert now, std::vector<archive::StageRecord>& sta
     }
 }
 
-void CommandGateway::hear_clcw(Ert ert, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::hear_clcw(std::uint32_t word, Ert ert, std::vector<archive::StageRecord>& stages) {
     std::array<std::uint8_t, clcw_octets> octets{};
-    BitWriter{octets}.put(static_cast<std::uint32_t>(*decoded_.value[clcw_->field]), 32);
+    BitWriter{octets}.put(word, 32);
     const auto clcw = read_clcw(octets);
     if (!clcw) return;
     link_.hear(*clcw, ert);

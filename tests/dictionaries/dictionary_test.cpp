@@ -221,3 +221,19 @@ TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
         mission.write(file, sound);
     }
 }
+
+TEST_CASE("what a computer says of itself has the same fields for both, in order, and other channels", "[dictionary][R29]") {
+    for (const std::string name : {"CommStatus", "SyncStatus"}) {
+        const auto& a = *msl().packet(name);
+        const auto& b = *msl().packet(name + "B");
+        INFO(name);
+        CHECK(a.octets == b.octets);
+        REQUIRE(a.fields.size() == b.fields.size());
+        for (std::size_t i = 0; i < a.fields.size(); ++i) {
+            CHECK(b.fields[i].name == a.fields[i].name + "_b");
+            CHECK(b.fields[i].type.name == a.fields[i].type.name);
+            CHECK(b.fields[i].position_bits == a.fields[i].position_bits);
+            CHECK(b.fields[i].channel != a.fields[i].channel);
+        }
+    }
+}

@@ -64,6 +64,22 @@ TEST_CASE("every record is sealed as a packet and appended to the recording", "[
     CHECK(second->primary.count == first->primary.count + 1);
 }
 
+TEST_CASE("what computer B says of itself has names of its own, what it says of the vehicle has none", "[edl_comm][R29]") {
+    const auto recorded_as = [](Apid apid, String string) {
+        Load load;
+        load.string = string;
+        EdlComm comm{load};
+        test::OutboxRecorder recorder{ModuleId::edl_comm};
+        comm.on(roomy, recorder.out);
+        comm.on(record(apid), recorder.out);
+        return read_tm_packet(recorder.bus->nvm.span())->primary.apid;
+    };
+    CHECK(recorded_as(packet::CommStatus::apid, String::a) == packet::CommStatus::apid);
+    CHECK(recorded_as(packet::CommStatus::apid, String::b) == packet::CommStatusB::apid);
+    CHECK(recorded_as(packet::SyncStatus::apid, String::b) == packet::SyncStatusB::apid);
+    CHECK(recorded_as(packet::GncImu::apid, String::b) == packet::GncImu::apid);
+}
+
 TEST_CASE("what is radiated is what was recorded, bit for bit", "[edl_comm][R29]") {
     Fixture f;
     f.handle(record(packet::TimepointFired::apid));

@@ -88,3 +88,10 @@ TEST_CASE("the backup follows prime's units in silence, and reports them once ED
     units.on(EdlBegun{});
     CHECK(units.on(ClockTick{Sclk{1010.0}}, Sclk{1010.0}).packets<packet::UnitsHeld>() == 1);
 }
+
+TEST_CASE("a prime that stands by says nothing of the units: the other computer does", "[devices][R2][R33]") {
+    test::Spoken<UnitSelector> units{ModuleId::units};
+    units.on(EdlBegun{});
+    units.on(StandBy{});
+    CHECK(units.on(ClockTick{Sclk{1010.0}}, Sclk{1010.0}).packets<packet::UnitsHeld>() == 0);
+}

@@ -322,6 +322,19 @@ TEST_CASE("a frame that the vehicle misses is radiated again, and the history sa
     CHECK(station.latest("accepted")->status == "pending"); // a frame taken is no command accepted
 }
 
+TEST_CASE("a frame that either computer reports is received: the backup's report counts when prime is silent", "[gateway][R33][R44]") {
+    Station station;
+    const auto report = [&](std::uint8_t expected, Ert at) {
+        std::array<std::uint8_t, clcw_octets> clcw{};
+        write_clcw({.expected = expected}, clcw);
+        station.gateway.receive(packet_of("CommStatusB", {{"clcw_b", read_bits(clcw, 0, 32)}}), true, at, station.stages);
+    };
+    report(0, now);
+    REQUIRE(station.send(request("NO_OP")).accepted());
+    report(1, Ert{now.microseconds + 15'000'000});
+    CHECK(station.latest("received")->status == "ok");
+}
+
 TEST_CASE("a vehicle that is not heard gets the expedited service, unless the controller asks otherwise", "[gateway][R44]") {
     Station station;
     REQUIRE(station.send(request("NO_OP")).accepted());

@@ -4,10 +4,13 @@
 #include "telemetry/packet_stream.hpp"
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 using namespace aeolis;
@@ -23,6 +26,7 @@ struct Recorded {
     std::vector<std::pair<std::uint16_t, Sclk>> firings;
     std::vector<Sclk> navigation;
     std::vector<std::uint8_t> tones;
+    std::map<std::pair<std::string, Sclk>, int> statements;  ///< of each packet with channels and time
 
     explicit Recorded(const Landing& landing) {
         telemetry::PacketStream packets{landing.recording()};
@@ -36,8 +40,16 @@ struct Recorded {
             if (apid == flight::packet::TimepointFired::apid)
                 firings.emplace_back(static_cast<std::uint16_t>(field(16)), header->time);
             if (apid == flight::packet::GncNavigation::apid) navigation.push_back(header->time);
+            if (const auto* of_channels = packet_with_channels(apid)) ++statements[{of_channels->name, header->time}];
             if (apid == flight::packet::ToneSelected::apid) tones.push_back(static_cast<std::uint8_t>(field(8)));
         }
+    }
+    static const dictionary::Packet* packet_with_channels(Apid apid) {
+        const auto& packets = tests::shipped_dictionary().packets;
+        const auto found = std::ranges::find_if(packets, [&](const dictionary::Packet& packet) {
+            return packet.apid == apid && std::ranges::any_of(packet.fields, [](const dictionary::Field& field) { return field.channel.has_value(); });
+        });
+        return found == packets.end() ? nullptr : &*found;
     }
     template <typename Evr>
     std::vector<Sclk> times() const {
@@ -97,6 +109,28 @@ TEST_CASE("a reset in guided entry: Second Chance flies within a second, with it
     CHECK(std::ranges::count(recorded.tones, flight::tone::sc_touchdown.value) == 1);
     CHECK(recorded.times<flight::evr::SECOND_CHANCE_OFF>().size() == 1);
     CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
+}
+
+TEST_CASE("a channel is of one computer at any time: both speak at once, one takes over, the other starts again on a whole second",
+          "[second_chance][R29][R33]") {
+    Commanded run{900.0};
+    run.fly_to(120.0);
+    while (at_resolution(run.landing.sclk(), 1) != run.landing.sclk()) run.landing.step();
+    const Sclk reset = run.landing.sclk();
+    run.landing.reset_prime();
+    run.fly(60.0);
+    const Recorded recorded{run.landing};
+    REQUIRE(recorded.times<flight::evr::SECOND_CHANCE_TAKES_OVER>().size() == 1);
+    REQUIRE(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
+    std::map<std::string, int> packets;
+    for (const auto& [said, times] : recorded.statements) {
+        INFO(said.first << " at " << said.second.seconds);
+        CHECK(times == 1);
+        ++packets[said.first];
+    }
+    const auto silent_s = static_cast<int>(recorded.times<flight::evr::PRIME_STANDS_BY>()[0] - reset);
+    CHECK(packets["CommStatusB"] == packets["CommStatus"] + silent_s);
+    CHECK(packets["SyncStatusB"] == packets["SyncStatus"] + silent_s);
 }
 
 TEST_CASE("after a take-over only essential timepoints act", "[second_chance][R33]") {
