@@ -4,7 +4,8 @@ import { access } from './access/model';
 import { App } from './app';
 import { startLoop } from './draw/loop';
 import { refineWhatIsLookedAt } from './run/detail';
-import { begin, dictionary } from './run/session';
+import { begin } from './run/session';
+import { dictionary } from './run/shown';
 import { onKey } from './shortcuts/model';
 import './style.css';
 

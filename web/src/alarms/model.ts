@@ -4,7 +4,8 @@ import { uplink } from '../commands/line';
 import type { Status } from '../design/status';
 import { wordsFor } from '../run/api';
 import { isWorst } from '../run/limits';
-import { change, read, store } from '../run/session';
+import { change, read } from '../run/connection';
+import { store } from '../run/shown';
 import type { RunStore } from '../run/store';
 
 export interface AlarmState {

@@ -3,7 +3,7 @@ import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
 import { STATUS } from '../design/status';
 import { numberText } from '../run/dictionary';
-import { dictionary, pastRange, runNow } from '../run/session';
+import { dictionary, pastRange, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { act, acting, actionsOn, alarms, listed, lookOf, note, problem, shelveFor, sound, toAcknowledge, toggleSound } from './model';
 import type { AlarmState } from './model';

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { Canvas } from '../draw/canvas';
-import { scenarios } from '../run/session';
+import { scenarios } from '../run/shown';
 import {
   busy, campaigns, cancel, choose, chosen, ellipseWords, flyingNow, limits, look, message, orderProblem, report, spreadRows, start, stateWords, touchdowns,
 } from './model';

@@ -1,7 +1,7 @@
 // @vitest-environment happy-dom
 import { effect } from '@preact/signals';
 import { afterEach, beforeEach, expect, it, vi } from 'vitest';
-import { rowsTick as tick } from '../run/session';
+import { rowsTick as tick } from '../run/shown';
 import { sight, whenDue } from './due';
 
 let shown: Map<number, number>;

@@ -2,7 +2,7 @@
 // everything else that a tick changes, so what is out of sight takes turns, and is as new as the rest once nothing changes any more.
 import { computed, effect, signal } from '@preact/signals';
 import type { ReadonlySignal } from '@preact/signals';
-import { rowsTick } from '../run/session';
+import { rowsTick } from '../run/shown';
 
 const BLOCK = 8; // ours: rows that are in sight or out of it together
 const TURNS = 8; // ours: ticks for all that is out of sight

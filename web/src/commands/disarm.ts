@@ -1,6 +1,6 @@
 // Another run, or the past, is looked at: what was armed is taken back, for a name typed to one vehicle must never send to another.
 import { effect, untracked } from '@preact/signals';
-import { pastRange, store } from '../run/session';
+import { pastRange, store } from '../run/shown';
 import { disarmFile } from './file';
 import { disarm } from './line';
 

@@ -2,7 +2,8 @@
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';
 import { Refused, isOpen, wordsFor } from '../run/api';
-import { change, dictionary, store } from '../run/session';
+import { change } from '../run/connection';
+import { dictionary, store } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { confirms, hazardousIn, readFile, sequenceOf } from './file_model';
 import type { SequenceAnswer } from './file_model';

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
-import { notify, runNow, store } from '../run/session';
+import { notify, runNow, store } from '../run/shown';
 import { backFile, commands, disarmFile, file, forwardFile, hazardous, outcome, read, stage, text, triedNow, tryFile, typedNames } from './file';
 import { FILE_OCTETS_MAX, TOO_LONG } from './file_model';
 import type { FileReply } from './file_model';

@@ -2,7 +2,8 @@
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';
-import { OutcomeUnknown, dictionary, pastRange, sendCommand, store, tick, whyNotSent } from '../run/session';
+import { OutcomeUnknown, sendCommand, whyNotSent } from '../run/connection';
+import { dictionary, pastRange, store, tick } from '../run/shown';
 import type { CommandIntent, QueueAction } from '../stream/messages';
 import { AT_ONCE, argumentOffers, candidates, fieldsOf, intentOf, isHazardous, readLine, unknownNames } from './model';
 import type { Step, UplinkText } from './model';

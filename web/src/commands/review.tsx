@@ -3,7 +3,7 @@ import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';
-import { runNow, store } from '../run/session';
+import { runNow, store } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { moved } from '../timeline/now';
 import { confirmation, fields, formText, intentKey, openCommandLine, previewNow, problemNow, step, tryOut, typed, uplink } from './line';

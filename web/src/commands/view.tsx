@@ -1,7 +1,7 @@
 // Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
 import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';
-import { hasNoCommands, pastRange, takesCommands } from '../run/session';
+import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
 import './disarm';
 import { CommandFile } from './file_view';
 import { History, Queue } from './history';

@@ -12,15 +12,15 @@ const frames = (count: number) => {
 const column = (sclk: number) => ({ id: 3, recorded: false, sclk: Float64Array.of(sclk), value: Float64Array.of(1) });
 let onDraw: typeof import('./loop').onDraw;
 let run: RunStore;
-let session: typeof import('../run/session');
+let shown: typeof import('../run/shown');
 
 beforeEach(async () => {
   vi.stubGlobal('requestAnimationFrame', (then: FrameRequestCallback) => (next = then));
   vi.resetModules();
   const loop = await import('./loop');
-  session = await import('../run/session');
+  shown = await import('../run/shown');
   ({ onDraw } = loop);
-  session.store.value = run = new RunStore(aRun());
+  shown.store.value = run = new RunStore(aRun());
   loop.startLoop();
   now_ms = 1000;
 });
@@ -88,7 +88,7 @@ describe('the loop', () => {
     for (let i = 0; i < 40; ++i) {
       run.update(aRun());
       frames(1);
-      seen.push([session.tick.value, session.rowsTick.value]);
+      seen.push([shown.tick.value, shown.rowsTick.value]);
     }
     const changes = seen.slice(1).map(([tick, rows], i) => [tick - (seen[i] as [number, number])[0], rows - (seen[i] as [number, number])[1]]);
     expect(changes.every(([tick, rows]) => !(tick && rows))).toBe(true);

@@ -2,7 +2,7 @@
 // nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
 import { step } from '../replay/model';
 import { Pace } from '../run/pace';
-import { rowsTick, store, tick } from '../run/session';
+import { rowsTick, store, tick } from '../run/shown';
 
 const DRAW_EVERY_MS = 50;
 const FRAME_EARLY_MS = 4; // frames do not come to the millisecond

@@ -1,6 +1,6 @@
 import { signal } from '@preact/signals';
 import { Panel } from '../design/panel';
-import { pastRange, runNow } from '../run/session';
+import { pastRange, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { LEVELS, eventLines, levelShape, levelWords, sourceWords } from './model';
 import './style.css';

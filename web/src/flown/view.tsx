@@ -3,7 +3,7 @@
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { linkTitle } from '../links/model';
 import { reportOfRun } from '../run/report';
-import { pastRange, runNow } from '../run/session';
+import { pastRange, runNow } from '../run/shown';
 import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
 
 const AGAIN_MS = 5000; // ours: while a run goes on; counting it is work for the archive

@@ -6,7 +6,7 @@ import { LAYOUT } from '../layout';
 import { phaseSteps } from '../phases/model';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { heardOf } from '../timeline/heard';
-import { cutoff, dictionary, modeNow, runNow, timepoints, withRecording } from '../run/session';
+import { cutoff, dictionary, modeNow, runNow, timepoints, withRecording } from '../run/shown';
 import type { Dictionary } from '../run/dictionary';
 import type { RunStore } from '../run/store';
 import type { Mode } from '../mode/model';

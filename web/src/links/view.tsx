@@ -1,7 +1,8 @@
 // The links side by side: which is up, which is silent and why, what each brought and lost.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { proofOfRun } from '../proof/report';
-import { cutoff, pastRange, runNow, stream } from '../run/session';
+import { stream } from '../run/connection';
+import { cutoff, pastRange, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { framesKept, linkTitle, linkViews } from './model';
 import type { LinkView } from './model';

@@ -1,5 +1,7 @@
 // The mode, where no one can miss it: tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
-import { backToLive, modeNow, pastRange, replay, runNow, stream } from '../run/session';
+import { stream } from '../run/connection';
+import { backToLive } from '../run/session';
+import { modeNow, pastRange, replay, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { Reading } from '../replay/view';
 import { MODES, isReal, panelMark } from './model';

@@ -2,7 +2,8 @@
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';
 import { wordsFor } from '../run/api';
-import { change, read, store } from '../run/session';
+import { change, read } from '../run/connection';
+import { store } from '../run/shown';
 import type { RunStore } from '../run/store';
 
 export interface NoteRow {

@@ -3,7 +3,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayAct } from '../access/model';
 import { Signature } from '../commands/signature';
-import { cutoff, pastRange, runNow } from '../run/session';
+import { cutoff, pastRange, runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { found, notes, problem, refreshNotes, write, writing } from './model';
 import './style.css';

@@ -1,5 +1,5 @@
 // The strip that says where in the landing we are, to be read across a room.
-import { cutoff, dictionary, runNow, timepoints } from '../run/session';
+import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { predicted } from '../timeline/now';
 import { nextWords, phaseSteps } from './model';

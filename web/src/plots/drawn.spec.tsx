@@ -3,7 +3,8 @@ import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { expect, it, vi } from 'vitest';
 import { cursor } from '../run/cursor';
-import { backToLive, lookAtPast, useForTest } from '../run/session';
+import { backToLive, useForTest } from '../run/session';
+import { lookAtPast } from '../run/shown';
 import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
 import { Plots } from './view';
 

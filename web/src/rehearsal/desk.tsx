@@ -4,7 +4,7 @@ import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { access, mayRehearse } from '../access/model';
 import { Signature } from '../commands/signature';
-import { runNow } from '../run/session';
+import { runNow } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { FaultForm, faultWords } from './faults';
 import { busy, message, ofRun, refreshInterventions, write } from './instructor';

@@ -4,7 +4,8 @@ import { mayRehearse } from '../access/model';
 import { uplink } from '../commands/line';
 import { OCTETS } from '../notes/model';
 import { Refused, wordsFor } from '../run/api';
-import { change, read, signalOfRun, store } from '../run/session';
+import { change, read } from '../run/connection';
+import { signalOfRun, store } from '../run/shown';
 import type { RunStore } from '../run/store';
 
 /** As the API words it. */

@@ -1,6 +1,7 @@
 // @vitest-environment happy-dom
 import { afterEach, describe, expect, it } from 'vitest';
-import { cutoff, modeNow, pastRange, replay, takesCommands, useForTest } from '../run/session';
+import { useForTest } from '../run/session';
+import { cutoff, modeNow, pastRange, replay, takesCommands } from '../run/shown';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { advanced, changeReplayPace, playOrHold, startReplay, step, toggleReplay } from './model';
 

@@ -1,7 +1,8 @@
 // A replay: the run's past played again at a pace. Every panel shows what had been heard by then and nothing later, or, where that is
 // asked for, what had happened by then with all that the recording tells of it.
 import { LAYOUT } from '../layout';
-import { backToLive, pastRange, replay, store, withRecording } from '../run/session';
+import { backToLive } from '../run/session';
+import { pastRange, replay, store, withRecording } from '../run/shown';
 import type { RunStore } from '../run/store';
 
 const REPLAY_PACES = [1, 2, 5, 10, 20, 50] as const;

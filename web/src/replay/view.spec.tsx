@@ -2,7 +2,8 @@
 import { render } from 'preact';
 import { act } from 'preact/test-utils';
 import { expect, it } from 'vitest';
-import { pastRange, useForTest, withRecording } from '../run/session';
+import { useForTest } from '../run/session';
+import { pastRange, withRecording } from '../run/shown';
 import { LATE_LIMIT } from '../run/store';
 import { aDictionary, aStore, unit } from '../testing/fixtures';
 import { Reading } from './view';

@@ -1,5 +1,6 @@
 // The bar of a replay: where it is, how fast, and the way back.
-import { backToLive, cutoff, pastRange, replay, runNow, withRecording } from '../run/session';
+import { backToLive } from '../run/session';
+import { cutoff, pastRange, replay, runNow, withRecording } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { boundsOf, changeReplayPace, playOrHold, seek, toggleRecording } from './model';
 import './style.css';

@@ -1,6 +1,6 @@
 // The instant that is pointed at, one for plots, tones and timeline. By mouse where it is drawn, by key anywhere.
 import { effect, signal } from '@preact/signals';
-import { cutoff, shownRun, store } from './session';
+import { cutoff, shownRun, store } from './shown';
 import { plotSpan } from './window';
 
 /** Seconds from entry; undefined: none. */

@@ -4,7 +4,8 @@ import { effect, untracked } from '@preact/signals';
 import { seriesPath } from '../recorded/model';
 import { columnsOf } from '../stream/series_answer';
 import type { SeriesAnswer } from '../stream/series_answer';
-import { ask, asHeard, plottedChannels, store } from './session';
+import { ask } from './connection';
+import { asHeard, plottedChannels, store } from './shown';
 import { zoomedTo } from './window';
 
 const POINTS = 1000; // ours: of a channel, one a pixel of a usual plot; more takes longer to come than a step of zoom may

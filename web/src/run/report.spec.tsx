@@ -5,7 +5,8 @@ import { afterEach, beforeEach, expect, it, vi } from 'vitest';
 import type { ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
 import { reportOfRun } from './report';
-import { onMessage, store, useForTest } from './session';
+import { onMessage, useForTest } from './session';
+import { store } from './shown';
 
 const asked: Extract<ToWorker, { type: 'ask' }>[] = [];
 const passes = (ms: number) => act(async () => void (await vi.advanceTimersByTimeAsync(ms)));

@@ -3,7 +3,8 @@ import { signal } from '@preact/signals';
 import type { Signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import type { Question } from '../stream/messages';
-import { ask, store } from './session';
+import { ask } from './connection';
+import { store } from './shown';
 
 export interface ReportOfRun<T> {
   /** In a view: the newest of the run that is shown; undefined until it has come. */

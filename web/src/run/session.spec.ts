@@ -7,7 +7,9 @@ import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore } from '../testing/fixtures';
-import { ask, backToLive, change, control, dismissNotice, lookAtPast, notices, onMessage, pastRange, read, refreshRuns, runs, sendCommand, store, useForTest, watched } from './session';
+import { ask, change, control, read, sendCommand } from './connection';
+import { backToLive, onMessage, refreshRuns, useForTest } from './session';
+import { dismissNotice, lookAtPast, notices, pastRange, runs, store, watched } from './shown';
 
 const soon = () => vi.advanceTimersByTimeAsync(0);
 

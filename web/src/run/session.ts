@@ -1,105 +1,20 @@
-// The page's side of the worker: what is connected, which run is looked at, and the signals the panels read.
-import { computed, effect, signal, untracked } from '@preact/signals';
-import type { Signal } from '@preact/signals';
-import type { AnchorRow, CommandReply, RunState, ScenarioList, TimepointList, TimepointRow } from '../gen/aeolis/v1/run_pb';
-import type { CommandIntent, ControlAction, FromWorker, Question, StreamState, ToWorker } from '../stream/messages';
-import { LAYOUT } from '../layout';
-import { modeOf, resumedWords } from '../mode/model';
-import type { Mode } from '../mode/model';
-import { access, admitted, learnAccess, mayAct } from '../access/model';
+// What leads from run to run: which one is followed, what of it is learnt from the server and when, and how the page begins.
+import { effect } from '@preact/signals';
+import type { RunState, ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';
+import type { FromWorker, ToWorker } from '../stream/messages';
+import { resumedWords } from '../mode/model';
+import { access, admitted, learnAccess } from '../access/model';
 import { refreshAlarms } from '../alarms/model';
-import { Refused, call, giveUpReads, turnedAway, wordsFor } from './api';
+import { Refused, call, giveUpReads, wordsFor } from './api';
+import { ask, giveUpCommands, inDoubt, post, sendBy, stream, takeAnswer } from './connection';
 import { Dictionary } from './dictionary';
-import { namedChannels, wantedRun } from './address';
+import { wantedRun } from './address';
 import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
 import { isSameRun } from './same';
+import { anchors, asHeard, dictionary, notify, pastRange, plottedChannels, replay, runs, scenarios, store, tick, timepoints, watched } from './shown';
 import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
-
-export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
-  state: 'connecting', attempt: 0, gaps: 0, serverVersion: '',
-});
-export const isLost = computed(() => stream.value.state === 'lost');
-export const store = signal<RunStore | undefined>(undefined);
-/** What belongs to the run that is shown: once it is another one, as it was at first. */
-export function signalOfRun<T>(first: T): Signal<T> {
-  const value = signal(first);
-  const shown = computed(() => store.value?.id);
-  effect(() => {
-    void shown.value;
-    untracked(() => (value.value = first));
-  });
-  return value;
-}
-export const dictionary = signal<Dictionary | undefined>(undefined);
-export const timepoints = signal<TimepointRow[]>([]);
-export const anchors = signal<AnchorRow[]>([]);
-export const runs = signal<RunState[]>([]);
-export const scenarios = signal<{ name: string; title: string }[]>([]);
-/** The run asked for: 0 is "the one that is going on". */
-export const watched = signal(0);
-/** Five times a second, when something has changed. Numbers on the screen follow this and nothing faster. */
-export const tick = signal(0);
-/** Follows it a frame later: for tables so long that they take a frame of their own. */
-export const rowsTick = signal(0);
-/** A part of the run looked at as the past, in seconds from entry; undefined: not a past view. */
-export const pastRange = signal<{ from: number; to: number } | undefined>(undefined);
-/** Of a past view: with what only the recording told, or as it was heard then. */
-export const withRecording = signal(false);
-
-/** The run as every panel shows it. */
-export function shownRun(): RunStore | undefined {
-  const run = store.value;
-  return pastRange.value && !withRecording.value ? run?.asHeardBy(cutoff.value, packetOf) : run;
-}
-const packetOf = (channel: number): string | undefined => dictionary.value?.channel(channel)?.packet;
-/** The same, read by a view: it is then shown again at each tick, for a store changes without becoming another. */
-export function runNow(): RunStore | undefined {
-  void tick.value;
-  return shownRun();
-}
-
-export interface Notice {
-  id: number;
-  text: string;
-}
-export const notices = signal<Notice[]>([]);
-let lastNotice = 0;
-
-export function notify(text: string): void {
-  const shown = notices.value.filter((notice) => notice.text !== text);
-  notices.value = [...shown.slice(-3), { id: ++lastNotice, text }];
-}
-export function dismissNotice(id?: number): void {
-  notices.value = id === undefined ? [] : notices.value.filter((notice) => notice.id !== id);
-}
-
-/** SCLK up to which things are shown: the end of the past view, else all. */
-export const cutoff = computed(() =>
-  pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity);
-
-/** A replay: the past view whose end moves on. `pastRange` is then what has been replayed so far. */
-export const replay = signal<{ pace: number; playing: boolean } | undefined>(undefined);
-
-/** Read with `tick`: a run's own state changes without a new store. */
-export function modeNow(): Mode {
-  void tick.value;
-  return modeOf(store.value, pastRange.value !== undefined, replay.value !== undefined);
-}
-
-/** Of a mission that is only listened to. */
-export const hasNoCommands = (): boolean => dictionary.value?.commands.length === 0;
-
-/** Whether a command can be sent from what is shown. */
-export function takesCommands(): boolean {
-  return ['live', 'rehearsal'].includes(modeNow()) && mayAct() && !hasNoCommands();
-}
-
-export function lookAtPast(range: { from: number; to: number }, recorded: boolean): void {
-  withRecording.value = recorded;
-  pastRange.value = range;
-}
 
 export function backToLive(): void {
   replay.value = undefined;
@@ -124,94 +39,10 @@ const SESSION_MS = 5000; // ours: a stream by which the server does not know thi
 
 const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
-let worker: Worker | undefined;
-const forWorker: ToWorker[] = []; // until there is one
-let lastAsk = 0;
-let lastRequest = 0;
-const asked = new Map<number, { resolve: (value: unknown) => void; reject: (error: Error) => void }>();
-const requests = new Map<number, { resolve: (reply: CommandReply) => void; reject: (error: Error) => void }>();
-/** Sent and given up on: what an answer that comes late is about. */
-const unanswered = new Map<number, string>();
-
-function post(message: ToWorker): void {
-  if (worker) worker.postMessage(message);
-  else forWorker.push(message);
-}
-
-/**
- * Since the connection broke, until the server that came back has said that it has the very run that is shown: what answers may have another archive,
- * with no such run, or another one of its number.
- */
-let inDoubt = false;
-
-/** Throws then: before anything of the run is asked. */
-export function refuseInDoubt(): void {
-  if (inDoubt) throw new Refused(0, 'not connected: nothing was asked');
-}
-
-/** Asks an HTTP route by the worker; rejects with the server's own words. */
-export async function ask<T>(question: Question, path: string): Promise<T> {
-  if (path.startsWith('/runs/')) refuseInDoubt();
-  const number = ++lastAsk;
-  return new Promise<T>((resolve, reject) => {
-    asked.set(number, { resolve: resolve as (value: unknown) => void, reject });
-    post({ type: 'ask', ask: number, question, path });
-  });
-}
-
-/** Why nothing can be sent now; undefined where the server has said that this very run is what it has, and all of it is here. */
-export function whyNotSent(): string | undefined {
-  const { state } = stream.value;
-  return state === 'live' ? undefined : state === 'catching_up' ? 'catching up: nothing was sent' : NOT_SENT;
-}
-
-/** Of the run that is shown, if no other is named: another that goes on meanwhile is not touched. */
-export function control(action: ControlAction, run = store.value?.id ?? 0): void {
-  const why = whyNotSent();
-  if (why === undefined) post({ type: 'control', run, control: action });
-  else notify(why);
-}
-
-/** Asks of the run that is shown, over HTTP: what has a small answer. */
-export async function read<T>(path: string): Promise<T> {
-  refuseInDoubt();
-  return call<T>('GET', path);
-}
-
-/** Changes something of it, so too. */
-export async function change<T>(path: string, body: object, within_ms?: number): Promise<T> {
-  const why = whyNotSent();
-  if (why === undefined) return call<T>('POST', path, body, within_ms);
-  await learnAccess().catch(() => undefined); // the end of a session ends the connection, too
-  throw new Refused(409, access.value.state === 'out' ? 'log in first' : why);
-}
-
 /** What is looked at stays until the new run is there, or the one that was cut off has caught up. Throws the server's words. */
 export async function startRehearsal(order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number }, isWaitedFor = () => true): Promise<void> {
   await call('POST', '/rehearsals', order, Infinity); // one that was cut off is flown again as far as it had come before the answer is there
   if (isWaitedFor()) watch(0);
-}
-
-const NOT_SENT = 'not connected: nothing was sent';
-const ANSWER_WITHIN_MS = 30_000; // ours: longer than any question of the server may take
-
-/** Sent, and no answer will come: it may have been taken or not. */
-export class OutcomeUnknown extends Error {}
-
-/** Sends once. Rejects when nothing was sent, and with OutcomeUnknown when it was and no answer came. Only the reply that bears its number is its answer. */
-export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
-  const why = whyNotSent();
-  if (why !== undefined) return Promise.reject(new Error(why));
-  const request = ++lastRequest;
-  return new Promise((resolve, reject) => {
-    requests.set(request, { resolve, reject });
-    setTimeout(() => {
-      if (!requests.delete(request)) return;
-      if (!intent.dryRun) unanswered.set(request, intent.command ?? `${intent.action} of command ${intent.number}`);
-      reject(new OutcomeUnknown(`no answer came in ${ANSWER_WITHIN_MS / 1000} s: whether it was taken is not known; the history below will say`));
-    }, ANSWER_WITHIN_MS);
-    post({ type: 'command', request, run: store.value?.id ?? 0, intent });
-  });
 }
 
 export function watch(run: number): void {
@@ -230,8 +61,6 @@ export function watch(run: number): void {
 
 /** Thinned together with the recording, few of what came live are among the points: a past as it was heard has its own. */
 const askedLive = new WeakSet<RunStore>();
-export const asHeard = computed(() => pastRange.value !== undefined && !withRecording.value);
-
 /** What came thinned is asked for again: while the run goes on only what is drawn, for the archive has work to do. */
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
@@ -245,15 +74,12 @@ export function onMessage(message: FromWorker): void {
     case 'stream': {
       const before = stream.value.state;
       stream.value = message;
-      if (message.state === 'lost') inDoubt = true;
+      if (message.state === 'lost') inDoubt.value = true;
       if (message.state === 'lost' && before !== 'lost') {
         giveUpReads();
         void learnAccess().catch(() => undefined); // a session that ended closes the stream
         lostAt_e_s = store.value?.seenE ?? NaN;
-        for (const request of requests.values()) {
-          request.reject(new OutcomeUnknown('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
-        }
-        requests.clear();
+        giveUpCommands();
       }
       break;
     }
@@ -275,37 +101,18 @@ export function onMessage(message: FromWorker): void {
         store.value.addHistory(message.columns, message.names);
       }
       break;
-    case 'reply': {
-      const request = Number(message.reply.request);
-      requests.get(request)?.resolve(message.reply);
-      requests.delete(request);
-      const { accepted, command, reason } = message.reply;
-      const late = unanswered.get(request);
-      if (late !== undefined) notify(`${late}: the answer has come late. ${accepted ? `It was taken${command > 0n ? ` as #${command}` : ''}.` : `It was refused: ${reason}; nothing was sent.`}`);
-      unanswered.delete(request);
-      break;
-    }
+    case 'reply':
     case 'not_sent':
-      requests.get(message.request)?.reject(new Error(NOT_SENT));
-      requests.delete(message.request);
+    case 'answer':
+      takeAnswer(message);
       break;
     case 'refusal':
-      if (inDoubt) void refreshRuns(); // it may be the run that is shown of which the server knows nothing
+      if (inDoubt.peek()) void refreshRuns(); // it may be the run that is shown of which the server knows nothing
       notify(message.reason);
       break;
     case 'trouble':
       notify(message.words);
       break;
-    case 'answer': {
-      const question = asked.get(message.ask);
-      asked.delete(message.ask);
-      if (message.ok) question?.resolve(message.value);
-      else {
-        if (message.status === 401) turnedAway.value += 1;
-        question?.reject(new Refused(message.status, message.error));
-      }
-      break;
-    }
   }
 }
 
@@ -317,7 +124,7 @@ const LEFT = 'aeolis-left'; // what is said once the page has begun anew
  */
 function takeOtherArchive(): void {
   const run = store.value;
-  inDoubt = true;
+  inDoubt.value = true;
   stream.value = { ...stream.value, state: 'catching_up' };
   sessionStorage.setItem(LEFT, `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`);
   const url = new URL(location.href);
@@ -331,13 +138,13 @@ function takeRun(run: RunState | undefined): void {
   const known = store.value;
   if (known?.id === Number(run.run)) {
     if (!isSameRun(known.run, run)) return takeOtherArchive();
-    inDoubt = false;
+    inDoubt.value = false;
     known.update(run);
   } else if (watched.value === 0 && known && pastRange.value) {
     staysInThePast(known, run);
   } else if (watched.value === 0 || watched.value === Number(run.run)) {
     const drawn = new Set(plottedChannels().map((name) => dictionary.value?.pick([name])?.id));
-    inDoubt = false;
+    inDoubt.value = false;
     store.value = new RunStore(run, (channel) => drawn.has(channel));
     backToLive();
   } else {
@@ -365,12 +172,12 @@ async function refreshTimepoints(): Promise<void> {
 }
 
 export async function refreshRuns(): Promise<void> {
-  const [before, shown, doubted] = [runs.value, store.value, inDoubt];
+  const [before, shown, doubted] = [runs.value, store.value, inDoubt.peek()];
   try {
     const all = await askRuns();
     const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
     if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run))) return takeOtherArchive();
-    if (doubted && shown) inDoubt = false; // it is among them
+    if (doubted && shown) inDoubt.value = false; // it is among them
     const held = store.value;
     // What is over stays over: an answer from before its end may come after it. One that was cut off may go on.
     runs.value = all.map((run) => (held && run.run === held.run.run && held.run.state === 'finished' ? held.run : run));
@@ -393,18 +200,12 @@ async function everySeconds(seconds: number, what: () => Promise<void>): Promise
   }
 }
 
-/** What is drawn over time: its history comes finer. */
-export function plottedChannels(): string[] {
-  const picks = [...namedChannels().map((name) => [name]), ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
-  return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
-}
-
 /** Its schema takes as long to load as a picture to draw: it starts once the first look is on its way to the screen. */
 function startWorker(): void {
-  worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
+  const worker = new Worker(new URL('../stream/worker.ts', import.meta.url), { type: 'module' });
   worker.onmessage = (event: MessageEvent<FromWorker>) => onMessage(event.data);
   worker.onerror = (event) => notify(`the stream's worker failed: ${event.message}`);
-  forWorker.splice(0).forEach(post);
+  sendBy(worker);
 }
 
 /** Learns the dictionary, chooses the run that is going on or the last one, takes a first look at it, and connects. */
@@ -492,9 +293,9 @@ export async function begin(): Promise<void> {
 
 /** For tests of views: a page without a worker, or with one that only `hears`; what it would say is given to onMessage. */
 export function useForTest(run: RunStore | undefined, words: Dictionary | undefined, hears?: (message: ToWorker) => void): void {
-  worker = hears && ({ postMessage: hears } as Worker);
+  sendBy(hears && ({ postMessage: hears } as Worker));
   stream.value = { ...stream.value, state: 'live' };
-  inDoubt = false;
+  inDoubt.value = false;
   store.value = run;
   dictionary.value = words;
   tick.value += 1;

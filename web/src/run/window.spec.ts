@@ -1,7 +1,7 @@
 // @vitest-environment happy-dom
 import { afterEach, describe, expect, it } from 'vitest';
 import { aStore } from '../testing/fixtures';
-import { pastRange, replay } from './session';
+import { pastRange, replay } from './shown';
 import { choice, pan, plotSpan, spanNow, zoom, zoomedTo } from './window';
 
 describe('a fixed range', () => {

@@ -1,7 +1,7 @@
 // The stretch of time that timeline, tones and plots show together, in seconds from entry.
 import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';
-import { pastRange, replay } from './session';
+import { pastRange, replay } from './shown';
 import type { RunStore } from './store';
 
 export type Choice = 'landing' | 'run' | 'minute' | { from: number; to: number };

@@ -3,7 +3,8 @@ import { afterEach, expect, it } from 'vitest';
 import guide from '../../../docs/console.md?raw';
 import { stage } from '../commands/file';
 import { step } from '../commands/line';
-import { lookAtPast, pastRange, useForTest, withRecording } from '../run/session';
+import { useForTest } from '../run/session';
+import { lookAtPast, pastRange, withRecording } from '../run/shown';
 import { aDictionary, aStore } from '../testing/fixtures';
 import { SHORTCUTS, helpShown, onKey } from './model';
 

@@ -2,7 +2,7 @@
 import { create } from '@bufbuild/protobuf';
 import { afterEach, describe, expect, it } from 'vitest';
 import { AnchorRowSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
-import { anchors, store, timepoints } from '../run/session';
+import { anchors, store, timepoints } from '../run/shown';
 import { aRun, aStore } from '../testing/fixtures';
 import { predicted } from './now';
 

@@ -1,7 +1,7 @@
 // The prediction of the run that is shown, and how the command in the form would move it.
 import { computed } from '@preact/signals';
 import { fields, chosen } from '../commands/line';
-import { anchors, cutoff, dictionary, shownRun, tick, timepoints } from '../run/session';
+import { anchors, cutoff, dictionary, shownRun, tick, timepoints } from '../run/shown';
 import { anchorTree } from './anchors';
 import type { AnchorLine } from './anchors';
 import { changeOf, changesMade, movedBy, predictions } from './predict';

@@ -5,7 +5,7 @@ import type { Surface } from '../draw/canvas';
 import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import { LAYOUT } from '../layout';
-import { cutoff, dictionary, pastRange, replay, runNow, shownRun, tick, timepoints, withRecording } from '../run/session';
+import { cutoff, dictionary, pastRange, replay, runNow, shownRun, tick, timepoints, withRecording } from '../run/shown';
 import type { RunStore } from '../run/store';
 import { cursor } from '../run/cursor';
 import { fromEntry } from '../run/time';

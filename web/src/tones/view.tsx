@@ -6,7 +6,7 @@ import { axisTime, ticks, timeStep } from '../draw/axis';
 import { Panel } from '../design/panel';
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import { cursor } from '../run/cursor';
-import { cutoff, shownRun, tick } from '../run/session';
+import { cutoff, shownRun, tick } from '../run/shown';
 import { fromEntry } from '../run/time';
 import { plotSpan } from '../run/window';
 import { bestTones, isOld, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';
 import type { Dictionary } from '../run/dictionary';
-import { dictionary } from '../run/session';
+import { dictionary } from '../run/shown';
 
 export const ROLES = ['observer', 'controller', 'director', 'administrator'] as const;
 export type Role = (typeof ROLES)[number];

@@ -2,7 +2,7 @@
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useId } from 'preact/hooks';
 import { access } from '../access/model';
-import { dictionary } from '../run/session';
+import { dictionary } from '../run/shown';
 import { ROLES, addToken, addUser, audit, auditBefore, busy, lookAtAudit, message, newToken, offersFor, refreshUsers, removeToken, removeUser, setCommands, setOwnPassword, setPassword, setRole, tokens, users } from './model';
 import './style.css';
 
