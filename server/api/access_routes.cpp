@@ -149,10 +149,9 @@ void Api::remove_token(const Asked& asked) {
 void Api::audit(const Asked& asked) {
     const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
     if (!query) return asked.respond(error_response(400, query.error()));
-    const auto after = query->count("after", UINT32_MAX), limit = query->count("limit", audit_page_max);
+    const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", audit_page_max);
     if (!after) return asked.respond(error_response(400, after.error()));
     if (!limit) return asked.respond(error_response(400, limit.error()));
-    if (*limit && **limit == 0) return asked.respond(error_response(400, "limit: 0 asks for nothing"));
     aside(asked.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
         const auto entries = reader.audit(after, limit);
         if (!entries) return error_response(500, entries.error());

@@ -50,7 +50,7 @@ void Api::campaign_touchdowns(const Asked& asked) {
     const auto query = QueryText::parse(asked.request.query, {"after", "limit"});
     if (!query) return asked.respond(error_response(400, query.error()));
     constexpr auto most = campaign::CampaignDesk::touchdowns_max;
-    const auto after = query->count("after", UINT32_MAX), limit = query->count("limit", most);
+    const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", most);
     if (!after) return asked.respond(error_response(400, after.error()));
     if (!limit) return asked.respond(error_response(400, limit.error()));
     ask_campaign(asked, [this, place = after->value_or(0), limit = limit->value_or(most)](const std::filesystem::path& file, const std::function<bool()>& stop) {

@@ -62,6 +62,12 @@ Result<std::optional<std::uint64_t>> QueryText::count(std::string_view name, std
     return std::optional{value};
 }
 
+Result<std::optional<std::uint64_t>> QueryText::amount(std::string_view name, std::uint64_t max) const {
+    auto value = count(name, max);
+    if (value && *value && **value == 0) return Error{fmt::format("{}: 0 asks for nothing", name)};
+    return value;
+}
+
 Result<std::string> QueryText::one_of(std::string_view name, std::span<const std::string_view> words) const {
     auto word = text(name);
     if (!word) return std::string{words.front()};

@@ -22,6 +22,8 @@ class QueryText {
     Result<std::optional<double>> number(std::string_view name) const;
     /// A whole number from 0, decimal or 0x hexadecimal, `max` at most.
     Result<std::optional<std::uint64_t>> count(std::string_view name, std::uint64_t max) const;
+    /// The same of what can be asked for: from 1.
+    Result<std::optional<std::uint64_t>> amount(std::string_view name, std::uint64_t max) const;
     /// One of `words`; the first of them when not given.
     Result<std::string> one_of(std::string_view name, std::span<const std::string_view> words) const;
     /// Separated by commas, empty ones left out.

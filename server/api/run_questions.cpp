@@ -63,9 +63,8 @@ struct Page {
 Result<Page> page_of(const QueryText& query, std::size_t usual, std::size_t max) {
     const auto after = query.count("after", seq_max);
     if (!after) return after.error();
-    const auto limit = query.count("limit", max);
+    const auto limit = query.amount("limit", max);
     if (!limit) return limit.error();
-    if (*limit && **limit == 0) return Error{"limit: 0 asks for nothing"};
     return Page{after->value_or(0), static_cast<std::size_t>(limit->value_or(usual))};
 }
 
@@ -102,9 +101,8 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
     series.range = *range;
-    const auto points = query.count("points", archive::thinned_points_max);
+    const auto points = query.amount("points", archive::thinned_points_max);
     if (!points) return error_response(400, points.error());
-    if (*points && **points == 0) return error_response(400, "points: 0 asks for nothing");
     if (*points) series.points = static_cast<std::size_t>(**points);
     const auto format = format_of(query, series_formats);
     if (const auto source = query.text("source")) {

@@ -35,4 +35,6 @@ TEST_CASE("a wrong query is refused by the name of what is wrong", "[http]") {
     CHECK(query->number("to").error().message == "to: 'nan' is not a number");
     CHECK(query->count("limit", 10).error().message == "limit: '-1' is not a whole number from 0");
     CHECK_FALSE(query->count("after", 10));
+    CHECK(QueryText::parse("limit=0", {"limit"})->amount("limit", 10).error().message == "limit: 0 asks for nothing");
+    CHECK(**QueryText::parse("limit=0", {"limit"})->count("limit", 10) == 0);
 }

@@ -83,7 +83,8 @@ TEST_CASE("in the venue performance a landing is the nominal one but for measure
         telemetry::PacketStream stream{rehearsal.landing().recording()};
         while (const auto packet = stream.next()) {
             const auto apid = read_primary_header(*packet)->apid;
-            if (apid != flight::packet::TaskTimes::apid && apid != flight::packet::CommStatus::apid)
+            using namespace flight::packet;
+            if (apid != TaskTimes::apid && apid != CommStatus::apid && apid != CommStatusB::apid)
                 packets.emplace_back(packet->begin(), packet->end());
         }
         return packets;

@@ -86,9 +86,9 @@ describe('alarms', () => {
     const standing = [an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress' }), an({ name: 'Status', kind: 'staleness', severity: 'watch', worst: 'watch' })];
     const over = [an({ name: 'a', state: 'returned', severity: 'none', acknowledged: true }), an({ name: 'b', state: 'shelved' })];
     alarms.value = { run: 1, all: [...standing, ...over] };
-    expect(count()).toBe('■ 2 alarms: distress, watch2 to acknowledge a');
+    expect(count()).toBe('⬢ 2 alarms: distress, watch2 to acknowledge a');
     alarms.value = { run: 1, all: [...standing.map((each) => ({ ...each, state: 'acknowledged', acknowledged: true })), ...over] };
-    expect(count()).toBe('■ 2 alarms: distress, watch');
+    expect(count()).toBe('⬢ 2 alarms: distress, watch');
     alarms.value = { run: 1, all: over };
     expect(count()).toBeUndefined();
   });

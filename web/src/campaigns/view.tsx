@@ -25,7 +25,7 @@ function Order() {
   const names = scenarios.value.length > 0 ? scenarios.value.map((each) => each.name) : ['campaign'];
   const known = campaigns.value.find((each) => each.campaign === `${scenario.value}-${seed.value}`);
   const goesOn = known !== undefined && known.kept > 0;
-  const hint = !allowed ? `○ ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
+  const hint = !allowed ? `□ ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
   return (
     <form class="table-tools campaign-form" onSubmit={(event) => {
       event.preventDefault();
