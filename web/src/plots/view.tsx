@@ -223,7 +223,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
     <Panel name={`plot-${name}`} title={title} extra={
       <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
         {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
-        {whose && <span class="whose" data-testid={`whose-${name}`}>{whose} </span>}
+        {whose && <span class="whose" data-testid={`whose-${name}`} title={whose}><i>{whose.replace(/\S+$/, '')}</i>{/\S+$/.exec(whose)} </span>}
         {at !== undefined ? <span class="cursor-time" data-testid={`cursor-${name}`}>{fromEntry(at, { tenths: true })} {shown && (shown.recorded ? SOURCES.recording : SOURCES.uhf).shape}</span>
           : !whose && !stale && <span class="legend">{sources.map((each) => <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>{each.shape} <i>{each.word.split(/[ ,]/)[1]}</i> </span>)}</span>}
         {' '}<output data-testid={`reading-${name}`}>{value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}</output> {unit}
