@@ -83,8 +83,8 @@ TEST_CASE("in the venue performance a landing is the nominal one but for measure
         telemetry::PacketStream stream{rehearsal.landing().recording()};
         while (const auto packet = stream.next()) {
             const auto apid = read_primary_header(*packet)->apid;
-            using namespace flight::packet;
-            if (apid != TaskTimes::apid && apid != CommStatus::apid && apid != CommStatusB::apid)
+            namespace packet_of = flight::packet;
+            if (apid != packet_of::TaskTimes::apid && apid != packet_of::CommStatus::apid && apid != packet_of::CommStatusB::apid)
                 packets.emplace_back(packet->begin(), packet->end());
         }
         return packets;
