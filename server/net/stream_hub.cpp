@@ -15,6 +15,8 @@ namespace {
 // Ours.
 constexpr double pace_without_further_thinning = 8.0;
 
+constexpr std::size_t sessions_ahead = 4; // ours
+
 double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
     if (shape.max_rate_hz <= 0.0) return 0.0;
     return std::max(1.0, state.attained_pace() / pace_without_further_thinning) / shape.max_rate_hz;
@@ -47,6 +49,39 @@ v1::Samples some_of(const v1::Samples& samples, const std::vector<std::uint32_t>
     return chosen;
 }
 
+std::vector<DueItem> due_of(std::span<const ItemBefore> items, double interval_s, bool units) {
+    std::vector<DueItem> due;
+    for (const auto& [item, before] : items) {
+        if (item->has_unit() && (!units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
+        if (!item->has_samples()) {
+            due.push_back({item});
+            continue;
+        }
+        const double sclk = item->samples().sclk();
+        if (interval_s > 0.0 && !begins_interval(sclk, before.previous_sclk, interval_s)) continue;
+        due.push_back({item, interval_s > 0.0 && before.previous_sclk && sclk - *before.previous_sclk < interval_s, before.ascend});
+    }
+    return due;
+}
+
+void add_items(const StreamShape& shape, std::span<const DueItem> due, v1::Batch& batch) {
+    for (const auto& [item, thinned, ascend] : due) {
+        if (!item->has_samples() || shape.all_channels) {
+            *batch.add_items() = *item;
+        } else {
+            const auto& samples = item->samples();
+            auto chosen = some_of(samples, shape.channels, ascend);
+            if (chosen.ids_size() == 0) continue;
+            chosen.set_sclk(samples.sclk());
+            chosen.set_source(samples.source());
+            auto& added = *batch.add_items();
+            added.set_seq(item->seq());
+            *added.mutable_samples() = std::move(chosen);
+        }
+        if (item->has_samples()) batch.mutable_items()->rbegin()->mutable_samples()->set_thinned(thinned);
+    }
+}
+
 } // namespace
 
 Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
@@ -55,28 +90,7 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
 }
 
 void select_items(const StreamShape& shape, double interval_s, std::span<const ItemBefore> items, v1::Batch& batch) {
-    for (const auto& [item, before] : items) {
-        if (item->has_unit() && (!shape.units || item->unit().source() == v1::SOURCE_RECORDED)) continue;
-        if (!item->has_samples()) {
-            *batch.add_items() = *item;
-            continue;
-        }
-        const auto& samples = item->samples();
-        if (interval_s > 0.0 && !begins_interval(samples.sclk(), before.previous_sclk, interval_s)) continue;
-        const bool thinned = interval_s > 0.0 && before.previous_sclk && samples.sclk() - *before.previous_sclk < interval_s;
-        if (shape.all_channels) {
-            *batch.add_items() = *item;
-        } else {
-            auto chosen = some_of(samples, shape.channels, before.ascend);
-            if (chosen.ids_size() == 0) continue;
-            chosen.set_sclk(samples.sclk());
-            chosen.set_source(samples.source());
-            auto& added = *batch.add_items();
-            added.set_seq(item->seq());
-            *added.mutable_samples() = std::move(chosen);
-        }
-        batch.mutable_items()->rbegin()->mutable_samples()->set_thinned(thinned);
-    }
+    add_items(shape, due_of(items, interval_s, shape.units), batch);
 }
 
 SamplesBefore SampleSpacing::next(const v1::Item& item) {
@@ -99,10 +113,9 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
     if (batch->run.value != state_.run()) return; // a run's state comes before its first batch
     figures.items += batch->last_seq - batch->first_seq + 1;
     last_seq_ = batch->last_seq;
+    range_.reset(); // what it points to may go
     if (!batch->built) {
-        held_.clear();
-        held_items_ = 0;
-        spacing_ = {};
+        forget_items();
     } else {
         Held held{std::move(batch), {}};
         held.samples.reserve(held.batch->items.size());
@@ -118,15 +131,20 @@ void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch)
     wake_all();
 }
 
+void StreamHub::forget_items() {
+    range_.reset();
+    held_.clear();
+    held_items_ = 0;
+    spacing_ = {};
+}
+
 void StreamHub::run_state(v1::RunState state) {
     if (state.run() != state_.run()) {
         before_ = std::move(state_);
         before_.set_last_seq(last_seq_);
         before_version_ = state_version_;
         last_seq_ = state.last_seq(); // of a run that is over, as the archive has it; of a new one 0
-        held_.clear();
-        held_items_ = 0;
-        spacing_ = {};
+        forget_items();
         cache_.clear();
     }
     state_ = std::move(state);
@@ -169,13 +187,27 @@ std::size_t StreamHub::sessions_behind() const {
 }
 
 void StreamHub::wake_all() {
-    for (auto* session : sessions_)
-        session->wake();
+    for (std::size_t i = 0; i < sessions_.size(); ++i) {
+        if (i + sessions_ahead < sessions_.size()) __builtin_prefetch(sessions_[i + sessions_ahead]); // sends leave nothing of theirs in the nearest memory
+        sessions_[i]->wake();
+    }
 }
 
 bool StreamHub::holds(archive::Sequence after) const {
     if (after >= last_seq_) return true;
     return !held_.empty() && held_.front().batch->first_seq <= after + 1;
+}
+
+const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double interval_s, bool units) {
+    if (range_ && range_->after == after && range_->last_seq == last_seq_ && range_->interval_s == interval_s && range_->units == units)
+        return *range_;
+    std::vector<ItemBefore> items;
+    const auto last_of = [](const Held& held) { return held.batch->last_seq; };
+    for (auto held = std::ranges::upper_bound(held_, after, {}, last_of); held != held_.end() && items.size() < message_items_max; ++held) {
+        for (std::size_t i = 0; i < held->batch->items.size() && items.size() < message_items_max; ++i)
+            if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->samples[i]});
+    }
+    return range_.emplace(Range{after, last_seq_, items.empty() ? last_seq_ : items.back().item->seq(), interval_s, units, due_of(items, interval_s, units)});
 }
 
 StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
@@ -186,17 +218,12 @@ StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence af
             return cached.fresh;
         }
     }
-    std::vector<ItemBefore> items;
-    const auto last_of = [](const Held& held) { return held.batch->last_seq; };
-    for (auto held = std::ranges::upper_bound(held_, after, {}, last_of); held != held_.end() && items.size() < message_items_max; ++held) {
-        for (std::size_t i = 0; i < held->batch->items.size() && items.size() < message_items_max; ++i)
-            if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->samples[i]});
-    }
+    const auto& range = range_after(after, thinning_interval_s(shape, state_), shape.units);
     Fresh fresh;
-    fresh.through = items.empty() ? last_seq_ : items.back().item->seq();
+    fresh.through = range.through;
     v1::ServerMessage message;
     auto& batch = *message.mutable_batch();
-    select_items(shape, thinning_interval_s(shape, state_), items, batch);
+    add_items(shape, range.items, batch);
     if (batch.items_size() > 0) {
         batch.set_run(state_.run());
         batch.set_after_seq(sent_through);

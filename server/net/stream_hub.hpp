@@ -46,6 +46,12 @@ struct ItemBefore {
     SamplesBefore samples;
 };
 
+/// One that goes to clients of some rate; of its samples those that a client has subscribed to.
+struct DueItem {
+    const v1::Item* item = nullptr;
+    bool thinned = false, ascend = false;
+};
+
 /// What goes into a Batch for this shape. Commands, events, alarms, tones, firings, explanations and links: all.
 /// Samples: the subscribed channels; `interval_s` (vehicle time) at least apart when > 0, and then marked thinned.
 /// Units: those received live, where the shape has any; the recording's are at /packets.
@@ -137,7 +143,16 @@ class StreamHub {
         std::uint64_t clocks_version = 0;
         Fresh fresh;
     };
+    /// What goes out after `after` at one rate: most clients are as far as the one before them, whatever their channels.
+    struct Range {
+        archive::Sequence after = 0, last_seq = 0, through = 0;
+        double interval_s = 0.0;
+        bool units = false;
+        std::vector<DueItem> items;
+    };
     void wake_all();
+    const Range& range_after(archive::Sequence after, double interval_s, bool units);
+    void forget_items();
 
     std::uint16_t dictionary_id_;
     Services services_;
@@ -150,6 +165,7 @@ class StreamHub {
     std::deque<Held> held_; ///< without a gap, up to last_seq_
     std::size_t held_items_ = 0;
     SampleSpacing spacing_;
+    std::optional<Range> range_; ///< of what is held; none: as yet
     std::deque<Cached> cache_;
     std::string archive_fault_;
     std::array<Encoded, 2> state_encoded_;
