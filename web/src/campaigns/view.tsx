@@ -2,6 +2,7 @@
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';
 import { mayRehearse, whyNotRehearse } from '../access/model';
+import { STATUS } from '../design/status';
 import { Canvas } from '../draw/canvas';
 import { scenarios } from '../run/shown';
 import {
@@ -25,7 +26,7 @@ function Order() {
   const names = scenarios.value.length > 0 ? scenarios.value.map((each) => each.name) : ['campaign'];
   const known = campaigns.value.find((each) => each.campaign === `${scenario.value}-${seed.value}`);
   const goesOn = known !== undefined && known.kept > 0;
-  const hint = !allowed ? `□ ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
+  const hint = !allowed ? `${STATUS.missing.shape} ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
   return (
     <form class="table-tools campaign-form" onSubmit={(event) => {
       event.preventDefault();

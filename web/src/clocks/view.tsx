@@ -40,7 +40,7 @@ function AlarmCount({ severities, waiting, worst }: { severities: string[]; wait
   if (severities.length === 0 && waiting === 0) return null;
   return (
     <div class={`link link-${worst ? 'lost' : 'alarm'}`} data-testid="alarm-count">
-      <b><span aria-hidden="true">{worst ? '⬢' : '▲'}</span> {severities.length === 0 ? 'no alarm now' : `${severities.length} ${severities.length === 1 ? 'alarm' : 'alarms'}: ${[...new Set(severities)].join(', ')}`}</b>
+      <b><span aria-hidden="true">{STATUS[worst ? 'alarm' : 'caution'].shape}</span> {severities.length === 0 ? 'no alarm now' : `${severities.length} ${severities.length === 1 ? 'alarm' : 'alarms'}: ${[...new Set(severities)].join(', ')}`}</b>
       {waiting > 0 && <small data-testid="alarms-waiting"><button type="button" class="quiet" onClick={() => focusPanel('alarms')}>{waiting} to acknowledge <kbd>a</kbd></button></small>}
     </div>
   );

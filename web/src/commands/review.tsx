@@ -108,7 +108,7 @@ function Verdict({ command }: { command: DictionaryCommand }) {
   const tooLateFor = run && reply?.arrives && problem === undefined ? arrivalOf(reply, run).tooLateFor : [];
   return (
     <>
-      {problem !== undefined ? <p class="verdict unknown">□ {problem}</p>
+      {problem !== undefined ? <p class="verdict unknown">{STATUS.missing.shape} {problem}</p>
         : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
           : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
           : reply.accepted ? <p class="verdict holds">✓ {step.value === 'armed' ? 'It is sent once its name is typed.' : isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>

@@ -2,6 +2,7 @@
 import { signal } from '@preact/signals';
 import { mayRehearse, whyNotRehearse } from '../access/model';
 import { outcomeWords } from '../clocks/model';
+import { STATUS } from '../design/status';
 import { canContinue, isReal } from '../mode/model';
 import { changeReplayPace, playOrHold } from '../replay/model';
 import { wordsFor } from '../run/api';
@@ -125,7 +126,7 @@ export function Rehearsal() {
         <label>seed <input class="seed" value={seed.value} inputMode="numeric" disabled={!allowed} aria-invalid={badSeed} onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
         <button type="submit" disabled={badSeed || blocked} data-testid="start-rehearsal">start a rehearsal</button>
         {going && allowed && !past && !isReal(going) && <EndRun run={Number(going.run)} name="stop-rehearsal" words={`end run ${going.run}`} />}
-        <span>{!allowed ? `□ ${whyNotRehearse('starting and ending')}` : past ? '□ from a past view nothing is started or ended; Esc leaves it' : badSeed ? '✖ a seed is a whole number' : starting.value ? '… starting' : going ? (isReal(going) ? 'a real landing is followed; none is rehearsed beside it' : 'one is going on; end it to start another') : names.find((each) => each.name === scenario.value)?.title}</span>
+        <span>{!allowed ? `${STATUS.missing.shape} ${whyNotRehearse('starting and ending')}` : past ? `${STATUS.missing.shape} from a past view nothing is started or ended; Esc leaves it` : badSeed ? '✖ a seed is a whole number' : starting.value ? '… starting' : going ? (isReal(going) ? 'a real landing is followed; none is rehearsed beside it' : 'one is going on; end it to start another') : names.find((each) => each.name === scenario.value)?.title}</span>
       </form>
       <CatchingUp />
       {refused.value && <p role="alert" class="status-alarm" data-testid="rehearsal-problem">✖ {refused.value}</p>}
