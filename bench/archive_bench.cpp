@@ -1,6 +1,6 @@
 // What the archive costs above bare SQLite with the same table, index, batch and synchronous=FULL; what a landing's
-// telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes; how
-// long a start has to wait for an archive that was closed, or whose writer was killed.
+// telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes;
+// how long a start has to wait for an archive that was closed, or whose writer was killed.
 
 #include "bench/must.hpp"
 #include "common/bytes.hpp"
@@ -28,14 +28,14 @@
 #include <unistd.h>
 
 using namespace aeolis;
-using bench::must;
 using archive::RunId;
 using archive::Sequence;
+using bench::must;
 
 namespace {
 
 constexpr std::size_t unit_octets = 256;
-constexpr std::size_t batch_units = 4096; // as `aeolis rehearse` commits
+constexpr std::size_t batch_units = 4096;  // as `aeolis rehearse` commits
 constexpr std::size_t units = 49 * batch_units;
 constexpr std::size_t fields = 30;
 constexpr Apid apid{0x40};
@@ -85,7 +85,8 @@ Cost raw_append(const std::filesystem::path& file, const std::vector<std::uint8_
     sqlite3* database = nullptr;
     must(sqlite3_open(file.c_str(), &database) == SQLITE_OK, "open");
     const auto run = [&](const char* sql) { must(sqlite3_exec(database, sql, nullptr, nullptr, nullptr) == 0, sql); };
-    run("PRAGMA page_size=16384; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=1000; PRAGMA cache_size=-16000;"
+    run("PRAGMA page_size=16384; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL; PRAGMA wal_autocheckpoint=1000; "
+        "PRAGMA cache_size=-16000;"
         "CREATE TABLE units (key INTEGER PRIMARY KEY, run INTEGER NOT NULL, apid INTEGER NOT NULL, packet INTEGER,"
         " sclk REAL NOT NULL, ert_us INTEGER NOT NULL, link INTEGER NOT NULL, source INTEGER NOT NULL,"
         " standing INTEGER NOT NULL, sampled INTEGER NOT NULL, refusal TEXT, octets BLOB NOT NULL) STRICT;"
@@ -173,8 +174,7 @@ Cost store_landing(const std::filesystem::path& file, const dictionary::Dictiona
 
 double median_ms(const std::function<void()>& work) {
     std::vector<double> times;
-    for (int i = 0; i < 15; ++i)
-        times.push_back(1e3 * cost_of(work).cpu);
+    for (int i = 0; i < 15; ++i) times.push_back(1e3 * cost_of(work).cpu);
     std::nth_element(times.begin(), times.begin() + 7, times.end());
     return times[7];
 }
@@ -193,7 +193,8 @@ void store_long(const std::filesystem::path& file, const dictionary::Dictionary&
     std::vector<float> noisy(1U << 20U), smooth(noisy.size());
     for (std::size_t i = 0; i < noisy.size(); ++i) {
         const double t_s = static_cast<double>(i) / 64.0;
-        noisy[i] = static_cast<float>(3000.0 + 500.0 * std::sin(t_s * 0.01) + static_cast<double>(random() % 1024) * 1e-3);
+        noisy[i] =
+            static_cast<float>(3000.0 + 500.0 * std::sin(t_s * 0.01) + static_cast<double>(random() % 1024) * 1e-3);
         smooth[i] = static_cast<float>(2.0 + std::cos(t_s * 0.1));
     }
     archive::Batch batch;
@@ -222,7 +223,8 @@ void store_until_killed(const std::filesystem::path& file, const dictionary::Dic
         auto packets = landing();
         for (std::size_t i = 0; i <= long_samples / fields; ++i) {
             auto& octets = packets[i % packets.size()].octets;
-            seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0}, 1);
+            seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0},
+                           1);
             must(pipeline.accept(packets[i % packets.size()]).ok(), "accept");
             must(pipeline.commit_if_full().ok(), "commit");
         }
@@ -233,15 +235,17 @@ void store_until_killed(const std::filesystem::path& file, const dictionary::Dic
     must(::waitpid(child, &status, 0) == child && WIFSIGNALED(status), "the killed writer");
 }
 
-/// As a start does: the writer, then a reader, up to its first answer. The median of five, each of a copy: what a writer
-/// that was killed has left is mended by opening it. Closing is not part of it.
-double reopening_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary, std::size_t interrupted) {
+/// As a start does: the writer, then a reader, up to its first answer. The median of five, each of a copy: what a
+/// writer that was killed has left is mended by opening it. Closing is not part of it.
+double reopening_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
+                    std::size_t interrupted) {
     std::vector<double> times;
     const auto copy = file.string() + "-copy";
     for (int i = 0; i < 5; ++i) {
         for (const char* suffix : {"", "-wal"})
             if (std::filesystem::exists(file.string() + suffix))
-                std::filesystem::copy_file(file.string() + suffix, copy + suffix, std::filesystem::copy_options::overwrite_existing);
+                std::filesystem::copy_file(file.string() + suffix, copy + suffix,
+                                           std::filesystem::copy_options::overwrite_existing);
         const double start = wall_s();
         auto writer = archive::Archive::open(copy);
         must(writer.ok() && writer->interrupted().size() == interrupted, "Archive::open");
@@ -257,15 +261,18 @@ double reopening_ms(const std::filesystem::path& file, const dictionary::Diction
 double octets_of_samples(const std::filesystem::path& file) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_only);
     must(database.ok(), "open");
-    const auto octets = database->integer_of("SELECT sum(pgsize) FROM dbstat WHERE name IN ('segments', 'segments_by_position',"
-                                             " 'segment_columns', 'pyramid', 'pyramid_columns')");
-    const auto samples = database->integer_of("SELECT sum(s.samples) FROM segment_columns c JOIN segments s ON s.segment = c.key / 65536");
+    const auto octets =
+        database->integer_of("SELECT sum(pgsize) FROM dbstat WHERE name IN ('segments', 'segments_by_position',"
+                             " 'segment_columns', 'pyramid', 'pyramid_columns')");
+    const auto samples = database->integer_of(
+        "SELECT sum(s.samples) FROM segment_columns c JOIN segments s ON s.segment = c.key / 65536");
     must(octets.ok() && samples.ok(), "dbstat");
     return static_cast<double>(*octets) / static_cast<double>(*samples);
 }
 
 /// The median of some tries, each with the file out of the kernel's cache and a connection that has read nothing yet.
-double first_touch_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary, const archive::SeriesQuery& query) {
+double first_touch_ms(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
+                      const archive::SeriesQuery& query) {
     std::vector<double> times;
     for (int i = 0; i < 9; ++i) {
         auto reader = archive::Reader::open(file, dictionary);
@@ -280,7 +287,7 @@ double first_touch_ms(const std::filesystem::path& file, const dictionary::Dicti
     return times[4];
 }
 
-} // namespace
+}  // namespace
 
 int main() {
     const test::TemporaryFolder folder;
@@ -314,7 +321,8 @@ int main() {
     (void)store_landing(folder / "open", dictionary, packets, false, false);
     auto open = archive::Reader::open(folder / "open", dictionary);
     must(open.ok(), "Reader::open");
-    const archive::SeriesQuery all{{"wideband_7"}, {}, 2000}, newest{{"wideband_7"}, {(landing_units - 3840) / 64.0, {}}, 2000};
+    const archive::SeriesQuery all{{"wideband_7"}, {}, 2000},
+        newest{{"wideband_7"}, {(landing_units - 3840) / 64.0, {}}, 2000};
     std::printf("  of a run that goes on, its open end from raw units: all %.2f ms, the last minute %.2f ms of CPU\n",
                 median_ms([&] { must(open->series(RunId{1}, all).ok(), "open thinned"); }),
                 median_ms([&] { must(open->series(RunId{1}, newest).ok(), "open newest"); }));
@@ -333,7 +341,8 @@ int main() {
     must(reader.ok(), "Reader::open");
     const double middle_s = 0.37 * long_samples / 64.0;
     const archive::SclkRange part{middle_s, middle_s + 1e5 / 64.0};
-    const archive::SeriesQuery exact{{"wideband_0"}, part, {}}, some{{"wideband_0"}, part, 2000}, whole{{"wideband_0"}, {}, 2000};
+    const archive::SeriesQuery exact{{"wideband_0"}, part, {}}, some{{"wideband_0"}, part, 2000},
+        whole{{"wideband_0"}, {}, 2000};
     const auto ask = [&](const archive::SeriesQuery& query) { must(reader->series(RunId{1}, query).ok(), "series"); };
     goal("100 000 of them exactly, CPU, hot", median_ms([&] { ask(exact); }), 2.5, "ms");
     goal("100 000 of them thinned to 2000, CPU, hot", median_ms([&] { ask(some); }), 0.1, "ms");
@@ -344,13 +353,16 @@ int main() {
     const auto killed = folder / "killed";
     store_until_killed(killed, dictionary);
     const double log_mb = static_cast<double>(std::filesystem::file_size(killed.string() + "-wal")) * 1e-6;
-    std::printf("opening an archive of %zu samples, for writing and for reading, up to the list of its runs\n", long_samples);
+    std::printf("opening an archive of %zu samples, for writing and for reading, up to the list of its runs\n",
+                long_samples);
     goal("after a clean end, wall", reopening_ms(file, two, 0), 10.0, "ms");
     std::printf("  its writer killed: a log of %.1f MB\n", log_mb);
     goal("after kill -9, wall", reopening_ms(killed, dictionary, 1), 100.0, "ms");
 
     const auto flown = folder / "nominal_auto";
-    const auto command = std::string(AEOLIS_SOURCE_DIR "/build/release/aeolis rehearse --scenario nominal_auto --archive ") + flown.string();
+    const auto command =
+        std::string(AEOLIS_SOURCE_DIR "/build/release/aeolis rehearse --scenario nominal_auto --archive ") +
+        flown.string();
     must(std::system((command + " >/dev/null").c_str()) == 0, command.c_str());
     std::printf("a recorded landing, %.1f MB in all\n", static_cast<double>(std::filesystem::file_size(flown)) * 1e-6);
     goal("its samples: segments, their columns, the pyramid", octets_of_samples(flown), 4.0, "octets a sample");

@@ -23,7 +23,7 @@ double now_s() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-} // namespace
+}  // namespace
 
 int main() {
     const auto scenario = server::scenario_from_file(AEOLIS_SOURCE_DIR "/simulation/scenarios/campaign.textproto");

@@ -24,8 +24,7 @@ std::vector<std::vector<std::uint8_t>> packets_of(const dictionary::Dictionary& 
     std::uint32_t noise = 1;
     for (std::size_t i = 0; i < packets; ++i) {
         std::vector<std::uint8_t> octets(wanted.octets);
-        for (auto& octet : octets)
-            octet = static_cast<std::uint8_t>((noise = noise * 1664525U + 1013904223U) >> 24);
+        for (auto& octet : octets) octet = static_cast<std::uint8_t>((noise = noise * 1664525U + 1013904223U) >> 24);
         seal_tm_packet(octets, wanted.apid, static_cast<std::uint16_t>(i),
                        Sclk::from_ticks(static_cast<std::int64_t>(i)), dictionary.id);
         made.push_back(std::move(octets));
@@ -40,15 +39,14 @@ double rate_per_s(const std::vector<std::vector<std::uint8_t>>& octets, Each eac
     for (int part = 0; part < 5; ++part) {
         const std::clock_t start = std::clock();
         for (int round = 0; round < rounds / 5; ++round)
-            for (const auto& packet : octets)
-                each(packet);
+            for (const auto& packet : octets) each(packet);
         const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
         best = std::max(best, static_cast<double>(rounds / 5) * static_cast<double>(octets.size()) / took_s);
     }
     return best;
 }
 
-} // namespace
+}  // namespace
 
 int main() {
     const auto loaded = dictionary::load(AEOLIS_SOURCE_DIR "/dictionaries/msl");

@@ -80,21 +80,23 @@ int main() {
                 });
     });
     const double dispatch_ns = with_executive_ns - modules_alone_ns;
-    std::printf("a cycle of %zu messages: %.0f ns, the handlers alone %.0f ns\n", tap.messages.size(), with_executive_ns,
-                modules_alone_ns);
+    std::printf("a cycle of %zu messages: %.0f ns, the handlers alone %.0f ns\n", tap.messages.size(),
+                with_executive_ns, modules_alone_ns);
     std::printf("dispatch a cycle: %.0f ns, goal 300 ns, ratio %.2f\n", dispatch_ns, dispatch_ns / 300.0);
 
     const auto other = std::make_unique<ComputerState>(*state);
     const double copy_ns = ns_a_cycle([&] {
-        for (int i = 0; i < 100; ++i) *other = *state;
-    }) * cycles / 100.0;
+                               for (int i = 0; i < 100; ++i) *other = *state;
+                           }) *
+                           cycles / 100.0;
     std::vector<unsigned char> from(sizeof(ComputerState), 1), to(sizeof(ComputerState));
     const double memcpy_ns = ns_a_cycle([&] {
-        for (int i = 0; i < 100; ++i) {
-            std::memcpy(to.data(), from.data(), from.size());
-            from[static_cast<std::size_t>(i)] = to[to.size() / 2];
-        }
-    }) * cycles / 100.0;
+                                 for (int i = 0; i < 100; ++i) {
+                                     std::memcpy(to.data(), from.data(), from.size());
+                                     from[static_cast<std::size_t>(i)] = to[to.size() / 2];
+                                 }
+                             }) *
+                             cycles / 100.0;
     std::printf("state of a computer: %.2f MB, goal 4 MB, ratio %.2f\n", sizeof(ComputerState) / 1.0e6,
                 sizeof(ComputerState) / 4.0e6);
     std::printf("copy of it: %.3f ms, goal 1 ms, ratio %.2f; memcpy of as many octets %.3f ms\n", copy_ns * 1.0e-6,

@@ -1,5 +1,5 @@
-// What it costs to give one message to a thousand clients of the stream, against a bare send of the same octets to as many
-// sockets: CPU a delivered message, and how long it is on its way. Then eight messages a tick.
+// What it costs to give one message to a thousand clients of the stream, against a bare send of the same octets to as
+// many sockets: CPU a delivered message, and how long it is on its way. Then eight messages a tick.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -25,7 +25,7 @@ namespace {
 constexpr std::size_t clients = 1000;
 constexpr double messages_per_s = 64.0, seconds = 4.0;
 constexpr std::size_t message_octets = 300;
-constexpr int rounds = 3; // by turns, the best of each: the machine is shared
+constexpr int rounds = 3;  // by turns, the best of each: the machine is shared
 
 double cpu_s(clockid_t clock) {
     timespec time{};
@@ -47,7 +47,8 @@ template <typename Give>
 void tick(double ticks_per_s, Give give) {
     const auto begin = Clock::now();
     for (int i = 0; i < static_cast<int>(seconds * ticks_per_s); ++i) {
-        std::this_thread::sleep_until(begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{i / ticks_per_s}));
+        std::this_thread::sleep_until(
+            begin + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{i / ticks_per_s}));
         give();
     }
     std::this_thread::sleep_for(std::chrono::milliseconds{300});
@@ -64,7 +65,8 @@ Figures bare(LoopbackClients& all) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    must(::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && ::listen(listener, 4096) == 0, "listen");
+    must(::bind(listener, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 && ::listen(listener, 4096) == 0,
+         "listen");
     socklen_t size = sizeof address;
     must(::getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) == 0, "getsockname");
     all.connect(ntohs(address.sin_port), {clients, 0, false, {}});
@@ -72,27 +74,29 @@ Figures bare(LoopbackClients& all) {
     for (std::size_t i = 0; i < clients; ++i) {
         sockets.push_back(::accept(listener, nullptr, nullptr));
         const int on = 1;
-        must(sockets.back() >= 0 && ::setsockopt(sockets.back(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on) == 0, "accept");
+        must(sockets.back() >= 0 && ::setsockopt(sockets.back(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on) == 0,
+             "accept");
     }
     all.forget();
     const double before = cpu_s(CLOCK_THREAD_CPUTIME_ID);
     tick(messages_per_s, [&] {
         auto message = mark_now();
-        message.resize(message_octets + 4, '.'); // with a frame's header
+        message.resize(message_octets + 4, '.');  // with a frame's header
         for (const int socket : sockets)
-            must(::send(socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT) == static_cast<ssize_t>(message.size()), "send");
+            must(::send(socket, message.data(), message.size(), MSG_NOSIGNAL | MSG_DONTWAIT) ==
+                     static_cast<ssize_t>(message.size()),
+                 "send");
     });
     const auto result = figures(all, cpu_s(CLOCK_THREAD_CPUTIME_ID) - before, clients * messages_per_s * seconds);
     all.close();
-    for (const int socket : sockets)
-        ::close(socket);
+    for (const int socket : sockets) ::close(socket);
     ::close(listener);
     return result;
 }
 
 Figures served(LoopbackClients& all, std::size_t a_tick) {
     test::EventServer server;
-    clockid_t network{}; // the CPU time of the server's own thread
+    clockid_t network{};  // the CPU time of the server's own thread
     must(::pthread_getcpuclockid(server.network().native_handle(), &network) == 0, "pthread_getcpuclockid");
     v1::ClientMessage subscription;
     subscription.mutable_subscribe()->set_all_channels(true);
@@ -102,7 +106,7 @@ Figures served(LoopbackClients& all, std::size_t a_tick) {
     const double before = cpu_s(network);
     tick(messages_per_s / static_cast<double>(a_tick), [&] {
         auto text = mark_now();
-        text.resize(message_octets - 32, '.'); // message_octets on the wire
+        text.resize(message_octets - 32, '.');  // message_octets on the wire
         server.publish(std::vector<std::string>(a_tick, text));
     });
     const auto result = figures(all, cpu_s(network) - before, clients * messages_per_s * seconds);
@@ -110,7 +114,7 @@ Figures served(LoopbackClients& all, std::size_t a_tick) {
     return result;
 }
 
-} // namespace
+}  // namespace
 
 int main() {
     LoopbackClients all;
@@ -120,8 +124,10 @@ int main() {
         ours.better(served(all, 1));
         eight.better(served(all, 8));
     }
-    std::printf("%zu clients over loopback, %.0f messages/s of %zu octets to each\n", clients, messages_per_s, message_octets);
-    std::printf("  limit, bare send    %6.2f us of CPU a message, on its way p50 %.2f ms, p99 %.2f ms\n", limit.cpu_us, limit.p50_ms, limit.p99_ms);
+    std::printf("%zu clients over loopback, %.0f messages/s of %zu octets to each\n", clients, messages_per_s,
+                message_octets);
+    std::printf("  limit, bare send    %6.2f us of CPU a message, on its way p50 %.2f ms, p99 %.2f ms\n", limit.cpu_us,
+                limit.p50_ms, limit.p99_ms);
     bool met = true;
     const auto goal = [&](const char* what, double figure, double bound, double most) {
         std::printf("  %-40s %6.2f, ratio %.2f (goal %.2f)\n", what, figure, figure / bound, most);

@@ -1,7 +1,7 @@
 // The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
-// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled: all the same channels, then each
-// some of its own. Those that joined first, in the middle and last are looked at, and the stalled one when it reads again.
-// And the start of the real program on an archive of a hundred runs, up to the first answer with data.
+// thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled: all the same channels, then
+// each some of its own. Those that joined first, in the middle and last are looked at, and the stalled one when it
+// reads again. And the start of the real program on an archive of a hundred runs, up to the first answer with data.
 
 #include "bench/loopback_clients.hpp"
 #include "bench/must.hpp"
@@ -13,8 +13,8 @@
 #include "tests/support/temporary_folder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <arpa/inet.h>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -35,10 +35,10 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30; // one of those watched is stalled
-constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368; // 1.5 kB
+constexpr std::size_t clients = 1000, watched = 4, watched_channels = 30;  // one of those watched is stalled
+constexpr std::size_t packet_kinds = 32, packets_per_s = 2000, channels_a_packet = 368;  // 1.5 kB
 constexpr std::size_t events_per_s = 10, tones_per_s = 1, stages_per_s = 2;
-constexpr int stalled_receive_octets = 4096; // else the kernel would read for it
+constexpr int stalled_receive_octets = 4096;  // else the kernel would read for it
 constexpr double seconds = 10.0;
 constexpr double sample_rate_hz = 20.0;
 constexpr Apid event_apid{0x7F};
@@ -65,7 +65,8 @@ dictionary::Dictionary load() {
             const ChannelId id{static_cast<std::uint16_t>(d.channels.size())};
             const auto name = "load_" + std::to_string(id.value);
             d.channels.push_back({id, name, name, "", real});
-            packet.fields.push_back({name, real, id, static_cast<unsigned>((tm_data_offset_octets + 4 * i) * 8), std::nullopt});
+            packet.fields.push_back(
+                {name, real, id, static_cast<unsigned>((tm_data_offset_octets + 4 * i) * 8), std::nullopt});
         }
         d.packets.push_back(packet);
     }
@@ -79,9 +80,12 @@ dictionary::Dictionary load() {
     const unsigned data = tm_data_offset_octets * 8;
     dictionary::Type id = whole;
     id.bits = 16;
-    event.fields = {{"event_id", id, {}, data, {}}, {"seconds", whole, {}, data + 16, {}}, {"nanoseconds", whole, {}, data + 48, {}}};
+    event.fields = {{"event_id", id, {}, data, {}},
+                    {"seconds", whole, {}, data + 16, {}},
+                    {"nanoseconds", whole, {}, data + 48, {}}};
     d.packets.push_back(event);
-    d.events = {{EvrId{1}, "LOAD_EVENT", dictionary::EventLevel::activity_hi, "at {seconds}.{nanoseconds}", packet_kinds}};
+    d.events = {
+        {EvrId{1}, "LOAD_EVENT", dictionary::EventLevel::activity_hi, "at {seconds}.{nanoseconds}", packet_kinds}};
     return d;
 }
 
@@ -98,19 +102,23 @@ class Watcher {
     /// @param stalled  it says that it lives, and reads nothing until read_on()
     Watcher(const char* who, std::uint16_t port, const std::string& subscription, bool stalled = false)
         : name(who), reads_(!stalled), socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-        if (stalled) must(::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &stalled_receive_octets, sizeof stalled_receive_octets) == 0, "SO_RCVBUF");
+        if (stalled)
+            must(::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &stalled_receive_octets, sizeof stalled_receive_octets) ==
+                     0,
+                 "SO_RCVBUF");
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_port = htons(port);
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         must(::connect(socket_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0, "connect");
-        write("GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+        write("GET /api/v1/stream HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: "
+              "Upgrade\r\nSec-WebSocket-Version: 13\r\n"
               "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n");
-        while (!kept_.ends_with("\r\n\r\n"))
-            kept_ += read(1);
+        while (!kept_.ends_with("\r\n\r\n")) kept_ += read(1);
         kept_.clear();
         must(subscription.size() < 126, "a short subscription");
-        write(std::string{"\x82"} + static_cast<char>(0x80U | subscription.size()) + std::string(4, '\0') + subscription);
+        write(std::string{"\x82"} + static_cast<char>(0x80U | subscription.size()) + std::string(4, '\0') +
+              subscription);
         thread_ = std::thread{[this] { follow(); }};
     }
     ~Watcher() {
@@ -122,17 +130,21 @@ class Watcher {
 
     void read_on() { reads_ = true; }
 
-    const char* name; ///< as it is told of
+    const char* name;  ///< as it is told of
     std::atomic<std::uint64_t> events{0}, tones{0}, stages{0}, through{0};
-    std::atomic<std::uint64_t> thinned{0};   ///< samples that say that some before them were left out
-    std::atomic<bool> broken{false}; ///< a batch that does not join the one before
+    std::atomic<std::uint64_t> thinned{0};  ///< samples that say that some before them were left out
+    std::atomic<bool> broken{false};        ///< a batch that does not join the one before
     std::vector<double> event_ms, sample_ms;
 
   private:
-    void write(const std::string& octets) { must(::send(socket_, octets.data(), octets.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(octets.size()), "send"); }
+    void write(const std::string& octets) {
+        must(::send(socket_, octets.data(), octets.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(octets.size()),
+             "send");
+    }
     std::string read(std::size_t octets) {
         std::string got(octets, '\0');
-        if (octets > 0 && ::recv(socket_, got.data(), octets, MSG_WAITALL) != static_cast<ssize_t>(octets)) over_ = true;
+        if (octets > 0 && ::recv(socket_, got.data(), octets, MSG_WAITALL) != static_cast<ssize_t>(octets))
+            over_ = true;
         return got;
     }
     void follow() {
@@ -145,8 +157,7 @@ class Watcher {
             std::uint64_t octets = static_cast<std::uint8_t>(head[1]);
             const std::size_t more = octets == 126 ? 2 : octets == 127 ? 8 : 0;
             if (more > 0) octets = 0;
-            for (const char each : read(more))
-                octets = octets << 8U | static_cast<std::uint8_t>(each);
+            for (const char each : read(more)) octets = octets << 8U | static_cast<std::uint8_t>(each);
             const auto payload = read(octets);
             v1::ServerMessage message;
             if (over_ || (head[0] & 0xF) != 2 || !message.ParseFromString(payload) || !message.has_batch()) continue;
@@ -199,7 +210,8 @@ void goal(const std::string& what, double figure, double most, const char* unit)
     met = met && figure <= most;
 }
 
-/// A client's subscription: 30 channels of the first kind of packet; or ten of each of three kinds, other ones for each client.
+/// A client's subscription: 30 channels of the first kind of packet; or ten of each of three kinds, other ones for each
+/// client.
 enum class Channels { same, own };
 std::string subscription_of(std::size_t client, Channels channels) {
     v1::ClientMessage message;
@@ -216,7 +228,7 @@ std::string subscription_of(std::size_t client, Channels channels) {
 
 /// Threads and connections as `aeolis serve` has them, with packets made here in place of a landing.
 void under_load(Channels channels) {
-    std::array<LoopbackClients, 2> others; // who joins between the first and the middle one, and after it
+    std::array<LoopbackClients, 2> others;  // who joins between the first and the middle one, and after it
     spdlog::set_level(spdlog::level::err);
     const test::TemporaryFolder folder;
     const auto file = folder / "load.db";
@@ -226,11 +238,14 @@ void under_load(Channels channels) {
     std::unique_ptr<server::WebServer> web;
     server::StreamHub::Services services;
     services.want_items = [](bool) {};
-    services.read_items = [&](archive::RunId run, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds kinds, const auto& done) {
-        const bool taken = queries->ask([&web, run, after, limit, kinds, done](archive::Reader& reader) {
-            auto page = reader.items(run, after, limit, kinds);
-            web->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
-        }, {}, server::Haste::soon);
+    services.read_items = [&](archive::RunId run, archive::Sequence after, std::size_t limit,
+                              archive::Reader::ItemKinds kinds, const auto& done) {
+        const bool taken = queries->ask(
+            [&web, run, after, limit, kinds, done](archive::Reader& reader) {
+                auto page = reader.items(run, after, limit, kinds);
+                web->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
+            },
+            {}, server::Haste::soon);
         if (!taken) web->post([done] { done(Error{server::QueryThreads::busy}); });
     };
     server::StreamHub hub{dictionary.id, services};
@@ -240,9 +255,10 @@ void under_load(Channels channels) {
         return std::make_shared<server::StreamSession>(hub, format, std::move(wake), server::StreamSession::follower());
     };
     web = std::move(server::WebServer::open({}, handlers)).value();
-    server::PipelineThread pipeline{std::move(archive), dictionary, server::PipelineThread::Faults::give_up, [&](auto batch) {
-                                        web->post([&hub, batch = std::move(batch)]() mutable { hub.published(std::move(batch)); });
-                                    }};
+    server::PipelineThread pipeline{
+        std::move(archive), dictionary, server::PipelineThread::Faults::give_up, [&](auto batch) {
+            web->post([&hub, batch = std::move(batch)]() mutable { hub.published(std::move(batch)); });
+        }};
     std::thread network{[&] { web->run(); }};
     const auto run = pipeline.begin({});
     must(run.ok(), "begin");
@@ -262,15 +278,15 @@ void under_load(Channels channels) {
             std::ranges::generate(subscriptions, next);
             return LoopbackClients::Settings{subscriptions.size(), 0, true, subscriptions};
         };
-        Watcher first{"the first to join", web->port(), next()}, stalled{"the one that was stalled", web->port(), next(), true};
+        Watcher first{"the first to join", web->port(), next()},
+            stalled{"the one that was stalled", web->port(), next(), true};
         others[0].connect(web->port(), half());
         Watcher middle{"one in the middle", web->port(), next()};
         others[1].connect(web->port(), half());
         Watcher last{"the last to join", web->port(), next()};
         const std::array all{&first, &middle, &last, &stalled};
         std::this_thread::sleep_for(std::chrono::milliseconds{500});
-        for (auto& each : others)
-            each.forget();
+        for (auto& each : others) each.forget();
         std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * channels_a_packet), event(tm_overhead_octets + 10);
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t i = 0; i < channels_a_packet; ++i)
@@ -282,7 +298,9 @@ void under_load(Channels channels) {
             for (; static_cast<double>(sent_packets) < (now - begin) * packets_per_s; ++sent_packets) {
                 const auto kind = static_cast<std::uint16_t>(sent_packets % packet_kinds);
                 octets[tm_data_offset_octets + 3] = static_cast<std::uint8_t>(sent_packets >> 5U);
-                seal_tm_packet(octets, Apid{static_cast<std::uint16_t>(kind + 1)}, static_cast<std::uint16_t>(sent_packets / packet_kinds & 0x3FFFU), Sclk{now}, dictionary.id);
+                seal_tm_packet(octets, Apid{static_cast<std::uint16_t>(kind + 1)},
+                               static_cast<std::uint16_t>(sent_packets / packet_kinds & 0x3FFFU), Sclk{now},
+                               dictionary.id);
                 delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets});
             }
             for (; static_cast<double>(sent_events) < (now - begin) * events_per_s; ++sent_events) {
@@ -310,24 +328,30 @@ void under_load(Channels channels) {
         stalled.read_on();
         must(pipeline.finish({"stopped", "", "", ""}).ok(), "finish");
         state.set_state("finished");
-        web->post([&hub, state] { hub.run_state(state); }); // as a run tells its end
+        web->post([&hub, state] { hub.run_state(state); });  // as a run tells its end
         const std::uint64_t last_seq = 2 * (sent_packets + sent_events) + sent_tones + sent_stages;
         const auto has_all = [&](const Watcher* each) { return each->through == last_seq; };
         while (!std::ranges::all_of(all, has_all) && now_s() - stopped < 10.0)
             std::this_thread::sleep_for(std::chrono::milliseconds{10});
         const double caught_up_s = now_s() - stopped;
-        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels %s at %.0f Hz, one of them stalled\n",
-                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients, watched_channels,
-                    channels == Channels::same ? "that are the same" : "of their own", sample_rate_hz);
-        std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n", static_cast<double>(others[0].octets() + others[1].octets()) / seconds * 1e-6, 1e3 * behind_s);
+        std::printf("%.0f packets/s of %zu octets, %zu channels each, for %.0f s; %zu clients on %zu channels %s at "
+                    "%.0f Hz, one of them stalled\n",
+                    static_cast<double>(sent_packets) / seconds, octets.size(), channels_a_packet, seconds, clients,
+                    watched_channels, channels == Channels::same ? "that are the same" : "of their own",
+                    sample_rate_hz);
+        std::printf("  to the clients %.1f MB/s; delivery waited for the archive %.0f ms at most\n",
+                    static_cast<double>(others[0].octets() + others[1].octets()) / seconds * 1e-6, 1e3 * behind_s);
         for (Watcher* each : all) {
             const std::string who = std::string{", "} + each->name;
-            const auto lost = [](std::uint64_t sent, std::uint64_t seen) { return static_cast<double>(sent) - static_cast<double>(seen); };
+            const auto lost = [](std::uint64_t sent, std::uint64_t seen) {
+                return static_cast<double>(sent) - static_cast<double>(seen);
+            };
             goal("events that are lost or doubled" + who, std::abs(lost(sent_events, each->events)), 0.0, "");
-            goal("tones and command stages that are" + who, std::abs(lost(sent_tones, each->tones)) + std::abs(lost(sent_stages, each->stages)), 0.0, "");
+            goal("tones and command stages that are" + who,
+                 std::abs(lost(sent_tones, each->tones)) + std::abs(lost(sent_stages, each->stages)), 0.0, "");
             goal("sequence numbers without an answer" + who, lost(last_seq, each->through), 0.0, "");
             goal("batches that do not join the one before" + who, each->broken ? 1.0 : 0.0, 0.0, "");
-            if (each == &stalled) continue; // what it sees late it sees by its own choice
+            if (each == &stalled) continue;  // what it sees late it sees by its own choice
             goal("event, from receipt to the client, p99" + who, quantile(each->event_ms, 0.99), 40.0, "ms");
             goal("newest sample's age when a batch arrives, p99" + who, quantile(each->sample_ms, 0.99), 65.0, "ms");
         }
@@ -336,14 +360,15 @@ void under_load(Channels channels) {
         goal("connections that ended", static_cast<double>(others[0].broken() + others[1].broken()), 0.0, "");
         goal("resident memory", static_cast<double>(resident) * 1e-6, 300.0, "MB");
     }
-    for (auto& each : others)
-        each.close();
+    for (auto& each : others) each.close();
     auto reader = archive::Reader::open(file, dictionary);
     must(reader.ok(), "Reader::open");
     archive::EventQuery events;
     events.limit = 10'000;
     goal("items that are not in the archive",
-         static_cast<double>(2 * (sent_packets + sent_events) + sent_tones + sent_stages) - static_cast<double>(reader->last_seq(*run).value()), 0.0, "");
+         static_cast<double>(2 * (sent_packets + sent_events) + sent_tones + sent_stages) -
+             static_cast<double>(reader->last_seq(*run).value()),
+         0.0, "");
     web->stop();
     network.join();
     queries.reset();
@@ -367,21 +392,25 @@ void start() {
             must(pipeline.begin({}).ok(), "begin");
             for (std::uint16_t k = 0; k < 640; ++k) {
                 seal_tm_packet(octets, Apid{1}, k, Sclk{k / 64.0}, dictionary.id);
-                must(pipeline.accept(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets}).ok(), "accept");
+                must(pipeline.accept(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets}).ok(),
+                     "accept");
             }
             must(pipeline.finish({}).ok(), "finish");
         }
     }
     std::fflush(stdout);
     const std::uint16_t port = 18'753;
-    const auto ask = "curl -sf --max-time 5 -o /dev/null http://127.0.0.1:" + std::to_string(port) + "/api/v1/runs/1/channels?names=altitude_m\\&points=500";
+    const auto ask = "curl -sf --max-time 5 -o /dev/null http://127.0.0.1:" + std::to_string(port) +
+                     "/api/v1/runs/1/channels?names=altitude_m\\&points=500";
     const double begin = now_s();
     const pid_t child = ::fork();
     must(child >= 0, "fork");
     if (child == 0) {
         const auto listen = "127.0.0.1:" + std::to_string(port);
-        must(std::freopen("/dev/null", "w", stdout) != nullptr && std::freopen("/dev/null", "w", stderr) != nullptr, "freopen");
-        ::execl(program.c_str(), program.c_str(), "serve", "--listen", listen.c_str(), "--archive", file.c_str(), static_cast<char*>(nullptr));
+        must(std::freopen("/dev/null", "w", stdout) != nullptr && std::freopen("/dev/null", "w", stderr) != nullptr,
+             "freopen");
+        ::execl(program.c_str(), program.c_str(), "serve", "--listen", listen.c_str(), "--archive", file.c_str(),
+                static_cast<char*>(nullptr));
         ::_exit(1);
     }
     double first_s = 0.0;
@@ -392,14 +421,17 @@ void start() {
     ::kill(child, SIGTERM);
     ::waitpid(child, nullptr, 0);
     must(first_s > 0.0, "the server's first answer");
-    std::printf("aeolis serve on an archive of 100 runs, %.0f MB\n", static_cast<double>(std::filesystem::file_size(file)) * 1e-6);
+    std::printf("aeolis serve on an archive of 100 runs, %.0f MB\n",
+                static_cast<double>(std::filesystem::file_size(file)) * 1e-6);
     goal("from its start to the first plotted channel", 1e3 * first_s, 1000.0, "ms");
 }
 
-} // namespace
+}  // namespace
 
 int main() {
-    for (const auto channels : {Channels::same, Channels::own}) { // each in a process of its own: what one leaves in the heap is not the other's
+    for (const auto channels :
+         {Channels::same,
+          Channels::own}) {  // each in a process of its own: what one leaves in the heap is not the other's
         const pid_t child = ::fork();
         must(child >= 0, "fork");
         if (child == 0) {

@@ -56,7 +56,8 @@ void open_stream(int socket, const std::string& subscription) {
     if (subscription.size() < 126)
         frame += static_cast<char>(0x80U | subscription.size());
     else
-        frame.append({static_cast<char>(0xFE), static_cast<char>(subscription.size() >> 8U), static_cast<char>(subscription.size() & 255U)});
+        frame.append({static_cast<char>(0xFE), static_cast<char>(subscription.size() >> 8U),
+                      static_cast<char>(subscription.size() & 255U)});
     send_all(socket, frame + std::string(4, '\0') + subscription);
 }
 
@@ -136,7 +137,7 @@ void read_until_closed(Board& board, int phase, const std::vector<int>& sockets,
 struct Order {
     std::size_t clients = 0, stalled = 0;
     bool websocket = true;
-    std::uint32_t subscriptions = 0; ///< that follow, each behind its number of octets
+    std::uint32_t subscriptions = 0;  ///< that follow, each behind its number of octets
 };
 
 void read_all(int orders, void* into, std::size_t octets) {
@@ -172,14 +173,14 @@ std::vector<std::string> read_subscriptions(int orders, std::size_t count) {
             if (order.websocket) open_stream(sockets.back(), subscriptions[i % subscriptions.size()]);
         }
         board.settled = phase;
-        read_until_closed(board, phase, {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)}, order.websocket);
-        for (const int socket : sockets)
-            ::close(socket);
+        read_until_closed(board, phase, {sockets.begin(), sockets.end() - static_cast<std::ptrdiff_t>(order.stalled)},
+                          order.websocket);
+        for (const int socket : sockets) ::close(socket);
         board.settled = phase + 1;
     }
 }
 
-} // namespace
+}  // namespace
 
 std::string mark_now() {
     char digits[17];
@@ -217,32 +218,31 @@ LoopbackClients::~LoopbackClients() {
 void LoopbackClients::connect(std::uint16_t port, const Settings& settings) {
     board_->port = port;
     const int phase = ++board_->phase;
-    const Order order{settings.clients, settings.stalled, settings.websocket, static_cast<std::uint32_t>(settings.subscriptions.size())};
+    const Order order{settings.clients, settings.stalled, settings.websocket,
+                      static_cast<std::uint32_t>(settings.subscriptions.size())};
     must(::write(pipe_, &order, sizeof order) == sizeof order, "write");
     for (const auto& each : settings.subscriptions) {
         const auto octets = static_cast<std::uint32_t>(each.size());
-        must(::write(pipe_, &octets, sizeof octets) == sizeof octets && ::write(pipe_, each.data(), octets) == static_cast<ssize_t>(octets), "write");
+        must(::write(pipe_, &octets, sizeof octets) == sizeof octets &&
+                 ::write(pipe_, each.data(), octets) == static_cast<ssize_t>(octets),
+             "write");
     }
-    while (board_->settled != phase)
-        ::usleep(1000);
+    while (board_->settled != phase) ::usleep(1000);
 }
 
 void LoopbackClients::close() {
     const int phase = ++board_->phase;
-    while (board_->settled != phase)
-        ::usleep(1000);
+    while (board_->settled != phase) ::usleep(1000);
 }
 
 void LoopbackClients::forget() {
     board_->messages = board_->octets = board_->broken = 0;
-    for (auto& bin : board_->latencies)
-        bin = 0;
+    for (auto& bin : board_->latencies) bin = 0;
 }
 
 double LoopbackClients::latency_ms(double quantile) const {
     std::uint64_t all = 0, sum = 0;
-    for (const auto& bin : board_->latencies)
-        all += bin;
+    for (const auto& bin : board_->latencies) all += bin;
     for (std::size_t i = 0; i < latency_bins; ++i) {
         sum += board_->latencies[i];
         if (static_cast<double>(sum) >= quantile * static_cast<double>(all)) return 0.05 * static_cast<double>(i + 1);
@@ -250,4 +250,4 @@ double LoopbackClients::latency_ms(double quantile) const {
     return 0.0;
 }
 
-} // namespace aeolis::bench
+}  // namespace aeolis::bench

@@ -12,16 +12,16 @@
 // Many clients on loopback, in a process of their own so that what they cost is not the server's.
 namespace aeolis::bench {
 
-constexpr std::size_t latency_bins = 20'000; ///< of 50 us: up to one second
+constexpr std::size_t latency_bins = 20'000;  ///< of 50 us: up to one second
 
 /// Shared by both processes.
 struct Board {
-    std::atomic<int> phase{0}; ///< odd: connect and read; even: close
-    std::atomic<int> settled{0}; ///< the phase that the clients have reached
+    std::atomic<int> phase{0};    ///< odd: connect and read; even: close
+    std::atomic<int> settled{0};  ///< the phase that the clients have reached
     std::atomic<std::uint16_t> port{0};
-    std::atomic<std::uint64_t> messages{0}; ///< marks that came in, at all clients
+    std::atomic<std::uint64_t> messages{0};  ///< marks that came in, at all clients
     std::atomic<std::uint64_t> octets{0};
-    std::atomic<std::uint64_t> broken{0};   ///< connections that ended by themselves
+    std::atomic<std::uint64_t> broken{0};  ///< connections that ended by themselves
     std::array<std::atomic<std::uint32_t>, latency_bins> latencies{};
 };
 
@@ -34,9 +34,9 @@ std::string mark_now();
 class LoopbackClients {
   public:
     struct Settings {
-        std::size_t clients = 1000, stalled = 0; ///< stalled: the last of them subscribe and never read
-        bool websocket = true; ///< else what comes is only read
-        std::vector<std::string> subscriptions; ///< ClientMessages; each client sends one, by turns
+        std::size_t clients = 1000, stalled = 0;  ///< stalled: the last of them subscribe and never read
+        bool websocket = true;                    ///< else what comes is only read
+        std::vector<std::string> subscriptions;   ///< ClientMessages; each client sends one, by turns
     };
     /// Before any thread is started. Raises the limit of open files as far as it goes.
     LoopbackClients();
@@ -45,7 +45,7 @@ class LoopbackClients {
     void connect(std::uint16_t port, const Settings& settings);
     void close();
 
-    void forget(); ///< figures begin again
+    void forget();  ///< figures begin again
     std::uint64_t messages() const { return board_->messages; }
     std::uint64_t octets() const { return board_->octets; }
     std::uint64_t broken() const { return board_->broken; }
@@ -53,8 +53,8 @@ class LoopbackClients {
 
   private:
     Board* board_;
-    int pipe_ = -1; ///< settings to the other process
+    int pipe_ = -1;  ///< settings to the other process
     int process_ = -1;
 };
 
-} // namespace aeolis::bench
+}  // namespace aeolis::bench

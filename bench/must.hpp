@@ -13,4 +13,4 @@ inline void must(bool done, const char* what) {
     std::exit(1);
 }
 
-} // namespace aeolis::bench
+}  // namespace aeolis::bench

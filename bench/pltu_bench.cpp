@@ -15,7 +15,7 @@ using namespace aeolis;
 
 constexpr double goal_mb_per_s = 200.0;
 constexpr std::size_t stream_octets = std::size_t{32} << 20U;
-constexpr std::size_t piece_octets = 65536; // as a socket gives them
+constexpr std::size_t piece_octets = 65536;  // as a socket gives them
 
 std::uint32_t noise() {
     static std::uint32_t state = 1;
@@ -24,7 +24,7 @@ std::uint32_t noise() {
 
 struct Load {
     const char* name;
-    std::size_t data_octets; ///< of a frame; 0: no frames, noise only
+    std::size_t data_octets;  ///< of a frame; 0: no frames, noise only
     std::size_t between_octets;
 };
 
@@ -56,7 +56,7 @@ double mb_per_s(std::size_t octets, Pass pass) {
     return best;
 }
 
-} // namespace
+}  // namespace
 
 int main() {
     bool met = true;

@@ -1,8 +1,9 @@
-// The threaded executive over a whole landing: processor time of each task in a cycle against its budget, by message, and
-// the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter of an
-// hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
+// The threaded executive over a whole landing: processor time of each task in a cycle against its budget, by message,
+// and the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter
+// of an hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.
 //
-// Goal: no cycle's own processor time, summed over all its tasks, above 1/64 s; each task within its budget in 999 of 1000.
+// Goal: no cycle's own processor time, summed over all its tasks, above 1/64 s; each task within its budget in 999 of
+// 1000.
 #include "server/scenario/scenario_text.hpp"
 #include "server/venue/task_report.hpp"
 #include "server/venue/threaded_executive.hpp"
@@ -61,7 +62,7 @@ int main() {
     std::printf("overruns that sync counted: %llu; ticks that passed in a cycle beyond its own: %llu\n",
                 static_cast<unsigned long long>(landing.counters().overruns), static_cast<unsigned long long>(skipped));
     if (real_time)
-        std::printf("lateness of a tick: mean %.0f us, 99.9 %% %.0f us, worst %.0f us\n", lateness.mean_us(), lateness.p999_us(),
-                    lateness.worst_us());
+        std::printf("lateness of a tick: mean %.0f us, 99.9 %% %.0f us, worst %.0f us\n", lateness.mean_us(),
+                    lateness.p999_us(), lateness.worst_us());
     return server::within_budgets(executive->times()) ? 0 : 1;
 }

@@ -1,4 +1,5 @@
-// The X-band tone receiver beside exact theory: what `aeolis tones bench` prints. AEOLIS_FULL=1 adds the points that take long.
+// The X-band tone receiver beside exact theory: what `aeolis tones bench` prints. AEOLIS_FULL=1 adds the points that
+// take long.
 #include "server/scenario/scenario_text.hpp"
 #include "server/tones/tone_bench.hpp"
 
@@ -15,11 +16,11 @@ int main() {
     simulation::Scenario dispersed = *landing;
     dispersed.dispersions = errors->dispersions;
     const char* full = std::getenv("AEOLIS_FULL");
-    const bool met = server::tell_tone_figures(
-        *loaded.dictionary, *landing, dispersed, full != nullptr && std::string{full} == "1",
-        [](const server::ToneFigure& figure) {
-            std::printf("%s\n", figure.text().c_str());
-            std::fflush(stdout); // the next may take minutes
-        });
+    const bool met =
+        server::tell_tone_figures(*loaded.dictionary, *landing, dispersed, full != nullptr && std::string{full} == "1",
+                                  [](const server::ToneFigure& figure) {
+                                      std::printf("%s\n", figure.text().c_str());
+                                      std::fflush(stdout);  // the next may take minutes
+                                  });
     return met ? 0 : 1;
 }

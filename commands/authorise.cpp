@@ -24,4 +24,4 @@ Result<void> authorise(const dictionary::Command& command, const Intent& intent,
     return {};
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -14,7 +14,7 @@ bool is_hazardous(const dictionary::Command& command);
 
 struct Intent {
     bool armed = false;
-    std::string confirmation; ///< what the controller typed
+    std::string confirmation;  ///< what the controller typed
 };
 
 /// Whether the command may be released. Refused, with the reason in words, when it is hazardous and not armed or its
@@ -23,4 +23,4 @@ struct Intent {
 Result<void> authorise(const dictionary::Command& command, const Intent& intent,
                        std::span<const PreconditionState> preconditions);
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

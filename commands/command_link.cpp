@@ -1,7 +1,7 @@
 #include "commands/command_link.hpp"
 
-#include "common/cltu.hpp"
 #include "common/check.hpp"
+#include "common/cltu.hpp"
 #include "common/ids.hpp"
 
 namespace aeolis::commands {
@@ -11,7 +11,7 @@ double seconds_between(Ert earlier, Ert later) {
     return static_cast<double>(later.microseconds - earlier.microseconds) * 1.0e-6;
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(Fop::Service service) {
     return service == Fop::Service::sequence_controlled ? "sequence-controlled (AD)" : "expedited (BD)";
@@ -36,7 +36,9 @@ std::optional<CommandLink::Radiated> CommandLink::next(Ert now) {
     AEOLIS_CHECK(static_cast<bool>(frame));
     Radiated radiated{outgoing->tag,
                       frame->header.bypass ? Fop::Service::expedited : Fop::Service::sequence_controlled,
-                      frame->header.sequence, outgoing->transmission, {}};
+                      frame->header.sequence,
+                      outgoing->transmission,
+                      {}};
     radiated.cltu.resize(cltu_octets(outgoing->frame.size()));
     write_cltu(outgoing->frame, radiated.cltu);
     return radiated;
@@ -58,4 +60,4 @@ void CommandLink::pass(Ert now) {
     }
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

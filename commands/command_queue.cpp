@@ -50,12 +50,14 @@ bool CommandQueue::judged(std::uint64_t number) {
 std::optional<std::uint64_t> CommandQueue::leaves_after(const Entry& entry) const {
     std::optional<std::uint64_t> last;
     for (const Entry& each : entries_)
-        if (entry.in_order && each.in_order && each.number < entry.number) last = std::max(last.value_or(0), each.number);
+        if (entry.in_order && each.in_order && each.number < entry.number)
+            last = std::max(last.value_or(0), each.number);
     return last;
 }
 
 bool CommandQueue::is_due(const Entry& entry, Ert now) const {
-    return !entry.held && !entry.needs_approval && !entry.doubted && (!entry.release_at || *entry.release_at <= now) && !leaves_after(entry);
+    return !entry.held && !entry.needs_approval && !entry.doubted && (!entry.release_at || *entry.release_at <= now) &&
+           !leaves_after(entry);
 }
 
 bool CommandQueue::due(std::uint64_t number, Ert now) const {
@@ -65,8 +67,7 @@ bool CommandQueue::due(std::uint64_t number, Ert now) const {
 
 std::vector<std::uint64_t> CommandQueue::take_all() {
     std::vector<std::uint64_t> all;
-    for (const Entry& each : std::exchange(entries_, {}))
-        all.push_back(each.number);
+    for (const Entry& each : std::exchange(entries_, {})) all.push_back(each.number);
     return all;
 }
 
@@ -88,4 +89,4 @@ std::vector<std::uint64_t> CommandQueue::postpone_due(Ert now, Ert until) {
     return postponed;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -10,7 +10,8 @@ namespace aeolis::commands {
 
 /// Commands that may be sent and have not left: they wait for their time, for a controller, or for a second one.
 ///
-/// Order    of those that are due, the larger priority first; of equals by their number, as they were asked for. Those that are
+/// Order    of those that are due, the larger priority first; of equals by their number, as they were asked for. Those
+/// that are
 ///          `in_order` among themselves by their number alone: each was judged by what those before it do
 /// Memory   a line a command; whoever adds them bounds their number
 class CommandQueue {
@@ -18,22 +19,23 @@ class CommandQueue {
     struct Entry {
         std::uint64_t number = 0;
         std::uint32_t priority = 0;
-        std::optional<Ert> release_at; ///< none: at once
+        std::optional<Ert> release_at;  ///< none: at once
         bool held = false;
-        bool needs_approval = false; ///< by a second person
-        bool in_order = false;       ///< leaves after all others of this kind that have a smaller number
-        bool doubted = false;        ///< what it was judged by has changed: it does not leave until it is judged anew
+        bool needs_approval = false;  ///< by a second person
+        bool in_order = false;        ///< leaves after all others of this kind that have a smaller number
+        bool doubted = false;         ///< what it was judged by has changed: it does not leave until it is judged anew
     };
 
     void add(const Entry& entry);
 
     /// False when no such command waits.
     bool hold(std::uint64_t number) { return set_held(number, true); }
-    bool release(std::uint64_t number) { return set_held(number, false); } ///< it still waits for its time
+    bool release(std::uint64_t number) { return set_held(number, false); }  ///< it still waits for its time
     bool cancel(std::uint64_t number);
     /// False also when it needs none.
     bool approve(std::uint64_t number);
-    /// One that is in order, and was before those that wait, has come to nothing: those behind it are doubted. Their numbers.
+    /// One that is in order, and was before those that wait, has come to nothing: those behind it are doubted. Their
+    /// numbers.
     std::vector<std::uint64_t> doubt_after(std::uint64_t number);
     /// It was judged anew. False also when it was not doubted.
     bool judged(std::uint64_t number);
@@ -60,4 +62,4 @@ class CommandQueue {
     std::vector<Entry> entries_;
 };
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -55,7 +55,7 @@ bool is_label(const Type& type, double value) {
 
 struct Bits {
     std::uint64_t word = 0;
-    double means = 0.0; ///< what the other end reads: the value rounded to the encoding
+    double means = 0.0;  ///< what the other end reads: the value rounded to the encoding
 };
 
 /// The number that stands in the packet for the engineering value; only a straight line can be turned round.
@@ -67,8 +67,7 @@ Result<double> uncalibrated(const std::string& prefix, const Type& type, double 
 }
 double calibrated(const Type& type, double raw) {
     double sum = 0.0;
-    for (std::size_t k = type.calibrator.size(); k-- > 0;)
-        sum = sum * raw + type.calibrator[k];
+    for (std::size_t k = type.calibrator.size(); k-- > 0;) sum = sum * raw + type.calibrator[k];
     return type.calibrator.empty() ? raw : sum;
 }
 
@@ -136,7 +135,7 @@ const NamedValue* value_named(std::span<const NamedValue> values, std::string_vi
     return nullptr;
 }
 
-} // namespace
+}  // namespace
 
 Result<std::vector<std::uint8_t>> encode(const dictionary::Command& command, std::span<const NamedValue> arguments,
                                          std::uint16_t count) {
@@ -200,4 +199,4 @@ std::string arguments_text(std::span<const NamedValue> arguments) {
     return text;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -11,12 +11,12 @@
 
 namespace aeolis::commands {
 
-inline constexpr Apid telecommand_apid{0x001}; ///< ours: all telecommands; the opcode says which
+inline constexpr Apid telecommand_apid{0x001};  ///< ours: all telecommands; the opcode says which
 inline constexpr std::uint16_t count_modulus = 1U << 14;
 
 struct NamedValue {
     std::string name;
-    double value = 0.0; ///< an enumeration's number, a boolean's 0 or 1
+    double value = 0.0;  ///< an enumeration's number, a boolean's 0 or 1
     bool operator==(const NamedValue&) const = default;
 };
 
@@ -41,4 +41,4 @@ std::vector<NamedValue> fill_from_solution(const dictionary::Command& command, s
 /// "solution_id=1 epoch_sclk=397500000 …": exact, shortest digits that give the same double.
 std::string arguments_text(std::span<const NamedValue> arguments);
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -10,7 +10,7 @@ constexpr std::uint8_t control_unlock = 0x00;
 constexpr std::uint8_t control_set_expected = 0x82;
 constexpr std::uint8_t cop_1 = 1;
 
-} // namespace
+}  // namespace
 
 Fop::Fop(const Settings& settings) : settings_(settings) {
     AEOLIS_CHECK(settings.window >= 1 && settings.window <= 127 && settings.transmissions_max >= 1);
@@ -113,8 +113,7 @@ void Fop::repeat() {
 }
 
 void Fop::halt(Halt why) {
-    for (const Item& item : outstanding_)
-        reports_.push_back({item.tag, Fate::never_acknowledged, item.transmissions});
+    for (const Item& item : outstanding_) reports_.push_back({item.tag, Fate::never_acknowledged, item.transmissions});
     outstanding_.clear();
     state_ = State::halted;
     why_halted_ = why;
@@ -132,8 +131,7 @@ void Fop::restart() {
 std::vector<std::uint64_t> Fop::take_back() {
     std::vector<std::uint64_t> tags;
     for (auto* items : {&expedited_, &waiting_}) {
-        for (const Item& item : *items)
-            tags.push_back(item.tag);
+        for (const Item& item : *items) tags.push_back(item.tag);
         items->clear();
     }
     return tags;
@@ -142,11 +140,12 @@ std::vector<std::uint64_t> Fop::take_back() {
 std::vector<std::uint64_t> Fop::unacknowledged() const {
     std::vector<std::uint64_t> tags;
     tags.reserve(outstanding_.size());
-    for (const Item& item : outstanding_)
-        tags.push_back(item.tag);
+    for (const Item& item : outstanding_) tags.push_back(item.tag);
     return tags;
 }
 
-std::vector<Fop::Report> Fop::take_reports() { return std::exchange(reports_, {}); }
+std::vector<Fop::Report> Fop::take_reports() {
+    return std::exchange(reports_, {});
+}
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

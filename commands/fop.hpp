@@ -22,30 +22,30 @@ namespace aeolis::commands {
 ///          radiated and not acknowledged is reported so, what was not radiated waits for restart()
 class Fop {
   public:
-    static constexpr std::size_t frames_max = 1024; ///< ours: far more than a person sends
+    static constexpr std::size_t frames_max = 1024;  ///< ours: far more than a person sends
 
     struct Settings {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
-        std::uint8_t window = 32; ///< outstanding at most; less than half of the receiver's window
+        std::uint8_t window = 32;  ///< outstanding at most; less than half of the receiver's window
         unsigned transmissions_max = 8;
     };
     enum class Service {
-        sequence_controlled, ///< AD: in order, acknowledged, sent again
-        expedited,           ///< BD: once, without acknowledgement
+        sequence_controlled,  ///< AD: in order, acknowledged, sent again
+        expedited,            ///< BD: once, without acknowledgement
     };
     enum class State {
         active,
-        retransmitting, ///< asked to; the same request is not followed twice
-        waiting,        ///< the vehicle has no room
-        halted,         ///< nothing in sequence goes out until restart()
-        restarting,     ///< the receiver is being told which sequence comes next
+        retransmitting,  ///< asked to; the same request is not followed twice
+        waiting,         ///< the vehicle has no room
+        halted,          ///< nothing in sequence goes out until restart()
+        restarting,      ///< the receiver is being told which sequence comes next
     };
     enum class Halt { none, lockout, contradiction, too_many_transmissions };
     enum class Fate {
         acknowledged,
-        radiated,           ///< by the expedited service: nobody will say more
-        never_acknowledged, ///< radiated; the vehicle may have taken it or not
+        radiated,            ///< by the expedited service: nobody will say more
+        never_acknowledged,  ///< radiated; the vehicle may have taken it or not
     };
     struct Report {
         std::uint64_t tag = 0;
@@ -55,7 +55,7 @@ class Fop {
     };
     struct Outgoing {
         std::vector<std::uint8_t> frame;
-        std::optional<std::uint64_t> tag; ///< none: a control command to the receiver of frames
+        std::optional<std::uint64_t> tag;  ///< none: a control command to the receiver of frames
         unsigned transmission = 1;
     };
 
@@ -94,7 +94,7 @@ class Fop {
         std::vector<std::uint8_t> data;
         std::uint8_t sequence = 0;
         unsigned transmissions = 0;
-        bool due = true; ///< to be radiated, again
+        bool due = true;  ///< to be radiated, again
     };
 
     Outgoing radiate(Item& item, bool bypass);
@@ -109,9 +109,9 @@ class Fop {
     std::deque<Item> expedited_, waiting_, outstanding_;
     std::deque<std::vector<std::uint8_t>> controls_;
     std::vector<Report> reports_;
-    std::uint8_t next_sequence_ = 0; ///< V(S)
+    std::uint8_t next_sequence_ = 0;  ///< V(S)
     State state_ = State::active;
     Halt why_halted_ = Halt::none;
 };
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

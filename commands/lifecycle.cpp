@@ -30,40 +30,28 @@ std::string evidence_of(const Answer& answer) {
     return answer.event_name + " at SCLK " + text_of(answer.sclk) + (answer.text.empty() ? "" : ": " + answer.text);
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(Stage stage) {
     switch (stage) {
-    case Stage::queued:
-        return "queued";
-    case Stage::authorised:
-        return "authorised";
-    case Stage::released:
-        return "released";
-    case Stage::radiated:
-        return "radiated";
-    case Stage::received:
-        return "received";
-    case Stage::accepted:
-        return "accepted";
-    case Stage::executed:
-        return "executed";
-    case Stage::verified:
-        return "verified";
+    case Stage::queued: return "queued";
+    case Stage::authorised: return "authorised";
+    case Stage::released: return "released";
+    case Stage::radiated: return "radiated";
+    case Stage::received: return "received";
+    case Stage::accepted: return "accepted";
+    case Stage::executed: return "executed";
+    case Stage::verified: return "verified";
     }
     return "";
 }
 
 const char* name_of(Status status) {
     switch (status) {
-    case Status::pending:
-        return "pending";
-    case Status::ok:
-        return "ok";
-    case Status::failed:
-        return "failed";
-    case Status::unknown:
-        return "unknown";
+    case Status::pending: return "pending";
+    case Status::ok: return "ok";
+    case Status::failed: return "failed";
+    case Status::unknown: return "unknown";
     }
     return "";
 }
@@ -232,4 +220,4 @@ Ert CommandLifecycle::deadline(Stage stage) const {
     return later(*radiated_, total_window_s(stage) + 2.0 * light_time_s_);
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

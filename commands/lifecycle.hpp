@@ -31,24 +31,25 @@ struct StageChange {
 /// An event report with `opcode` and `count` among its arguments.
 struct Answer {
     EvrId event;
-    std::string event_name; ///< "COMMAND_ACCEPTED"
-    std::string text;       ///< as people read it; for a refusal it says why
+    std::string event_name;  ///< "COMMAND_ACCEPTED"
+    std::string text;        ///< as people read it; for a refusal it says why
     Opcode opcode;
-    std::uint16_t count = 0; ///< packet count of the telecommand that it answers
-    Sclk sclk;               ///< when it happened on board
-    Ert ert;                 ///< when Earth learnt of it
+    std::uint16_t count = 0;  ///< packet count of the telecommand that it answers
+    Sclk sclk;                ///< when it happened on board
+    Ert ert;                  ///< when Earth learnt of it
 };
 
 /// One telecommand on its way, stage by stage, each with its evidence.
 ///
 /// In       notices of ground's own stages; answers; read-backs; time passing (Earth's clock)
 /// Out      changes, appended to `out`
-/// Rules    a stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else inferred from
+/// Rules    a stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else
+/// inferred from
 ///          an answer, and says so.
 ///          Silence until the window (of the dictionary, from radiation) plus light time both ways is `unknown`, with
 ///          words: the answer may be lost, or come later with the recording; it then still counts. A refusal, or a
-///          read-back that differs, is `failed`. Ok never changes again, but for `released` of what is taken back before it was
-///          radiated; failed only when a later read-back is equal.
+///          read-back that differs, is `failed`. Ok never changes again, but for `released` of what is taken back
+///          before it was radiated; failed only when a later read-back is equal.
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:
@@ -67,7 +68,8 @@ class CommandLifecycle {
     void taken_back(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// Its frame went out once more: the windows begin anew.
     void radiated_again(std::string evidence, Ert at, std::vector<StageChange>& out);
-    /// It has left, and would not any more: why its frame does not go out once more, or what it was judged by no longer holds.
+    /// It has left, and would not any more: why its frame does not go out once more, or what it was judged by no longer
+    /// holds.
     void radiated_in_doubt(std::string evidence, Ert at, std::vector<StageChange>& out);
     /// The vehicle's receiver of frames reports that it took the frame: `received`, observed.
     void frame_taken(std::string evidence, Ert at, std::vector<StageChange>& out);
@@ -105,4 +107,4 @@ class CommandLifecycle {
     std::optional<Sclk> executed_sclk_;
 };
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -21,10 +21,8 @@ std::string text_of(Sclk time) {
 
 double number_of(const dictionary::Type& type, std::uint64_t word) {
     switch (type.encoding) {
-    case dictionary::Encoding::unsigned_integer:
-        return static_cast<double>(word);
-    case dictionary::Encoding::twos_complement:
-        return static_cast<double>(sign_extend(word, type.bits));
+    case dictionary::Encoding::unsigned_integer: return static_cast<double>(word);
+    case dictionary::Encoding::twos_complement: return static_cast<double>(sign_extend(word, type.bits));
     case dictionary::Encoding::ieee754:
         AEOLIS_CHECK(type.bits == 32 || type.bits == 64);
         return type.bits == 32 ? static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(word)))
@@ -33,4 +31,4 @@ double number_of(const dictionary::Type& type, std::uint64_t word) {
     return 0.0;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

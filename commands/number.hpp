@@ -12,9 +12,9 @@ namespace aeolis::commands {
 /// The fewest digits that give the same double again: "405", "-4.49", "1e+20".
 std::string shortest_text(double value);
 
-std::string text_of(Sclk time); ///< to a millisecond: "397501022.156"
+std::string text_of(Sclk time);  ///< to a millisecond: "397501022.156"
 
 /// The number that `word`, the field's bits, stands for; before calibration.
 double number_of(const dictionary::Type& type, std::uint64_t word);
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

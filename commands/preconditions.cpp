@@ -8,16 +8,13 @@ namespace {
 
 using State = PreconditionState::State;
 
-} // namespace
+}  // namespace
 
 const char* name_of(PreconditionState::State state) {
     switch (state) {
-    case State::holds:
-        return "holds";
-    case State::fails:
-        return "fails";
-    case State::unknown:
-        break;
+    case State::holds: return "holds";
+    case State::fails: return "fails";
+    case State::unknown: break;
     }
     return "unknown";
 }
@@ -47,4 +44,4 @@ std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, c
     return states;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -11,8 +11,8 @@ namespace aeolis::commands {
 
 /// The latest value of a channel that ground has received.
 struct LatestValue {
-    std::optional<double> value; ///< none: never received, or undefined on board
-    double age_s = 0.0;          ///< since it was received; light time comes on top
+    std::optional<double> value;  ///< none: never received, or undefined on board
+    double age_s = 0.0;           ///< since it was received; light time comes on top
 };
 
 /// Older than this it says nothing about now. Ours: thirty missed samples of a 1 Hz channel.
@@ -22,7 +22,7 @@ struct PreconditionState {
     enum class State { holds, fails, unknown };
     State state = State::unknown;
     std::optional<double> value;
-    std::string text; ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
+    std::string text;  ///< "parameters_received == 1: is 0", "late_cruise == 1: not received yet"
 };
 
 /// "holds", "fails", "unknown"
@@ -32,4 +32,4 @@ const char* name_of(PreconditionState::State state);
 std::vector<PreconditionState> check(const dictionary::Dictionary& dictionary, const dictionary::Command& command,
                                      std::span<const LatestValue> latest);
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

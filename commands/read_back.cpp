@@ -28,7 +28,7 @@ std::string hexadecimal(std::uint64_t word) {
     return buffer;
 }
 
-} // namespace
+}  // namespace
 
 const dictionary::Packet* read_back_packet(const dictionary::Dictionary& dictionary,
                                            const dictionary::Command& command) {
@@ -64,7 +64,7 @@ ReadBack compare(const dictionary::Command& command, std::span<const std::uint8_
     result.held_at = header->time;
     for (const dictionary::Argument& argument : command.arguments) {
         const dictionary::Field* field = field_of(report, argument);
-        AEOLIS_CHECK(field != nullptr); // read_back_packet() chose this report
+        AEOLIS_CHECK(field != nullptr);  // read_back_packet() chose this report
         ++result.compared;
         const std::uint64_t ours = read_bits(telecommand->arguments, argument.position_bits, argument.type.bits);
         const std::uint64_t theirs = read_bits(held, field->position_bits, field->type.bits);
@@ -83,4 +83,4 @@ ReadBack compare(const dictionary::Command& command, std::span<const std::uint8_
     return result;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

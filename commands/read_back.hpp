@@ -19,18 +19,18 @@ const dictionary::Packet* read_back_packet(const dictionary::Dictionary& diction
 struct ReadBack {
     struct Difference {
         std::string argument;
-        std::string sent, held; ///< in words, or hexadecimal when the numbers look alike
+        std::string sent, held;  ///< in words, or hexadecimal when the numbers look alike
     };
     std::size_t compared = 0;
     std::vector<Difference> differences;
-    Sclk held_at; ///< SCLK of the report
+    Sclk held_at;  ///< SCLK of the report
 
     bool equal() const { return compared > 0 && differences.empty(); }
-    std::string text() const; ///< "all 16 arguments equal, bit for bit, at SCLK …", or which differ
+    std::string text() const;  ///< "all 16 arguments equal, bit for bit, at SCLK …", or which differ
 };
 
 /// `sent`: the telecommand packet; `held`: a packet of read_back_packet() that has been decoded (length and CRC right).
 ReadBack compare(const dictionary::Command& command, std::span<const std::uint8_t> sent,
                  const dictionary::Packet& report, std::span<const std::uint8_t> held);
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

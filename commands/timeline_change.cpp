@@ -19,13 +19,14 @@ Row* row_at(std::vector<Row>& rows, double index) {
     return index >= 0.0 && index < static_cast<double>(rows.size()) ? &rows[static_cast<std::size_t>(index)] : nullptr;
 }
 
-} // namespace
+}  // namespace
 
 bool changes_offsets(std::string_view command) {
     return command == timepoint_offset || command == anchor_offset;
 }
 
-void apply_offsets(dictionary::Dictionary& dictionary, std::string_view command, std::span<const NamedValue> arguments) {
+void apply_offsets(dictionary::Dictionary& dictionary, std::string_view command,
+                   std::span<const NamedValue> arguments) {
     if (command == timepoint_offset) {
         auto* timepoint = row_at(dictionary.timeline, argument_of(arguments, "timepoint"));
         if (timepoint == nullptr) return;
@@ -44,9 +45,10 @@ std::vector<std::size_t> moved_timepoints(const dictionary::Dictionary& dictiona
     const double anchor = command == anchor_offset ? argument_of(arguments, "anchor") : -1.0;
     for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) {
         const auto& hangs_on = dictionary.timeline[i].anchor;
-        if (timepoint == static_cast<double>(i) || (hangs_on && anchor == static_cast<double>(hangs_on->value))) moved.push_back(i);
+        if (timepoint == static_cast<double>(i) || (hangs_on && anchor == static_cast<double>(hangs_on->value)))
+            moved.push_back(i);
     }
     return moved;
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -25,11 +25,12 @@ std::string TrackingSchedule::refusal(Ert at) const {
     const TrackingPass* last = nullptr;
     for (const TrackingPass& pass : passes_)
         if (pass.end <= at && (last == nullptr || last->end < pass.end)) last = &pass;
-    text += last == nullptr ? ": no pass was before" : ": the last pass, of " + last->station + ", ended " + day_of_year_text(last->end);
+    text += last == nullptr ? ": no pass was before"
+                            : ": the last pass, of " + last->station + ", ended " + day_of_year_text(last->end);
     const auto* next = next_after(at);
     if (next == nullptr) return text + "; none comes after it";
-    return text + "; the next, of " + next->station + ", is " + day_of_year_text(next->begin) + " to " + day_of_year_text(next->end) +
-           ": give a release time within it";
+    return text + "; the next, of " + next->station + ", is " + day_of_year_text(next->begin) + " to " +
+           day_of_year_text(next->end) + ": give a release time within it";
 }
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -30,12 +30,12 @@ class TrackingSchedule {
     const TrackingPass* next_after(Ert at) const;
     /// None sees the vehicle then, nor ever after.
     bool over(Ert at) const { return !sees(at) && next_after(at) == nullptr; }
-    /// Why nothing can leave at that time, with what a controller can do: "no station sees the vehicle at …: the last pass, of
-    /// DSS-43, ended …; the next, of DSS-34, is … to …: give a release time within it".
+    /// Why nothing can leave at that time, with what a controller can do: "no station sees the vehicle at …: the last
+    /// pass, of DSS-43, ended …; the next, of DSS-34, is … to …: give a release time within it".
     std::string refusal(Ert at) const;
 
   private:
-    std::vector<TrackingPass> passes_; ///< by begin
+    std::vector<TrackingPass> passes_;  ///< by begin
 };
 
-} // namespace aeolis::commands
+}  // namespace aeolis::commands

@@ -19,4 +19,4 @@ double log_bessel_i0(double x) {
     return x - 0.5 * std::log(2.0 * std::numbers::pi * x) + std::log1p(y * (1.0 + y * (4.5 + y * 37.5)));
 }
 
-} // namespace aeolis
+}  // namespace aeolis

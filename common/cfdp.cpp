@@ -53,7 +53,9 @@ class Fields {
     std::span<const std::uint8_t> rest_;
 };
 
-bool is_condition(unsigned code) { return code <= 11 || code >= 14; }
+bool is_condition(unsigned code) {
+    return code <= 11 || code >= 14;
+}
 
 Condition condition_in(std::uint8_t octet, bool& known) {
     known = known && is_condition(octet >> 4);
@@ -147,8 +149,12 @@ void put_text(BitWriter& writer, std::string_view text) {
     for (const char each : text) writer.put(static_cast<unsigned char>(each), 8);
 }
 
-void put_directive(BitWriter& writer, Directive code) { writer.put(static_cast<std::uint8_t>(code), 8); }
-void put_condition(BitWriter& writer, Condition condition) { writer.put(static_cast<std::uint8_t>(condition), 4); }
+void put_directive(BitWriter& writer, Directive code) {
+    writer.put(static_cast<std::uint8_t>(code), 8);
+}
+void put_condition(BitWriter& writer, Condition condition) {
+    writer.put(static_cast<std::uint8_t>(condition), 4);
+}
 
 void put_content(BitWriter& writer, const Content& content) {
     std::visit(Match{

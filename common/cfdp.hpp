@@ -20,11 +20,11 @@
 namespace aeolis::cfdp {
 
 inline constexpr std::size_t written_header_octets = 12;
-inline constexpr std::size_t nak_requests_max = 64; ///< ours: of one PDU; the rest is asked for in the next
+inline constexpr std::size_t nak_requests_max = 64;  ///< ours: of one PDU; the rest is asked for in the next
 
 struct Header {
     bool toward_sender = false;
-    bool unacknowledged = false; ///< class 1
+    bool unacknowledged = false;  ///< class 1
     bool crc = false;
     std::uint64_t source = 0;
     std::uint64_t sequence = 0;
@@ -33,7 +33,15 @@ struct Header {
     constexpr bool operator==(const Header&) const = default;
 };
 
-enum class Directive : std::uint8_t { eof = 4, finished = 5, ack = 6, metadata = 7, nak = 8, prompt = 9, keep_alive = 12 };
+enum class Directive : std::uint8_t {
+    eof = 4,
+    finished = 5,
+    ack = 6,
+    metadata = 7,
+    nak = 8,
+    prompt = 9,
+    keep_alive = 12
+};
 
 enum class Condition : std::uint8_t {
     no_error = 0,
@@ -62,8 +70,8 @@ struct Metadata {
     bool closure_requested = false;
     Checksum checksum = Checksum::modular;
     std::uint32_t file_octets = 0;
-    std::string_view source_name{};      ///< 255 octets at most, of any content
-    std::string_view destination_name{}; ///< the same
+    std::string_view source_name{};       ///< 255 octets at most, of any content
+    std::string_view destination_name{};  ///< the same
 };
 struct Eof {
     Condition condition = Condition::no_error;
@@ -73,12 +81,12 @@ struct Eof {
 struct Finished {
     Condition condition = Condition::no_error;
     bool complete = true;
-    std::uint8_t file_status = 2; ///< 0 discarded, 1 rejected by the filestore, 2 retained, 3 not reported
+    std::uint8_t file_status = 2;  ///< 0 discarded, 1 rejected by the filestore, 2 retained, 3 not reported
 };
 struct Ack {
-    Directive of = Directive::eof; ///< eof or finished
+    Directive of = Directive::eof;  ///< eof or finished
     Condition condition = Condition::no_error;
-    std::uint8_t transaction_status = 1; ///< 0 undefined, 1 active, 2 terminated, 3 unrecognised
+    std::uint8_t transaction_status = 1;  ///< 0 undefined, 1 active, 2 terminated, 3 unrecognised
 };
 /// From `start` up to but without `end`; {0, 0} asks for the metadata.
 struct Range {
@@ -89,10 +97,10 @@ struct Range {
 };
 struct Nak {
     Range scope;
-    FixedVector<Range, nak_requests_max> requests; ///< of a longer one that was read, the first
+    FixedVector<Range, nak_requests_max> requests;  ///< of a longer one that was read, the first
 };
 struct Prompt {
-    bool keep_alive = false; ///< else: send a NAK
+    bool keep_alive = false;  ///< else: send a NAK
 };
 struct KeepAlive {
     std::uint32_t progress_octets = 0;

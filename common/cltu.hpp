@@ -27,7 +27,8 @@ constexpr std::size_t cltu_octets(std::size_t information_octets) {
 }
 inline constexpr std::size_t cltu_octets_max = cltu_octets(tc_frame_octets_max);
 /// Room for what the largest CLTU carries, with its fill.
-inline constexpr std::size_t cltu_information_octets_max = cltu_blocks(tc_frame_octets_max) * cltu_block_information_octets;
+inline constexpr std::size_t cltu_information_octets_max =
+    cltu_blocks(tc_frame_octets_max) * cltu_block_information_octets;
 
 /// The last octet of the code block with these 7 octets of information.
 std::uint8_t bch_parity_octet(std::span<const std::uint8_t, cltu_block_information_octets> information);

@@ -22,7 +22,8 @@ using ToneId = Id<struct ToneTag, std::uint8_t>;             ///< one of the 256
 using TimepointId = Id<struct TimepointTag, std::uint16_t>;  ///< row of the timeline, from 0
 using AnchorId = Id<struct AnchorTag, std::uint16_t>;        ///< row of the anchors in topological order, 0 the root
 
-/// How links name the vehicle, and its one channel of telecommand frames: 10 bits and 6. The number is ours, a name and no more.
+/// How links name the vehicle, and its one channel of telecommand frames: 10 bits and 6. The number is ours, a name and
+/// no more.
 inline constexpr std::uint16_t spacecraft_id = 76;
 inline constexpr std::uint8_t telecommand_channel = 0;
 

@@ -6,13 +6,14 @@
 
 namespace aeolis {
 
-/// The X-band waveform: a carrier whose phase a square wave at the tone's own frequency swings by ± the modulation index.
+/// The X-band waveform: a carrier whose phase a square wave at the tone's own frequency swings by ± the modulation
+/// index.
 ///
 ///   s(t) = A exp j(φ(t) + m sq(2π f_k t)),   f_k = first + k · spacing,   sq = ±1; without a tone m sq is 0.
 ///
 /// The numbers are the dictionary's (mfsk.csv, docs/tones.md).
 struct MfskWaveform {
-    static constexpr int tones = 256; ///< R31
+    static constexpr int tones = 256;  ///< R31
 
     double carrier_hz = 0.0;
     double first_tone_hz = 0.0, tone_spacing_hz = 0.0;
@@ -31,4 +32,4 @@ struct MfskWaveform {
     constexpr bool operator==(const MfskWaveform&) const = default;
 };
 
-} // namespace aeolis
+}  // namespace aeolis

@@ -10,12 +10,12 @@ namespace aeolis {
 /// Why octets from a link are not the unit that they were read as.
 enum class Malformed : std::uint8_t {
     none,
-    too_short,          ///< ends before its header, its length field or one of its fields says
-    too_long,           ///< longer than the unit may be, or than its length field says
-    other_version,      ///< the version bits are those of another protocol
-    bad_checksum,       ///< CRC or parity
-    no_start,           ///< does not begin with the mark that it should
-    bad_field,          ///< a field has a value that the standard does not give a meaning
+    too_short,      ///< ends before its header, its length field or one of its fields says
+    too_long,       ///< longer than the unit may be, or than its length field says
+    other_version,  ///< the version bits are those of another protocol
+    bad_checksum,   ///< CRC or parity
+    no_start,       ///< does not begin with the mark that it should
+    bad_field,      ///< a field has a value that the standard does not give a meaning
 };
 
 constexpr const char* name_of(Malformed why) {

@@ -42,14 +42,16 @@ Parsed<ProximityFrame> read_proximity_frame(std::span<const std::uint8_t> frame)
 Parsed<ProximityFrame> read_pltu(std::span<const std::uint8_t> pltu) {
     if (pltu.size() < pltu_overhead_octets) return Malformed::too_short;
     if (!std::equal(pltu_marker.begin(), pltu_marker.end(), pltu.begin())) return Malformed::no_start;
-    const auto frame = read_proximity_frame(pltu.subspan(pltu_marker.size(), pltu.size() - pltu_marker.size() - pltu_crc_octets));
+    const auto frame =
+        read_proximity_frame(pltu.subspan(pltu_marker.size(), pltu.size() - pltu_marker.size() - pltu_crc_octets));
     if (!frame) return frame;
     // A frame followed by its own CRC leaves none.
     if (crc32_proximity(pltu.subspan(pltu_marker.size())) != 0) return Malformed::bad_checksum;
     return frame;
 }
 
-std::size_t write_pltu(const ProximityHeader& header, std::span<const std::uint8_t> data, std::span<std::uint8_t> into) {
+std::size_t write_pltu(const ProximityHeader& header, std::span<const std::uint8_t> data,
+                       std::span<std::uint8_t> into) {
     AEOLIS_CHECK(!data.empty() && data.size() <= proximity_data_octets_max);
     AEOLIS_CHECK(into.size() >= pltu_overhead_octets + data.size());
     AEOLIS_CHECK(header.spacecraft < 1024 && header.physical_channel < 2 && header.port < 8);

@@ -9,9 +9,11 @@
 
 namespace aeolis {
 
-/// Proximity-1 transfer frame of version 3, and the unit (PLTU) that carries it over UHF. [ccsds-211.0-b-6] [ccsds-211.2-b-3]
+/// Proximity-1 transfer frame of version 3, and the unit (PLTU) that carries it over UHF. [ccsds-211.0-b-6]
+/// [ccsds-211.2-b-3]
 ///
-///   header 40 bits: version 2 (10) | expedited 1 | supervisory 1 | construction 2 | spacecraft 10 | physical channel 1 |
+///   header 40 bits: version 2 (10) | expedited 1 | supervisory 1 | construction 2 | spacecraft 10 | physical channel 1
+///   |
 ///                   port 3 | source or destination 1 | octets of the frame less one 11 | frame sequence 8
 ///   PLTU: FAF320 | frame | CRC-32 over the frame only
 inline constexpr std::size_t proximity_header_octets = 5;
@@ -24,21 +26,21 @@ inline constexpr std::size_t pltu_octets_max = pltu_overhead_octets + proximity_
 
 /// What the data field of a user frame holds.
 enum class Construction : std::uint8_t {
-    packets = 0,  ///< whole packets, one after another
-    segments = 1, ///< one segment of a packet behind a segment header
+    packets = 0,   ///< whole packets, one after another
+    segments = 1,  ///< one segment of a packet behind a segment header
     reserved = 2,
-    octets = 3, ///< anything, by agreement
+    octets = 3,  ///< anything, by agreement
 };
 
 struct ProximityHeader {
     bool expedited = true;
     bool supervisory = false;
     Construction construction = Construction::packets;
-    std::uint16_t spacecraft = 0; ///< 10 bits
+    std::uint16_t spacecraft = 0;  ///< 10 bits
     std::uint8_t physical_channel = 0;
-    std::uint8_t port = 0;        ///< 3 bits
-    bool to_spacecraft = false;   ///< the spacecraft id is that of the destination, not of the source
-    std::uint8_t sequence = 0;    ///< frames of one spacecraft, physical channel and service, modulo 256
+    std::uint8_t port = 0;       ///< 3 bits
+    bool to_spacecraft = false;  ///< the spacecraft id is that of the destination, not of the source
+    std::uint8_t sequence = 0;   ///< frames of one spacecraft, physical channel and service, modulo 256
 
     constexpr bool operator==(const ProximityHeader&) const = default;
 };
@@ -65,13 +67,14 @@ std::size_t write_pltu(const ProximityHeader& header, std::span<const std::uint8
 struct SegmentHeader {
     bool first = true;
     bool last = true;
-    std::uint8_t pseudo_packet = 0; ///< 6 bits: tells segments of packets apart that are sent at the same time
+    std::uint8_t pseudo_packet = 0;  ///< 6 bits: tells segments of packets apart that are sent at the same time
 };
 constexpr SegmentHeader read_segment_header(std::uint8_t octet) {
     return {(octet & 0x40) != 0, (octet & 0x80) != 0, static_cast<std::uint8_t>(octet & 0x3F)};
 }
 constexpr std::uint8_t segment_header_octet(const SegmentHeader& header) {
-    return static_cast<std::uint8_t>((header.last ? 0x80 : 0) | (header.first ? 0x40 : 0) | (header.pseudo_packet & 0x3F));
+    return static_cast<std::uint8_t>((header.last ? 0x80 : 0) | (header.first ? 0x40 : 0) |
+                                     (header.pseudo_packet & 0x3F));
 }
 
 }  // namespace aeolis

@@ -7,7 +7,7 @@
 namespace aeolis {
 namespace {
 
-using Sequence = std::array<std::uint8_t, 255>; // 255 bits come round after as many octets
+using Sequence = std::array<std::uint8_t, 255>;  // 255 bits come round after as many octets
 
 /// A register of eight ones; the oldest bit leaves, the sum of those that `taps` names comes in. Bit 0 leaves next.
 constexpr Sequence sequence_of(unsigned taps) {
@@ -21,8 +21,8 @@ constexpr Sequence sequence_of(unsigned taps) {
     return octets;
 }
 
-constexpr Sequence tm_sequence = sequence_of(0b1010'1001); // x^8 + x^7 + x^5 + x^3 + 1
-constexpr Sequence tc_sequence = sequence_of(0b0101'1111); // x^8 + x^6 + x^4 + x^3 + x^2 + x + 1
+constexpr Sequence tm_sequence = sequence_of(0b1010'1001);  // x^8 + x^7 + x^5 + x^3 + 1
+constexpr Sequence tc_sequence = sequence_of(0b0101'1111);  // x^8 + x^6 + x^4 + x^3 + x^2 + x + 1
 
 void add(const Sequence& sequence, std::span<std::uint8_t> octets) {
     std::size_t at = 0;
@@ -34,7 +34,11 @@ void add(const Sequence& sequence, std::span<std::uint8_t> octets) {
 
 }  // namespace
 
-void randomise_tm(std::span<std::uint8_t> octets) { add(tm_sequence, octets); }
-void randomise_tc(std::span<std::uint8_t> octets) { add(tc_sequence, octets); }
+void randomise_tm(std::span<std::uint8_t> octets) {
+    add(tm_sequence, octets);
+}
+void randomise_tc(std::span<std::uint8_t> octets) {
+    add(tc_sequence, octets);
+}
 
 }  // namespace aeolis

@@ -76,8 +76,8 @@ void seal_tm_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t cou
     AEOLIS_CHECK(packet.size() >= tm_overhead_octets && packet.size() <= 65536 + primary_header_octets);
     clear(packet.first(tm_data_offset_octets));
     BitWriter writer{packet};
-    put_primary_header(writer,
-                       {false, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    put_primary_header(
+        writer, {false, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
     const auto coarse = static_cast<std::uint64_t>(time.seconds);
     writer.put(coarse, 32);
     writer.put(static_cast<std::uint64_t>((time.seconds - static_cast<double>(coarse)) * 65536.0), 16);
@@ -90,15 +90,16 @@ void seal_tc_packet(std::span<std::uint8_t> packet, Apid apid, std::uint16_t cou
     clear(packet.first(tc_arguments_offset_octets));
     BitWriter writer{packet};
     // The opcode is the packet's secondary header.
-    put_primary_header(writer,
-                       {true, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
+    put_primary_header(
+        writer, {true, true, apid, count, static_cast<std::uint16_t>(packet.size() - primary_header_octets - 1)});
     writer.put(opcode.value, 16);
     write_crc(packet);
 }
 
 std::optional<TcPacket> read_tc_packet(std::span<const std::uint8_t> packet) {
     const auto primary = read_primary_header(packet);
-    if (!primary || !primary->telecommand || packet.size() < tc_overhead_octets || !whole_with_good_crc(packet, *primary))
+    if (!primary || !primary->telecommand || packet.size() < tc_overhead_octets ||
+        !whole_with_good_crc(packet, *primary))
         return std::nullopt;
     return TcPacket{*primary, Opcode{static_cast<std::uint16_t>(read_bits(packet, 48, 16))},
                     packet.subspan(tc_arguments_offset_octets, packet.size() - tc_overhead_octets)};

@@ -24,26 +24,26 @@ struct PrimaryHeader {
     bool telecommand = false;
     bool secondary_header = true;
     Apid apid;
-    std::uint16_t count = 0;       ///< 14 bits, per APID
-    std::uint16_t length = 0;      ///< octets after the primary header, less one
+    std::uint16_t count = 0;   ///< 14 bits, per APID
+    std::uint16_t length = 0;  ///< octets after the primary header, less one
 
     constexpr std::size_t packet_octets() const { return primary_header_octets + length + std::size_t{1}; }
     constexpr auto operator<=>(const PrimaryHeader&) const = default;
 };
 
-/// Octets of the space packet that begins `octets`, whoever wrote it, segmented or not; none when its header is not there
-/// whole or of another version.
+/// Octets of the space packet that begins `octets`, whoever wrote it, segmented or not; none when its header is not
+/// there whole or of another version.
 std::optional<std::size_t> space_packet_octets(std::span<const std::uint8_t> octets);
 inline constexpr std::size_t space_packet_octets_max = primary_header_octets + 65536;
 inline constexpr std::uint16_t idle_apid = 0x7FF;
-inline constexpr Apid file_delivery_apid{0x7FD}; ///< packets whose data are a CFDP PDU; 2045, as reserved for it
+inline constexpr Apid file_delivery_apid{0x7FD};  ///< packets whose data are a CFDP PDU; 2045, as reserved for it
 
 /// Into the first six octets; unsegmented.
 void write_primary_header(const PrimaryHeader& header, std::span<std::uint8_t> packet);
 
 struct TmHeader {
     PrimaryHeader primary;
-    Sclk time;                     ///< CUC 4+2 octets, agency epoch; 1/65536 s holds 1/64 s exactly
+    Sclk time;  ///< CUC 4+2 octets, agency epoch; 1/65536 s holds 1/64 s exactly
     std::uint16_t dictionary_id = 0;
 };
 

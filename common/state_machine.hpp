@@ -55,4 +55,4 @@ class StateMachine {
     State state_;
 };
 
-} // namespace aeolis
+}  // namespace aeolis

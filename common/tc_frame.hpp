@@ -19,11 +19,11 @@ inline constexpr std::size_t tc_frame_octets_max = 1024;
 inline constexpr std::size_t tc_frame_data_octets_max = tc_frame_octets_max - tc_frame_overhead_octets;
 
 struct TcFrameHeader {
-    bool bypass = false;          ///< true: B, taken whatever its sequence; false: A, in sequence only
-    bool control = false;         ///< the data field is a command to the receiver of frames, not data
-    std::uint16_t spacecraft = 0; ///< 10 bits
-    std::uint8_t virtual_channel = 0; ///< 6 bits
-    std::uint8_t sequence = 0;        ///< N(S)
+    bool bypass = false;               ///< true: B, taken whatever its sequence; false: A, in sequence only
+    bool control = false;              ///< the data field is a command to the receiver of frames, not data
+    std::uint16_t spacecraft = 0;      ///< 10 bits
+    std::uint8_t virtual_channel = 0;  ///< 6 bits
+    std::uint8_t sequence = 0;         ///< N(S)
 
     constexpr bool operator==(const TcFrameHeader&) const = default;
 };
@@ -37,7 +37,8 @@ struct TcFrame {
 Parsed<TcFrame> read_tc_frame(std::span<const std::uint8_t> octets);
 
 /// Writes the frame and returns its octets. `data` holds 1 … 1017 octets, `into` has room.
-std::size_t write_tc_frame(const TcFrameHeader& header, std::span<const std::uint8_t> data, std::span<std::uint8_t> into);
+std::size_t write_tc_frame(const TcFrameHeader& header, std::span<const std::uint8_t> data,
+                           std::span<std::uint8_t> into);
 
 /// Communications link control word: the state of FARM-1 of one virtual channel. 32 bits:
 ///   type 1 (0) | version 2 (00) | status 3 | COP 2 (01) | virtual channel 6 | spare 2 | no RF 1 | no bit lock 1 |
@@ -50,8 +51,8 @@ struct Clcw {
     bool lockout = false;
     bool wait = false;
     bool retransmit = false;
-    std::uint8_t farm_b = 0;   ///< frames taken by bypass, modulo 4
-    std::uint8_t expected = 0; ///< N(R): the sequence that comes next
+    std::uint8_t farm_b = 0;    ///< frames taken by bypass, modulo 4
+    std::uint8_t expected = 0;  ///< N(R): the sequence that comes next
 
     constexpr bool operator==(const Clcw&) const = default;
 };

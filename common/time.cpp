@@ -39,12 +39,14 @@ std::optional<Ert> ert_from_day_of_year(std::string_view text) {
     using namespace std::chrono;
     constexpr std::string_view form = "YYYY-DDDTHH:MM:SS";
     constexpr std::size_t fraction_digits_max = 6;
-    if (text.size() < form.size() || text.size() > form.size() + 1 + fraction_digits_max || text[4] != '-' || text[8] != 'T' ||
-        text[11] != ':' || text[14] != ':')
+    if (text.size() < form.size() || text.size() > form.size() + 1 + fraction_digits_max || text[4] != '-' ||
+        text[8] != 'T' || text[11] != ':' || text[14] != ':')
         return std::nullopt;
-    const auto year_number = digits(text.substr(0, 4)), day_of_year = digits(text.substr(5, 3)), hour = digits(text.substr(9, 2)),
-               minute = digits(text.substr(12, 2)), second = digits(text.substr(15, 2));
-    if (!year_number || !day_of_year || !hour || !minute || !second || *hour > 23 || *minute > 59 || *second > 59) return std::nullopt;
+    const auto year_number = digits(text.substr(0, 4)), day_of_year = digits(text.substr(5, 3)),
+               hour = digits(text.substr(9, 2)), minute = digits(text.substr(12, 2)),
+               second = digits(text.substr(15, 2));
+    if (!year_number || !day_of_year || !hour || !minute || !second || *hour > 23 || *minute > 59 || *second > 59)
+        return std::nullopt;
     const year in{static_cast<int>(*year_number)};
     if (*day_of_year < 1 || *day_of_year > (in.is_leap() ? 366 : 365)) return std::nullopt;
     std::int64_t microsecond = 0;
@@ -56,7 +58,8 @@ std::optional<Ert> ert_from_day_of_year(std::string_view text) {
         if (!read) return std::nullopt;
         microsecond = *read;
     }
-    const auto since = sys_days{in / January / 1} + days{*day_of_year - 1} - (sys_days{year{2000} / January / 1} + hours{12});
+    const auto since =
+        sys_days{in / January / 1} + days{*day_of_year - 1} - (sys_days{year{2000} / January / 1} + hours{12});
     return Ert{microseconds{since}.count() + ((*hour * 60 + *minute) * 60 + *second) * 1'000'000 + microsecond};
 }
 

@@ -19,9 +19,15 @@ struct Sclk {
     constexpr std::int64_t ticks() const { return static_cast<std::int64_t>(seconds * 64.0); }
     constexpr auto operator<=>(const Sclk&) const = default;
 };
-constexpr double operator-(Sclk a, Sclk b) { return a.seconds - b.seconds; }
-constexpr Sclk operator+(Sclk t, double offset_s) { return {t.seconds + offset_s}; }
-constexpr Sclk operator-(Sclk t, double offset_s) { return {t.seconds - offset_s}; }
+constexpr double operator-(Sclk a, Sclk b) {
+    return a.seconds - b.seconds;
+}
+constexpr Sclk operator+(Sclk t, double offset_s) {
+    return {t.seconds + offset_s};
+}
+constexpr Sclk operator-(Sclk t, double offset_s) {
+    return {t.seconds - offset_s};
+}
 
 /// UTC at the spacecraft, and UTC at the receiving station on Earth: microseconds since 2000-01-01T12:00:00 UTC,
 /// leap seconds not counted (as POSIX does).
@@ -41,8 +47,8 @@ std::string day_of_year_text(Ert time);
 std::optional<Ert> ert_from_day_of_year(std::string_view text);
 std::optional<Scet> scet_from_day_of_year(std::string_view text);
 
-/// SCLK and SCET meet at one known instant, and from there on UTC runs `rate` times as fast as the clock on board. A row of the
-/// dictionary's clock_correlation.csv, or of a clock that only its scenario knows: version 0.
+/// SCLK and SCET meet at one known instant, and from there on UTC runs `rate` times as fast as the clock on board. A
+/// row of the dictionary's clock_correlation.csv, or of a clock that only its scenario knows: version 0.
 struct ClockCorrelation {
     Sclk sclk;
     Scet scet;

@@ -50,4 +50,4 @@ double TimeTable::rate_at(double time_s) const {
            p.slope_to * x * (3.0 * x - 2.0);
 }
 
-} // namespace aeolis
+}  // namespace aeolis

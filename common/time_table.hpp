@@ -7,8 +7,8 @@
 
 namespace aeolis {
 
-/// A quantity against time, smooth between rows: cubic Hermite with the slopes of neighbouring rows' chords, so value and
-/// rate are continuous; before the first and after the last row the value is held. Empty: zero everywhere.
+/// A quantity against time, smooth between rows: cubic Hermite with the slopes of neighbouring rows' chords, so value
+/// and rate are continuous; before the first and after the last row the value is held. Empty: zero everywhere.
 class TimeTable {
   public:
     TimeTable() = default;
@@ -16,7 +16,7 @@ class TimeTable {
     static Result<TimeTable> make(std::vector<double> time_s, std::vector<double> value);
 
     double at(double time_s) const;
-    double rate_at(double time_s) const; ///< per second
+    double rate_at(double time_s) const;  ///< per second
 
     bool empty() const { return time_s_.empty(); }
     double first_s() const { return time_s_.empty() ? 0.0 : time_s_.front(); }
@@ -32,4 +32,4 @@ class TimeTable {
     std::vector<double> time_s_, value_;
 };
 
-} // namespace aeolis
+}  // namespace aeolis

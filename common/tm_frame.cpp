@@ -21,8 +21,8 @@ Parsed<std::span<const std::uint8_t>> body_of(std::span<const std::uint8_t> fram
     if (frame.size() <= transfer_header_octets + after) return Malformed::too_short;
     const auto body = frame.subspan(transfer_header_octets, frame.size() - transfer_header_octets - after);
     if (control_field)
-        into.control_field = static_cast<std::uint32_t>(
-            read_bits(frame, (transfer_header_octets + body.size()) * 8, 32));
+        into.control_field =
+            static_cast<std::uint32_t>(read_bits(frame, (transfer_header_octets + body.size()) * 8, 32));
     return body;
 }
 
@@ -39,7 +39,8 @@ Malformed check_pointer(const TransferFrame& frame) {
 void close_frame(const TransferFrame& frame, std::size_t data_offset, bool crc, std::span<std::uint8_t> into) {
     const std::size_t after = (crc ? transfer_crc_octets : 0) + (frame.control_field ? control_field_octets : 0);
     AEOLIS_CHECK(into.size() == data_offset + frame.data.size() + after && !frame.data.empty());
-    const auto end = std::copy(frame.data.begin(), frame.data.end(), into.begin() + static_cast<std::ptrdiff_t>(data_offset));
+    const auto end =
+        std::copy(frame.data.begin(), frame.data.end(), into.begin() + static_cast<std::ptrdiff_t>(data_offset));
     if (frame.control_field)
         for (std::size_t i = 0; i < control_field_octets; ++i)
             *(end + static_cast<std::ptrdiff_t>(i)) = static_cast<std::uint8_t>(*frame.control_field >> (24 - 8 * i));
@@ -97,7 +98,8 @@ Parsed<TransferFrame> read_aos_frame(std::span<const std::uint8_t> octets, const
 }
 
 void write_tm_frame(const TransferFrame& frame, std::uint8_t master_count, bool crc, std::span<std::uint8_t> into) {
-    AEOLIS_CHECK(frame.spacecraft < 1024 && frame.virtual_channel < 8 && frame.first_header_pointer <= no_packet_begins);
+    AEOLIS_CHECK(frame.spacecraft < 1024 && frame.virtual_channel < 8 &&
+                 frame.first_header_pointer <= no_packet_begins);
     std::fill(into.begin(), into.end(), std::uint8_t{0});
     BitWriter writer{into};
     writer.put(0, 2);
@@ -112,7 +114,8 @@ void write_tm_frame(const TransferFrame& frame, std::uint8_t master_count, bool 
 }
 
 void write_aos_frame(const TransferFrame& frame, bool crc, std::span<std::uint8_t> into) {
-    AEOLIS_CHECK(frame.spacecraft < 256 && frame.virtual_channel < 64 && frame.first_header_pointer <= no_packet_begins);
+    AEOLIS_CHECK(frame.spacecraft < 256 && frame.virtual_channel < 64 &&
+                 frame.first_header_pointer <= no_packet_begins);
     std::fill(into.begin(), into.end(), std::uint8_t{0});
     BitWriter writer{into};
     writer.put(1, 2);

@@ -25,20 +25,20 @@ inline constexpr std::size_t transfer_frame_octets_max = 65536;  ///< ours; the 
 
 /// What a mission has agreed on beside the frame.
 struct FrameAgreement {
-    bool crc = true;               ///< frames end with a CRC-16
-    bool control_field = false;    ///< AOS only: a TM frame says so itself
-    std::uint8_t insert_octets = 0;///< AOS only: insert zone behind the header
+    bool crc = true;                 ///< frames end with a CRC-16
+    bool control_field = false;      ///< AOS only: a TM frame says so itself
+    std::uint8_t insert_octets = 0;  ///< AOS only: insert zone behind the header
 };
 
 struct TransferFrame {
     std::uint16_t spacecraft = 0;
     std::uint8_t virtual_channel = 0;
-    std::uint32_t count = 0;                ///< of the virtual channel
-    std::uint32_t count_modulus = 256;      ///< 2^8 for TM, 2^24 for AOS
+    std::uint32_t count = 0;            ///< of the virtual channel
+    std::uint32_t count_modulus = 256;  ///< 2^8 for TM, 2^24 for AOS
     bool replay = false;
-    std::uint16_t first_header_pointer = no_packet_begins; ///< in the data, of the first packet that begins there
+    std::uint16_t first_header_pointer = no_packet_begins;  ///< in the data, of the first packet that begins there
     std::span<const std::uint8_t> data;
-    std::optional<std::uint32_t> control_field; ///< a CLCW, mostly
+    std::optional<std::uint32_t> control_field;  ///< a CLCW, mostly
 };
 
 /// A whole frame. bad_field when its data are not packets (synchronised flag) or a field leaves no room for data.

@@ -13,7 +13,7 @@ const T* first(const std::vector<T>& all, Fits fits) {
     return found == all.end() ? nullptr : &*found;
 }
 
-} // namespace
+}  // namespace
 
 bool Precondition::holds(double latest) const {
     if (comparison == "==") return latest == value;
@@ -21,7 +21,7 @@ bool Precondition::holds(double latest) const {
     if (comparison == "<") return latest < value;
     if (comparison == "<=") return latest <= value;
     if (comparison == ">") return latest > value;
-    AEOLIS_CHECK(comparison == ">="); // the loader admits no other
+    AEOLIS_CHECK(comparison == ">=");  // the loader admits no other
     return latest >= value;
 }
 
@@ -53,4 +53,4 @@ std::string Finding::text() const {
     return file + ":" + std::to_string(line) + ": " + message;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

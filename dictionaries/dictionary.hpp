@@ -55,10 +55,10 @@ struct ContextAlarms;
 struct Alarms {
     std::vector<AlarmRange> ranges;  ///< nested, least severe first
     std::vector<EnumAlarm> values;
-    std::uint32_t min_violations = 1;   ///< samples in a row before the alarm is raised
-    std::uint32_t min_conformance = 1;  ///< samples in a row before it is cleared
-    bool latches = false;               ///< cleared, it stays until someone resets it
-    std::vector<ContextAlarms> contexts; ///< of a channel: the first that holds takes the place of the above
+    std::uint32_t min_violations = 1;     ///< samples in a row before the alarm is raised
+    std::uint32_t min_conformance = 1;    ///< samples in a row before it is cleared
+    bool latches = false;                 ///< cleared, it stays until someone resets it
+    std::vector<ContextAlarms> contexts;  ///< of a channel: the first that holds takes the place of the above
 };
 /// What the limits are while something else is so: in a phase of EDL.
 struct ContextAlarms {
@@ -73,7 +73,7 @@ struct Type {
     Encoding encoding = Encoding::unsigned_integer;
     unsigned bits = 0;
     bool binary = false;  ///< no number but bits / 8 octets: never a field, only Packet::content
-    std::string unit;  ///< "1" for a pure number
+    std::string unit;     ///< "1" for a pure number
     Polynomial calibrator;
     std::vector<EnumValue> enumeration;
     std::optional<double> valid_min, valid_max;
@@ -96,8 +96,8 @@ struct Field {
     std::string name;
     Type type;
     std::optional<ChannelId> channel;
-    unsigned position_bits = 0;                  ///< from the first octet of the packet
-    std::optional<unsigned> validity_bit;        ///< position of the bit that says whether the value is defined
+    unsigned position_bits = 0;            ///< from the first octet of the packet
+    std::optional<unsigned> validity_bit;  ///< position of the bit that says whether the value is defined
 };
 
 /// Octets in a packet that are no number: a part of a data product. They stand at a whole octet.
@@ -121,7 +121,8 @@ struct Packet {
 
 enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
 
-/// Event report (EVR). Its arguments are the fields of its packet; `format` names them in braces: "speed {speed_mps} m/s".
+/// Event report (EVR). Its arguments are the fields of its packet; `format` names them in braces: "speed {speed_mps}
+/// m/s".
 struct Event {
     EvrId id;
     std::string name;
@@ -170,15 +171,15 @@ struct TimelineRow {
     std::string name;
     std::optional<AnchorId> anchor;  ///< none: relative to the previous timepoint
     MaybeOffset desired_offset_s;
-    MaybeOffset minimum_offset_s;    ///< from the previous timepoint
-    std::string action;              ///< name of a function in aeolis::flight::actions; empty: none
+    MaybeOffset minimum_offset_s;           ///< from the previous timepoint
+    std::string action;                     ///< name of a function in aeolis::flight::actions; empty: none
     std::optional<double> reply_timeout_s;  ///< set when the action's reply is waited for
-    std::string backtrack;           ///< timepoint to go back to after a reboot in pre-EDL; empty: none
-    bool essential = true;           ///< kept in Second Chance
+    std::string backtrack;                  ///< timepoint to go back to after a reboot in pre-EDL; empty: none
+    bool essential = true;                  ///< kept in Second Chance
     std::optional<ToneId> tone;
-    std::string event;               ///< name of an event emitted on firing; empty: none
+    std::string event;  ///< name of an event emitted on firing; empty: none
     std::string note;
-    unsigned line = 0;               ///< in timeline.csv
+    unsigned line = 0;  ///< in timeline.csv
 };
 
 struct AnchorRow {
@@ -197,9 +198,9 @@ inline constexpr std::string_view second_chance_prefix = "sc_";
 struct ToneRow {
     ToneId id;
     ToneSet set = ToneSet::spare;
-    std::string name;     ///< empty for spares
-    std::string meaning;  ///< for people
-    int priority = 0;     ///< larger is more important
+    std::string name;        ///< empty for spares
+    std::string meaning;     ///< for people
+    int priority = 0;        ///< larger is more important
     double expires_s = 0.0;  ///< a request older than this is dropped
     std::string supersedes;  ///< name of a tone whose outstanding request this one drops; empty: none
 };
@@ -244,10 +245,10 @@ struct OwnerRow {
 /// An instant that constraints.csv speaks of.
 struct Moment {
     enum class Kind {
-        do_edl,    ///< its acceptance: the predecessor of the first timepoint. R16
-        anchor,    ///< NAME:anchor
-        triggered, ///< NAME:triggered, the action begins
-        fired,     ///< NAME:fired, the reply came or its time-out; the same instant where none is asked for. R14
+        do_edl,     ///< its acceptance: the predecessor of the first timepoint. R16
+        anchor,     ///< NAME:anchor
+        triggered,  ///< NAME:triggered, the action begins
+        fired,      ///< NAME:fired, the reply came or its time-out; the same instant where none is asked for. R14
     };
     Kind kind = Kind::do_edl;
     std::uint16_t index = 0;  ///< in Dictionary::anchors or Dictionary::timeline
@@ -271,7 +272,7 @@ struct ConstraintRow {
 /// A row of clock_correlation.csv: how SCLK leads to SCET from `valid_from` until the next row's.
 struct ClockRow {
     Sclk valid_from;
-    ClockCorrelation correlation; ///< its version is the row's
+    ClockCorrelation correlation;  ///< its version is the row's
     std::string note;
     unsigned line = 0;  ///< in clock_correlation.csv
 };
@@ -279,8 +280,8 @@ struct ClockRow {
 // ---- the whole -------------------------------------------------------------------------------------------------
 
 struct Dictionary {
-    std::string mission;               ///< SpaceSystem name
-    std::uint16_t id = 0;              ///< in every telemetry packet: changes with every change of any file on board
+    std::string mission;   ///< SpaceSystem name
+    std::uint16_t id = 0;  ///< in every telemetry packet: changes with every change of any file on board
     std::uint16_t timeline_version = 0;
     std::vector<Channel> channels;
     std::vector<Packet> packets;
@@ -288,15 +289,15 @@ struct Dictionary {
     std::vector<Command> commands;
     std::vector<TimelineRow> timeline;
     std::vector<AnchorRow> anchors;
-    std::vector<ToneRow> tones;        ///< 256, by id
+    std::vector<ToneRow> tones;  ///< 256, by id
     std::vector<ParameterRow> parameters;
     std::vector<ConstraintRow> constraints;
     std::vector<StateMachineTable> state_machines;
     std::vector<OwnerRow> owners;
     std::vector<TelemetryPlanRow> telemetry_plan;
-    MfskWaveform mfsk;                 ///< how tones are sent: mfsk.csv
-    std::vector<ClockRow> clock;       ///< by valid_from. Ground's alone, as the next
-    std::vector<std::optional<double>> predicted_anchor_e_s; ///< by anchor: seconds from entry; none: not predicted
+    MfskWaveform mfsk;                                        ///< how tones are sent: mfsk.csv
+    std::vector<ClockRow> clock;                              ///< by valid_from. Ground's alone, as the next
+    std::vector<std::optional<double>> predicted_anchor_e_s;  ///< by anchor: seconds from entry; none: not predicted
 
     const Channel* channel(std::string_view name_or_alias) const;
     const Command* command(std::string_view name) const;
@@ -323,9 +324,10 @@ struct Loaded {
 };
 
 /// Reads DIR/*.xml (one SpaceSystem), timeline.csv, anchors.csv, tones.csv, mfsk.csv, parameters.csv,
-/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv, all of them on board, so that `id` follows each; only the
-/// timeline's own two change what it does, so `timeline_version` follows those alone. And what only ground has, which changes
-/// neither: clock_correlation.csv, predicted_anchors.csv. DIR may also be one file that holds them all: dictionaries/mission_files.hpp.
+/// constraints.csv, state_machines.csv, owners.csv, telemetry_plan.csv, all of them on board, so that `id` follows
+/// each; only the timeline's own two change what it does, so `timeline_version` follows those alone. And what only
+/// ground has, which changes neither: clock_correlation.csv, predicted_anchors.csv. DIR may also be one file that holds
+/// them all: dictionaries/mission_files.hpp.
 Loaded load(const std::filesystem::path& directory);
 
 }  // namespace aeolis::dictionary

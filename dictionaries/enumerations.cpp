@@ -11,12 +11,10 @@ std::vector<const Type*> enumerations_of(const std::vector<Packet>& packets, con
         if (type.kind == ValueKind::enumerated && std::ranges::none_of(found, same_name)) found.push_back(&type);
     };
     for (const Packet& packet : packets)
-        for (const Field& field : packet.fields)
-            add(field.type);
+        for (const Field& field : packet.fields) add(field.type);
     for (const Command& command : commands)
-        for (const Argument& argument : command.arguments)
-            add(argument.type);
+        for (const Argument& argument : command.arguments) add(argument.type);
     return found;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -28,4 +28,4 @@ inline std::string in_quotes(std::string_view name) {
     return "'" + std::string{name} + "'";
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -1,8 +1,8 @@
 #include "dictionaries/dictionary.hpp"
 
 #include "common/crc.hpp"
-#include "dictionaries/findings.hpp"
 #include "dictionaries/enumerations.hpp"
+#include "dictionaries/findings.hpp"
 #include "dictionaries/mission_files.hpp"
 #include "dictionaries/spreadsheet/owners.hpp"
 #include "dictionaries/spreadsheet/state_machines.hpp"
@@ -32,12 +32,11 @@ std::uint16_t hash(std::initializer_list<const File*> files) {
 std::vector<TimelineContext::DeclaredEvent> declared(const xtce::SpaceSystem& system) {
     std::vector<TimelineContext::DeclaredEvent> events;
     events.reserve(system.declared_events.size());
-    for (const auto& event : system.declared_events)
-        events.push_back({event.name, event.has_arguments});
+    for (const auto& event : system.declared_events) events.push_back({event.name, event.has_arguments});
     return events;
 }
 
-} // namespace
+}  // namespace
 
 Loaded load(const std::filesystem::path& path) {
     Loaded loaded;
@@ -94,9 +93,8 @@ Loaded load(const std::filesystem::path& path) {
     const File& owners_csv = files.sheet("owners.csv");
     const OwnerContext owned{timeline && is_sound(timeline_csv) ? &*timeline : nullptr,
                              has_enumerations ? &enumerations : nullptr};
-    auto owners = read(owners_csv, [&](std::string_view text, Findings& findings) {
-        return read_owners(text, owned, findings);
-    });
+    auto owners =
+        read(owners_csv, [&](std::string_view text, Findings& findings) { return read_owners(text, owned, findings); });
 
     const File& clock_csv = files.sheet("clock_correlation.csv");
     auto clock = read(clock_csv, read_clock_correlation);
@@ -134,4 +132,4 @@ Loaded load(const std::filesystem::path& path) {
     return loaded;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -10,7 +10,7 @@
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::uintmax_t file_octets_max = 16U << 20U; // ours: a hundred times the landing's largest file
+constexpr std::uintmax_t file_octets_max = 16U << 20U;  // ours: a hundred times the landing's largest file
 
 constexpr std::string_view set_begins = "<AncillaryDataSet>\n";
 constexpr std::string_view set_ends = "</AncillaryDataSet>\n    ";
@@ -76,7 +76,9 @@ pugi::xml_node place_of_sheets(pugi::xml_node system) {
 }
 
 /// Of the "<" of an element.
-std::size_t beginning_of(pugi::xml_node element) { return static_cast<std::size_t>(element.offset_debug()) - 1; }
+std::size_t beginning_of(pugi::xml_node element) {
+    return static_cast<std::size_t>(element.offset_debug()) - 1;
+}
 
 MissionFiles take_apart(MissionFile whole, std::vector<Finding>& all) {
     MissionFiles files;
@@ -103,12 +105,13 @@ MissionFiles take_apart(MissionFile whole, std::vector<Finding>& all) {
         else
             Findings{sheet.name, all}.add(1, "is not in " + whole.name);
     }
-    files.xtce.name = set.find_child_by_attribute("AncillaryData", "name", std::string{xtce_entry}.c_str()).child_value();
+    files.xtce.name =
+        set.find_child_by_attribute("AncillaryData", "name", std::string{xtce_entry}.c_str()).child_value();
     files.xtce.text = whole.text->erase(begin, end + set_ends.size() - begin);
     return files;
 }
 
-} // namespace
+}  // namespace
 
 const MissionFile& MissionFiles::sheet(std::string_view name) const {
     const auto found = std::ranges::find(sheets, name, &MissionFile::name);
@@ -141,7 +144,8 @@ Result<std::string> one_file_of(const MissionFiles& files) {
                                        "there is no place for the sheets"};
     std::string set{set_begins};
     const auto add = [&](std::string_view name, const std::string& text) {
-        set += "        <AncillaryData name=\"" + std::string{name} + "\" mimeType=\"text/csv\">" + text + "</AncillaryData>\n";
+        set += "        <AncillaryData name=\"" + std::string{name} + "\" mimeType=\"text/csv\">" + text +
+               "</AncillaryData>\n";
     };
     add(xtce_entry, files.xtce.name);
     for (const MissionFile& sheet : files.sheets) {
@@ -153,4 +157,4 @@ Result<std::string> one_file_of(const MissionFiles& files) {
     return whole.insert(beginning_of(place), set + "    " + std::string{set_ends});
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

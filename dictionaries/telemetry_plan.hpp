@@ -20,9 +20,18 @@ inline constexpr std::array<std::string_view, 4> telemetry_state_columns{"before
 
 /// The phases of EDL, labels of the XTCE enumeration EdlPhase, and the column that each belongs to.
 inline constexpr std::array<std::pair<std::string_view, std::size_t>, 13> telemetry_state_of_phase{
-    {{"pre_edl", 0}, {"late_cruise", 0}, {"exo_atmospheric", 0},
-     {"wait_for_guidance", 1}, {"range_control", 1}, {"heading_alignment", 1}, {"straighten_up", 1}, {"wait_for_parachute", 1},
-     {"parachute_descent", 2}, {"powered_descent", 2}, {"sky_crane", 2}, {"flyaway", 2},
+    {{"pre_edl", 0},
+     {"late_cruise", 0},
+     {"exo_atmospheric", 0},
+     {"wait_for_guidance", 1},
+     {"range_control", 1},
+     {"heading_alignment", 1},
+     {"straighten_up", 1},
+     {"wait_for_parachute", 1},
+     {"parachute_descent", 2},
+     {"powered_descent", 2},
+     {"sky_crane", 2},
+     {"flyaway", 2},
      {"landed", 3}}};
 
 /// One packet in one plan.
@@ -31,9 +40,9 @@ struct TelemetryPlanRow {
     std::string packet;  ///< of the dictionary; "events": the event reports, which share an APID
     Apid apid;
     TelemetryPriority priority = TelemetryPriority::low;
-    std::array<std::uint32_t, telemetry_state_columns.size()> every{}; ///< every n-th packet in that state; 0: none
+    std::array<std::uint32_t, telemetry_state_columns.size()> every{};  ///< every n-th packet in that state; 0: none
     std::string note;
-    unsigned line = 0; ///< in telemetry_plan.csv
+    unsigned line = 0;  ///< in telemetry_plan.csv
 };
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -32,7 +32,7 @@ constexpr bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-} // namespace
+}  // namespace
 
 std::optional<double> to_number(std::string_view word) {
     double value = 0.0;
@@ -77,4 +77,4 @@ std::optional<std::string> unusable_as_identifier(std::string_view name) {
     return std::nullopt;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

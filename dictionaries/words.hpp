@@ -25,4 +25,4 @@ std::optional<std::string> unusable_as_identifier(std::string_view name);
 bool is_taken_in_packets(std::string_view name);
 bool is_taken_in_commands(std::string_view name);
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -6,8 +6,8 @@ namespace aeolis::flight {
 namespace {
 
 bool in_command(const ComputerState& state) {
-    // Second Chance is obeyed from the cycle in which its EDL flies: before that its managers hold no commands yet, and an
-    // engine that is told nothing for a cycle goes out.
+    // Second Chance is obeyed from the cycle in which its EDL flies: before that its managers hold no commands yet, and
+    // an engine that is told nothing for a cycle goes out.
     if (state.edl.stands_by()) return false;
     return state.load.role == Role::prime || state.cross_string.in_control();
 }
@@ -57,8 +57,8 @@ void Computer::step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* run
             Executive{*state_}.cycle(in, out);
         out.in_command = in_command(*state_);
     } catch (const CheckFailed& bug) {
-        // A bug on board stays on board: the computer starts anew, and says why in its first cycle. What the failed cycle
-        // put out is not to be trusted, and a state on which it fails at once is not taken up a second time.
+        // A bug on board stays on board: the computer starts anew, and says why in its first cycle. What the failed
+        // cycle put out is not to be trusted, and a state on which it fails at once is not taken up a second time.
         const bool at_once = state_->ran_from && in.now - *state_->ran_from < restart_s;
         start_anew(in.now, designated, in.now - seconds_per_tick);
         state_->forgets = at_once;

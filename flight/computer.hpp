@@ -34,15 +34,15 @@ class Computer {
     Computer& operator=(Computer&&) noexcept;
     ~Computer();
 
-    /// Runs one 64 Hz cycle, by the deterministic executive unless a venue brings another. `out` holds the commands of the
-    /// cycle before and is begun anew here.
+    /// Runs one 64 Hz cycle, by the deterministic executive unless a venue brings another. `out` holds the commands of
+    /// the cycle before and is begun anew here.
     void step(const DeviceInputs& in, DeviceOutputs& out, CycleRunner* runner = nullptr);
 
     /// Loses all it knows and starts anew, as if the power had failed: what a fault injected from outside does.
     void reset(Sclk now);
 
-    /// The test venue "all but GNC": what stands in for GNC looks at what the timeline has done, and what it tells counts as
-    /// GNC's in the next step. R36
+    /// The test venue "all but GNC": what stands in for GNC looks at what the timeline has done, and what it tells
+    /// counts as GNC's in the next step. R36
     const gnc::Configuration& gnc_configuration() const;
     void replace_gnc(const gnc::Output& told);
 

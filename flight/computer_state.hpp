@@ -33,8 +33,8 @@ struct ComputerState {
     ComputerState(const Load& its_load, Sclk start)
         : load(its_load), now(start), sync(load), radar(load), imu(load), edl(load), pyro(load), descent_engines(load),
           thrusters(load), power(load), telecom(load), units(load), cruise_attitude(load),
-          system_fault_protection(load), cross_string(load), command_dispatcher(load),
-          edl_bg(load), mfsk(load), edl_comm(load) {}
+          system_fault_protection(load), cross_string(load), command_dispatcher(load), edl_bg(load), mfsk(load),
+          edl_comm(load) {}
 
     Load load;
     Sclk now;

@@ -20,7 +20,7 @@ struct EntryReferenceRow {
     double d_range_d_drag_s2 = 0.0;
     double d_range_d_altitude_rate_s = 0.0;
     double d_range_d_lift_to_drag_m = 0.0;
-    double lift_to_drag = 0.0;      ///< vertical L/D flown on the reference
+    double lift_to_drag = 0.0;  ///< vertical L/D flown on the reference
 };
 struct EntryReference {
     std::array<EntryReferenceRow, 64> rows{};
@@ -29,7 +29,8 @@ struct EntryReference {
 
 enum class Plan : std::uint8_t { mission, wideband };
 
-/// What a computer was started as: which is prime is designated by command before EDL, and the other stands behind it. R1
+/// What a computer was started as: which is prime is designated by command before EDL, and the other stands behind it.
+/// R1
 enum class Role : std::uint8_t { prime, second_chance };
 /// Which of the two computers this is, by its place in the vehicle.
 enum class String : std::uint8_t { a, b };
@@ -39,15 +40,15 @@ struct Load {
     Role role = Role::prime;
     /// After a restart: the last cycle whose state the other computer can have.
     std::optional<Sclk> told_until;
-    std::uint32_t resets = 0;  ///< so far
-    double uhf_rate_bps = 8000.0;             ///< rate of the real-time link
-    Plan telemetry_plan = Plan::mission;      ///< wideband: a synthetic load for benchmarks
+    std::uint32_t resets = 0;             ///< so far
+    double uhf_rate_bps = 8000.0;         ///< rate of the real-time link
+    Plan telemetry_plan = Plan::mission;  ///< wideband: a synthetic load for benchmarks
     double entry_mass_kg = 3153.0;
     double entry_lift_to_drag = 0.24;
     double powered_descent_mass_kg = 2269.0;  ///< at backshell separation
     double descent_stage_dry_kg = 983.0;
     double rover_mass_kg = 899.0;
-    double engine_max_thrust_N = 3603.0;      ///< one engine
+    double engine_max_thrust_N = 3603.0;  ///< one engine
     double engine_min_thrust_N = 31.0;
     double engine_isp_s = 210.0;
     double divert_m = 304.0;
@@ -60,7 +61,7 @@ struct Load {
 struct NavigationShift {
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
-    std::array<double, 4> q_BB{1, 0, 0, 0};       ///< after the attitude, in B
+    std::array<double, 4> q_BB{1, 0, 0, 0};           ///< after the attitude, in B
     std::array<double, 3> accelerometer_bias_mps2{};  ///< in B: what it would have learnt of it in vacuum
 };
 

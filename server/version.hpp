@@ -2,6 +2,6 @@
 
 namespace aeolis::server {
 
-inline constexpr const char* version = "0.1.0"; ///< of program and API; 1.0.0 when the routes are promised
+inline constexpr const char* version = "0.1.0";  ///< of program and API; 1.0.0 when the routes are promised
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

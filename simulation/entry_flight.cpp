@@ -48,4 +48,4 @@ PointMass EntryFlight::step(const PointMass& at, double bank_rad, double step_s)
     });
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

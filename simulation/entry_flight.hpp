@@ -37,4 +37,4 @@ class EntryFlight {
 /// Unit vector of lift for a velocity through the air and a bank angle about it; `p_MoB_M` says where up is.
 Vector3 lift_direction(const Vector3& p_MoB_M, const Vector3& v_AB_M, double bank_rad);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -14,15 +14,15 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr double step_s = 0.25;
-constexpr double descent_step_s = 0.05; // a parachute that opens a step later lands 20 m farther
+constexpr double descent_step_s = 0.05;  // a parachute that opens a step later lands 20 m farther
 constexpr double longest_s = 900.0;
-constexpr double least_deceleration_mps2 = 0.5; // below it velocity is no clock
+constexpr double least_deceleration_mps2 = 0.5;  // below it velocity is no clock
 
 /// One point of the reference flight, in the plane of flight.
 struct Node {
     double velocity_mps, flight_path_rad, altitude_m, radius_m, ground_m;
     double drag_mps2, lift_to_drag, vertical_lift_to_drag;
-    double coriolis_rps; ///< what the spin of Mars adds to the rate of the flight path angle
+    double coriolis_rps;  ///< what the spin of Mars adds to the rate of the flight path angle
 };
 
 /// Rates with velocity as the independent variable.
@@ -52,17 +52,17 @@ Node node_of(const EntryFlight& flight, const PointMass& at, double ground_m, do
 
 /// How the range still to come, R, changes with the state at a node.
 struct Costate {
-    double altitude = 0.0;       ///< ∂R/∂h
-    double flight_path_m = 0.0;  ///< ∂R/∂γ
-    double lift_to_drag_m = 0.0; ///< ∂R/∂u
+    double altitude = 0.0;        ///< ∂R/∂h
+    double flight_path_m = 0.0;   ///< ∂R/∂γ
+    double lift_to_drag_m = 0.0;  ///< ∂R/∂u
 };
 
 /// The reference flight and what comes after it.
 struct Flight {
-    std::vector<Node> nodes; ///< from where it slows down to the start of SUFR
+    std::vector<Node> nodes;  ///< from where it slows down to the start of SUFR
     double ground_at_end_m = 0.0;
-    double after_m = 0.0; ///< along the ground from the start of SUFR to the landing
-    Costate at_end;       ///< how that changes with the state in which SUFR starts
+    double after_m = 0.0;  ///< along the ground from the start of SUFR to the landing
+    Costate at_end;        ///< how that changes with the state in which SUFR starts
 };
 
 double ground_step_m(const PointMass& before, const PointMass& after, double target_radius_m) {
@@ -82,7 +82,8 @@ double range_after_entry_m(const Scenario& scenario, const Atmosphere& atmospher
         const double speed_mps = at.v_MB_M.norm();
         if (altitude_m <= scenario.backshell_altitude_m) break;
         if (since_mortar_s < 0.0 && speed_mps <= scenario.parachute_speed_mps) since_mortar_s = 0.0;
-        if (heatshield && since_mortar_s >= EntryPlan::heatshield_after_mortar_s && speed_mps <= scenario.heatshield_speed_mps) {
+        if (heatshield && since_mortar_s >= EntryPlan::heatshield_after_mortar_s &&
+            speed_mps <= scenario.heatshield_speed_mps) {
             heatshield = false;
             mass_kg -= masses.heatshield_kg;
         }
@@ -136,7 +137,8 @@ Flight fly(const Scenario& scenario, const EntryFlight& flight, const Atmosphere
     bool slowing = false;
     for (double t = 0.0; t < longest_s; t += step_s) {
         const double speed_mps = at.v_MB_M.norm();
-        const double bank_rad = slowing ? reference_bank_rad(speed_mps, held_rad) : EntryPlan::bank_before_guidance_deg * degree_rad;
+        const double bank_rad =
+            slowing ? reference_bank_rad(speed_mps, held_rad) : EntryPlan::bank_before_guidance_deg * degree_rad;
         const Sensed sensed = flight.sensed(at);
         const double climb_mps2 = free_fall(at.p_MoB_M, at.v_MB_M).dot(at.v_MB_M) / speed_mps;
         slowing = slowing || sensed.drag_mps2 - climb_mps2 >= least_deceleration_mps2;
@@ -191,14 +193,13 @@ double drag_scale_height_m(const Atmosphere& atmosphere, double altitude_m) {
 }
 
 /// Where rows stand: they divide evenly what changes along the flight, counted from its end, of velocity, range and the
-/// logarithm of drag a third each. Rows even in velocity alone left 100 km of range and a factor of 17 of drag between the
-/// first two, and guidance saw errors of 30 km that were not there.
+/// logarithm of drag a third each. Rows even in velocity alone left 100 km of range and a factor of 17 of drag between
+/// the first two, and guidance saw errors of 30 km that were not there.
 std::vector<double> row_measure(const std::vector<Node>& nodes) {
     const auto range_m = [&](std::size_t i) { return nodes[i].ground_m; };
     const auto log_drag = [&](std::size_t i) { return std::log(std::max(nodes[i].drag_mps2, 0.1)); };
     double all_log_drag = 0.0;
-    for (std::size_t i = 1; i < nodes.size(); ++i)
-        all_log_drag += std::abs(log_drag(i) - log_drag(i - 1));
+    for (std::size_t i = 1; i < nodes.size(); ++i) all_log_drag += std::abs(log_drag(i) - log_drag(i - 1));
     const double all_mps = nodes.front().velocity_mps - nodes.back().velocity_mps;
     const double all_m = range_m(nodes.size() - 1) - range_m(0);
     std::vector<double> measure(nodes.size(), 0.0);
@@ -208,7 +209,7 @@ std::vector<double> row_measure(const std::vector<Node>& nodes) {
     return measure;
 }
 
-} // namespace
+}  // namespace
 
 double reference_bank_rad(double velocity_mps, double held_rad) {
     constexpr double early_mps = 5300.0, held_from_mps = 4400.0, held_to_mps = 1100.0, up_at_mps = 980.0;
@@ -267,11 +268,10 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     if (nodes.size() < 2) return reference;
     const std::vector<double> measure = row_measure(nodes);
     const auto count = static_cast<std::uint32_t>(reference.rows.size());
-    std::size_t i = nodes.size() - 1; // nodes[i] is the slower end of the piece that holds the row's velocity
+    std::size_t i = nodes.size() - 1;  // nodes[i] is the slower end of the piece that holds the row's velocity
     for (std::uint32_t row_index = 0; row_index < count; ++row_index) {
         const double wanted = measure.front() * row_index / (count - 1.0);
-        while (i > 1 && measure[i - 1] < wanted)
-            --i;
+        while (i > 1 && measure[i - 1] < wanted) --i;
         const Node& a = nodes[i];
         const Node& b = nodes[i - 1];
         const double part = std::clamp((wanted - measure[i]) / (measure[i - 1] - measure[i]), 0.0, 1.0);
@@ -295,4 +295,4 @@ flight::EntryReference make_entry_reference(const Scenario& scenario) {
     return reference;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -12,18 +12,19 @@
 //
 // Partials: with velocity V as the independent variable, y = (height, flight path angle), dy/dV = F, ds/dV = G, u the
 // vertical lift-to-drag, range to go R = ∫ G dV to the end of the reference:
-//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        λ at the end from the descent, μ nil
-//     ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
+//     λ = ∂R/∂y:   dλ/dV = −F_yᵀ λ − G_y        μ = ∂R/∂u:   dμ/dV = −(λᵀ F_u + G_u)        λ at the end from the
+//     descent, μ nil ∂R/∂D = λ_h / (∂D/∂h)       ∂R/∂ḣ = λ_γ / (V cos γ)       ∂R/∂(L/D) = μ
 // Source: [apollo-entry-guidance] for the tables and their use, [bryson-1975] for the adjoint.
 namespace aeolis::simulation {
 
-/// What it takes flight to do, for nobody in the world may look into flight's parameters: a test holds them against those.
+/// What it takes flight to do, for nobody in the world may look into flight's parameters: a test holds them against
+/// those.
 struct EntryPlan {
-    static constexpr double bank_before_guidance_deg = 77.0; // [facts]
-    static constexpr double sufr_above_parachute_mps = 48.0; // [facts]: 453 against 405 m/s
-    static constexpr double sufr_duration_s = 14.0;          // [facts]
-    static constexpr double free_fall_s = 3.203125;          // [od137]: from backshell separation to powered approach
-    static constexpr double heatshield_after_mortar_s = 20.0; // at least, by the timeline
+    static constexpr double bank_before_guidance_deg = 77.0;   // [facts]
+    static constexpr double sufr_above_parachute_mps = 48.0;   // [facts]: 453 against 405 m/s
+    static constexpr double sufr_duration_s = 14.0;            // [facts]
+    static constexpr double free_fall_s = 3.203125;            // [od137]: from backshell separation to powered approach
+    static constexpr double heatshield_after_mortar_s = 20.0;  // at least, by the timeline
 };
 
 /// Rows ascend in velocity from the start of SUFR to where the vehicle begins to slow down. About 15 ms.
@@ -33,4 +34,4 @@ flight::EntryReference make_entry_reference(const Scenario& scenario);
 /// The reference's bank [rad] at a velocity, `held_rad` being what was found. For tests and reports.
 double reference_bank_rad(double velocity_mps, double held_rad);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -31,7 +31,7 @@ double to_tick(double seconds) {
     return std::round(seconds * 64.0) / 64.0;
 }
 
-} // namespace
+}  // namespace
 
 Quaternion cruise_attitude(double before_entry_s) {
     return Quaternion::FromTwoVectors(Vector3::UnitZ(), -earth_direction_M(-before_entry_s));
@@ -68,4 +68,4 @@ InitialState state_before_entry(const Scenario& scenario, double before_entry_s,
     return initial;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

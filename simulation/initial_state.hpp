@@ -28,4 +28,4 @@ InitialState state_before_entry(const Scenario& scenario, double before_entry_s,
 /// published angle to the velocity within a degree.
 Quaternion cruise_attitude(double before_entry_s);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

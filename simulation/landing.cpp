@@ -24,11 +24,11 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double x_band_hz = 8.4e9;           // [facts]
-constexpr double light_mps = 299792458.0;     // [bipm-si]
-constexpr std::size_t remembered_ticks = 256; // 4 s: an event report is recorded within a few cycles
+constexpr double x_band_hz = 8.4e9;            // [facts]
+constexpr double light_mps = 299792458.0;      // [bipm-si]
+constexpr std::size_t remembered_ticks = 256;  // 4 s: an event report is recorded within a few cycles
 constexpr double symbol_s = 10.0;
-constexpr double uplink_burst_octets = 32.0; // ours: mean length of a burst of errors
+constexpr double uplink_burst_octets = 32.0;  // ours: mean length of a burst of errors
 
 constexpr const char* station_out_reason = "station out";
 
@@ -46,7 +46,7 @@ ReceivedTone erased(const ReceivedTone& tone) {
     return nothing;
 }
 
-} // namespace
+}  // namespace
 
 /// A link's last told state: a change is sent to Earth like everything else.
 struct LinkTeller {
@@ -72,18 +72,12 @@ struct StoredLinks {
 
 const char* name_of(Outcome outcome) {
     switch (outcome) {
-    case Outcome::running:
-        return "running";
-    case Outcome::touchdown:
-        return "touchdown";
-    case Outcome::impact:
-        return "impact";
-    case Outcome::lost:
-        return "lost";
-    case Outcome::not_commanded:
-        return "not_commanded";
-    case Outcome::timeout:
-        return "timeout";
+    case Outcome::running: return "running";
+    case Outcome::touchdown: return "touchdown";
+    case Outcome::impact: return "impact";
+    case Outcome::lost: return "lost";
+    case Outcome::not_commanded: return "not_commanded";
+    case Outcome::timeout: return "timeout";
     }
     return "running";
 }
@@ -94,16 +88,16 @@ struct Landing::State {
     std::vector<EventReportName> reports;
     World world;
     Computers computers;
-    std::optional<GncAlone> gnc_alone; // in that venue the computers stay off
+    std::optional<GncAlone> gnc_alone;  // in that venue the computers stay off
     std::optional<GncStandIn> gnc_stand_in;
-    flight::OctetBuffer<16384> radiated; // by either computer in this cycle
+    flight::OctetBuffer<16384> radiated;  // by either computer in this cycle
     Recorder recorder;
     UhfLink uhf;
     XBandLink x_band;
     std::vector<OrbiterPass> passes;
     RelayRadio relay_radio;
-    std::deque<std::vector<std::uint8_t>> forwarded; ///< with an orbiter, for the rover
-    std::size_t delivery_restarts = 0;               ///< of the scenario's, so far
+    std::deque<std::vector<std::uint8_t>> forwarded;  ///< with an orbiter, for the rover
+    std::size_t delivery_restarts = 0;                ///< of the scenario's, so far
 
     std::int64_t light_time_us;
     ErrorBursts uplink_errors;
@@ -112,10 +106,11 @@ struct Landing::State {
     InFlight<XBandField> fields;
     InFlight<LinkState> links;
     InFlight<std::vector<std::uint8_t>> forwards;
-    LinkTeller uhf_told{.link = simulation::uhf_live_link}, x_band_told{.link = simulation::x_band_link}, relay_told{.link = simulation::relay_link};
-    std::vector<StoredLinks> stored_told; ///< one a pass
+    LinkTeller uhf_told{.link = simulation::uhf_live_link}, x_band_told{.link = simulation::x_band_link},
+        relay_told{.link = simulation::relay_link};
+    std::vector<StoredLinks> stored_told;  ///< one a pass
     InFlight<ReceivedOctets> octets;
-    std::vector<LinkState> at_station; ///< how each link was last when that reached Earth
+    std::vector<LinkState> at_station;  ///< how each link was last when that reached Earth
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -127,14 +122,14 @@ struct Landing::State {
 
     State(const Scenario& s, const flight::Load& load, std::uint64_t seed_in, std::uint64_t case_number_in,
           std::vector<EventReportName> names, const std::optional<ClockCorrelation>& known_clock)
-        : scenario(s), clock(known_clock.value_or(clock_of_scenario(s))), reports(std::move(names)), world(s, seed_in, case_number_in),
-          computers(load, world.sclk()), uhf(s.radio),
+        : scenario(s), clock(known_clock.value_or(clock_of_scenario(s))), reports(std::move(names)),
+          world(s, seed_in, case_number_in), computers(load, world.sclk()), uhf(s.radio),
           x_band(s.radio, Random{seed_in, links_case(s, case_number_in), Stream::x_band}),
           passes(passes_of(s, seed_in, links_case(s, case_number_in))), relay_radio(s.radio.light_time_s),
           light_time_us(microseconds(s.radio.light_time_s)),
           uplink_errors(s.radio.uplink_loss_fraction, uplink_burst_octets,
-                        Random{seed_in, links_case(s, case_number_in), Stream::uplink}), seed(seed_in), case_number(case_number_in),
-          dispersed(!disperses_later(s)) {
+                        Random{seed_in, links_case(s, case_number_in), Stream::uplink}),
+          seed(seed_in), case_number(case_number_in), dispersed(!disperses_later(s)) {
         computer_on = world.outcome() == Outcome::running;
         stored_told.reserve(passes.size());
         for (const OrbiterPass& pass : passes) stored_told.emplace_back(pass.row().orbiter);
@@ -222,8 +217,7 @@ void Landing::State::fly() {
     radiated.clear();
     fly_tick(false);
     report.ticks_skipped = computers.take_ticks_skipped();
-    for (int tick = 0; tick < report.ticks_skipped && computer_on; ++tick)
-        fly_tick(true);
+    for (int tick = 0; tick < report.ticks_skipped && computer_on; ++tick) fly_tick(true);
     report.recorded = recorder.octets().subspan(recorded_before);
     report.radiated = radiated.span();
     read_event_reports();
@@ -277,14 +271,19 @@ const flight::DeviceOutputs* Landing::State::run_gnc_alone() {
 void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t cycle_start_us) {
     const TruthState truth = world.truth();
     uhf.offer(pltus);
-    const auto left = uhf.cycle({truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on(), world.parachute_antenna_on()});
+    const auto left = uhf.cycle(
+        {truth.e_s, truth.altitude_m, truth.speed_mps, computer_on && world.uhf_on(), world.parachute_antenna_on()});
     OrbiterPass* live = first_in_view(false);
     for (OrbiterPass& pass : passes) {
         if (!pass.in_view(e_s()) || (!pass.row().stored && &pass != live)) continue;
         send_octets(simulation::uhf_live_link, pass.hear(Traffic::realtime, left, e_s()), cycle_start_us);
     }
     const bool up = uhf.up() && live != nullptr;
-    tell(uhf_told, up, up && !live->row().orbiter.empty() ? "by " + live->row().orbiter : uhf.up() && !up ? "no orbiter in view" : uhf.reason(), cycle_start_us);
+    tell(uhf_told, up,
+         up && !live->row().orbiter.empty() ? "by " + live->row().orbiter
+         : uhf.up() && !up                  ? "no orbiter in view"
+                                            : uhf.reason(),
+         cycle_start_us);
 }
 
 void Landing::State::send_octets(const Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us) {
@@ -302,9 +301,11 @@ void Landing::State::deliver_stored(std::int64_t cycle_start_us) {
     for (std::size_t i = 0; i < passes.size(); ++i) {
         if (!passes[i].row().stored) continue;
         // An orbiter has one link to Earth: what it recorded in an earlier pass goes first.
-        const bool busy = std::any_of(passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(i), [&](const OrbiterPass& earlier) {
-            return earlier.row().stored && earlier.row().orbiter == passes[i].row().orbiter && earlier.delivers(e_s());
-        });
+        const bool busy = std::any_of(
+            passes.begin(), passes.begin() + static_cast<std::ptrdiff_t>(i), [&](const OrbiterPass& earlier) {
+                return earlier.row().stored && earlier.row().orbiter == passes[i].row().orbiter &&
+                       earlier.delivers(e_s());
+            });
         if (busy) continue;
         for (const Traffic traffic : {Traffic::realtime, Traffic::files}) {
             LinkTeller& told = traffic == Traffic::realtime ? stored_told[i].realtime : stored_told[i].files;
@@ -346,7 +347,8 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
 bool Landing::State::station_out() const {
     const double before_entry_s = scenario.entry_sclk - sclk();
     return std::ranges::any_of(scenario.station_outages, [&](const StationOutage& outage) {
-        return before_entry_s <= outage.begin_before_entry_s && before_entry_s > outage.begin_before_entry_s - outage.duration_s;
+        return before_entry_s <= outage.begin_before_entry_s &&
+               before_entry_s > outage.begin_before_entry_s - outage.duration_s;
     });
 }
 
@@ -391,20 +393,28 @@ void Landing::State::relay_recording(std::int64_t cycle_start_us) {
         relay_radio.restart();
         ++delivery_restarts;
     }
-    forwards.arrive(cycle_start_us, [&](std::int64_t, std::vector<std::uint8_t>&& pltu) { forwarded.push_back(std::move(pltu)); });
+    forwards.arrive(cycle_start_us,
+                    [&](std::int64_t, std::vector<std::uint8_t>&& pltu) { forwarded.push_back(std::move(pltu)); });
     OrbiterPass* serving = first_in_view(true);
     if (serving != nullptr) hand_down(*serving);
     const auto sent = relay_radio.cycle(recording(), serving != nullptr ? serving->file_rate_bps(e_s()) : 0.0);
-    if (serving != nullptr) send_octets(simulation::relay_link, serving->hear(Traffic::files, sent, e_s()), cycle_start_us);
+    if (serving != nullptr)
+        send_octets(simulation::relay_link, serving->hear(Traffic::files, sent, e_s()), cycle_start_us);
     const bool complete = relay_radio.done(recording());
     const bool up = !complete && serving != nullptr && !serving->row().stored;
-    const std::string by = serving != nullptr && !serving->row().orbiter.empty() ? "by " + serving->row().orbiter : "nominal";
-    tell(relay_told, up, complete ? "recording complete" : serving == nullptr ? "no orbiter in view" : serving->row().stored ? by + ", which delivers later" : by, cycle_start_us);
+    const std::string by =
+        serving != nullptr && !serving->row().orbiter.empty() ? "by " + serving->row().orbiter : "nominal";
+    tell(relay_told, up,
+         complete                ? "recording complete"
+         : serving == nullptr    ? "no orbiter in view"
+         : serving->row().stored ? by + ", which delivers later"
+                                 : by,
+         cycle_start_us);
 }
 
 void Landing::State::note_parachute() {
-    const bool deployed = std::ranges::any_of(
-        world.events(), [](const TruthEvent& event) { return event.name == "parachute_deploy"; });
+    const bool deployed =
+        std::ranges::any_of(world.events(), [](const TruthEvent& event) { return event.name == "parachute_deploy"; });
     if (!deployed || parachute) return;
     const World::Inspection seen = world.inspect();
     parachute = {seen.mach, seen.dynamic_pressure_Pa};
@@ -426,7 +436,7 @@ void Landing::State::read_event_reports() {
         if (found == reports.end()) continue;
         const TruthState& truth = remembered[static_cast<std::size_t>(header->time.ticks()) % remembered_ticks];
         if (truth.sclk == header->time) report.events.push_back(moment(found->name.c_str(), truth));
-        reports.erase(found); // the first of a name is the moment
+        reports.erase(found);  // the first of a name is the moment
     }
 }
 
@@ -463,7 +473,7 @@ const CycleReport& Landing::step() {
         s.fly();
     } else {
         ++s.ticks_without_computer;
-        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told}) // nobody drives the transmitters any more
+        for (LinkTeller* told : {&s.uhf_told, &s.x_band_told})  // nobody drives the transmitters any more
             if (told->up) s.tell(*told, false, "computer off", cycle_start_us);
     }
     s.relay_recording(cycle_start_us);
@@ -474,7 +484,9 @@ const CycleReport& Landing::step() {
         if (!out) s.report.octets.push_back(std::move(o));
     });
     auto& tones = s.tones_from_samples() ? s.report.symbols : s.report.tones;
-    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) { tones.push_back(out && !s.tones_from_samples() ? erased(t) : t); });
+    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) {
+        tones.push_back(out && !s.tones_from_samples() ? erased(t) : t);
+    });
     s.fields.arrive(now_us, [&](std::int64_t, XBandField f) {
         f.up = f.up && !out;
         s.report.x_band.push_back(f);
@@ -516,7 +528,8 @@ void Landing::inject(Fault fault) {
         s.world.inject(*system);
     } else {
         // By Earth's clock, which goes on where the computer is off.
-        s.scenario.station_outages.push_back({s.scenario.entry_sclk - s.sclk(), std::get<StationOutage>(fault).duration_s});
+        s.scenario.station_outages.push_back(
+            {s.scenario.entry_sclk - s.sclk(), std::get<StationOutage>(fault).duration_s});
     }
 }
 
@@ -562,7 +575,8 @@ bool Landing::flown() const {
 
 bool Landing::finished() const {
     const State& s = *state_;
-    return !s.computer_on && s.recording_down() && s.stored_down() && s.octets.empty() && s.tones.empty() && s.fields.empty() && s.links.empty();
+    return !s.computer_on && s.recording_down() && s.stored_down() && s.octets.empty() && s.tones.empty() &&
+           s.fields.empty() && s.links.empty();
 }
 
 std::optional<TouchdownReport> Landing::touchdown() const {
@@ -595,4 +609,4 @@ bool Landing::relaying() const {
     return state_->relaying();
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -30,11 +30,11 @@ struct NavigationSolution {
     double backshell_altitude_m = 1660.0;
 };
 
-/// A way to Earth, by name: "uhf_live" through a bent pipe, "uhf_<orbiter>" recorded by one, "relay" and "relay_<orbiter>" the
-/// same for files after landing, "x_band".
+/// A way to Earth, by name: "uhf_live" through a bent pipe, "uhf_<orbiter>" recorded by one, "relay" and
+/// "relay_<orbiter>" the same for files after landing, "x_band".
 struct Link {
     std::string name;
-    bool recorded = false; ///< it brings the recording; else what was sent live, however late
+    bool recorded = false;  ///< it brings the recording; else what was sent live, however late
     bool operator==(const Link&) const = default;
 };
 inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false};
@@ -49,33 +49,34 @@ struct ReceivedPacket {
 /// Octets of a link as they reach Earth, in order; what they are is for ground to find out.
 struct ReceivedOctets {
     Link link;
-    Ert ert; ///< of the last
+    Ert ert;  ///< of the last
     std::vector<std::uint8_t> octets;
 };
 
-/// A tone decision of the receiver and its evidence (statistical model: drawn from the exact symbol error at the scenario's C/N0).
+/// A tone decision of the receiver and its evidence (statistical model: drawn from the exact symbol error at the
+/// scenario's C/N0).
 struct ReceivedTone {
-    Ert start, end;             ///< of the symbol; 10 s
-    std::optional<ToneId> tone; ///< none: erasure
-    double likelihood = 0.0;    ///< 0 … 1 that the decision is right
-    std::optional<BestTones> best;        ///< none: nothing was there to weigh
-    std::optional<ToneSpectrum> spectrum; ///< none: the decision does not come from samples
-    double c_n0_dbhz = 0.0;  ///< total power to noise density as the receiver estimates it; 0 when erased
-    double doppler_hz = 0.0; ///< one way at 8.4 GHz, from the flown trajectory and a fixed direction to Earth
+    Ert start, end;                        ///< of the symbol; 10 s
+    std::optional<ToneId> tone;            ///< none: erasure
+    double likelihood = 0.0;               ///< 0 … 1 that the decision is right
+    std::optional<BestTones> best;         ///< none: nothing was there to weigh
+    std::optional<ToneSpectrum> spectrum;  ///< none: the decision does not come from samples
+    double c_n0_dbhz = 0.0;                ///< total power to noise density as the receiver estimates it; 0 when erased
+    double doppler_hz = 0.0;  ///< one way at 8.4 GHz, from the flown trajectory and a fixed direction to Earth
     CarrierLock lock = CarrierLock::searching;
-    std::optional<ToneId> sent; ///< truth, for the run's score only: never shown as received
+    std::optional<ToneId> sent;  ///< truth, for the run's score only: never shown as received
     Sclk sent_at;
 };
 
 /// X-band as it reaches Earth over a cycle: carrier, and what modulates it. For an antenna to make samples of.
 struct XBandField {
-    Ert ert;                    ///< of the cycle's start
-    double e_s = 0.0;           ///< when it left the vehicle, from the scenario's entry
-    double doppler_hz = 0.0;    ///< one way, at the cycle's start
-    bool up = false;            ///< else Earth has set, or no antenna is selected: nothing but noise
-    double gain_db = 0.0;       ///< of the antenna towards Earth, against its best direction
-    std::optional<ToneId> tone; ///< none: the carrier alone
-    double tone_age_s = 0.0;    ///< since the symbol began
+    Ert ert;                     ///< of the cycle's start
+    double e_s = 0.0;            ///< when it left the vehicle, from the scenario's entry
+    double doppler_hz = 0.0;     ///< one way, at the cycle's start
+    bool up = false;             ///< else Earth has set, or no antenna is selected: nothing but noise
+    double gain_db = 0.0;        ///< of the antenna towards Earth, against its best direction
+    std::optional<ToneId> tone;  ///< none: the carrier alone
+    double tone_age_s = 0.0;     ///< since the symbol began
 };
 
 /// The state of a link, told when it changes.
@@ -83,17 +84,18 @@ struct LinkState {
     Link link;
     Ert ert;
     bool up = false;
-    std::string reason; ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
-    bool lost = false;  ///< down, and ground knows no reason, or one on the ground: it should be there. Ground's word, never told here
+    std::string reason;  ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
+    bool lost = false;   ///< down, and ground knows no reason, or one on the ground: it should be there. Ground's word,
+                         ///< never told here
 };
 
 /// A moment of the truth, named as in the design's table.
 struct TruthEvent {
     std::string name;
     Sclk sclk;
-    double e_s = 0.0;        ///< from the truth's entry interface
-    double altitude_m = 0.0; ///< descent stage's (before separation the vehicle's) above the landing radius
-    double speed_mps = 0.0;  ///< planet-relative
+    double e_s = 0.0;         ///< from the truth's entry interface
+    double altitude_m = 0.0;  ///< descent stage's (before separation the vehicle's) above the landing radius
+    double speed_mps = 0.0;   ///< planet-relative
 };
 
 struct TruthState {
@@ -106,19 +108,19 @@ struct TruthState {
 
 /// What a test or a report may want to see of the truth, and flight never does.
 struct Inspection {
-    double mass_kg = 0.0; ///< of all that flies on
+    double mass_kg = 0.0;  ///< of all that flies on
     double propellant_kg = 0.0;
     double mach = 0.0;
     double dynamic_pressure_Pa = 0.0;
-    double angle_of_attack_deg = 0.0; ///< total, against the wind
-    double bank_deg = 0.0;            ///< lift vector, positive to the right
+    double angle_of_attack_deg = 0.0;  ///< total, against the wind
+    double bank_deg = 0.0;             ///< lift vector, positive to the right
     double density_kgm3 = 0.0;
     double thrust_N = 0.0;
     double bridle_m = 0.0;
-    double swing_deg = 0.0; ///< of the bridle, off the vertical
+    double swing_deg = 0.0;  ///< of the bridle, off the vertical
     std::array<double, 4> q_MB{1, 0, 0, 0};
-    std::array<double, 3> rate_B_rps{}; ///< relative to inertial space
-    bool uhf_on = false; ///< transmitter on and an antenna selected
+    std::array<double, 3> rate_B_rps{};  ///< relative to inertial space
+    bool uhf_on = false;                 ///< transmitter on and an antenna selected
     bool parachute_open = false;
 };
 
@@ -132,16 +134,16 @@ struct TouchdownReport {
 
 /// What happened in one 64 Hz cycle. The vectors live until the next step; they keep their capacity.
 struct CycleReport {
-    int ticks_skipped = 0;                  ///< that went by in it beyond its own; nil but for a venue's real-time clock
-    std::span<const std::uint8_t> recorded; ///< whole packets appended to NVM in this cycle
-    std::span<const std::uint8_t> radiated; ///< PLTUs given to the UHF transmitter
-    std::vector<ReceivedOctets> octets;     ///< that reach Earth by the end of this cycle
-    std::vector<ReceivedPacket> packets;    ///< that ground finds in them
+    int ticks_skipped = 0;  ///< that went by in it beyond its own; nil but for a venue's real-time clock
+    std::span<const std::uint8_t> recorded;  ///< whole packets appended to NVM in this cycle
+    std::span<const std::uint8_t> radiated;  ///< PLTUs given to the UHF transmitter
+    std::vector<ReceivedOctets> octets;      ///< that reach Earth by the end of this cycle
+    std::vector<ReceivedPacket> packets;     ///< that ground finds in them
     std::vector<ReceivedTone> tones;
-    std::vector<XBandField> x_band;    ///< when tones come from samples: what then arrives instead of `tones`
-    std::vector<ReceivedTone> symbols; ///< and the symbols that were sent in it, undecided: for the score only
+    std::vector<XBandField> x_band;     ///< when tones come from samples: what then arrives instead of `tones`
+    std::vector<ReceivedTone> symbols;  ///< and the symbols that were sent in it, undecided: for the score only
     std::vector<LinkState> links;
-    bool station_out = false; ///< nothing of what reaches Earth in it reaches ground, and ground knows why
+    bool station_out = false;  ///< nothing of what reaches Earth in it reaches ground, and ground knows why
     std::vector<TruthEvent> events;
 };
 
@@ -155,7 +157,7 @@ inline constexpr std::array<const char*, 7> decided_on_board{
 struct EventReportName {
     Apid apid;
     EvrId id;
-    std::string name; ///< as in decided_on_board
+    std::string name;  ///< as in decided_on_board
 };
 
 /// The air that the parachute opened into.
@@ -166,7 +168,7 @@ struct ParachuteReport {
 /// How near the vehicle came again to what it had let go; none: never nearer once that was clear.
 struct SeparationReport {
     std::optional<double> heatshield_least_m, backshell_least_m;
-    const char* struck = nullptr; ///< the body that it came back to
+    const char* struck = nullptr;  ///< the body that it came back to
 };
 
 class Landing {
@@ -183,7 +185,8 @@ class Landing {
     Landing& operator=(Landing&&) noexcept;
     ~Landing();
 
-    /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known and the last packet has arrived, finished() is true.
+    /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known
+    /// and the last packet has arrived, finished() is true.
     const CycleReport& step();
 
     /// Whether the dispersions were drawn: from the start, or since the tick at which the scenario has them drawn.
@@ -206,30 +209,31 @@ class Landing {
     /// A fault: the prime computer starts anew with the next cycle.
     void reset_prime();
 
-    Sclk sclk() const; ///< at the vehicle
+    Sclk sclk() const;  ///< at the vehicle
     Scet scet() const;
-    Ert ert_now() const; ///< what Earth's clocks show at this moment: SCET of the vehicle's now
+    Ert ert_now() const;  ///< what Earth's clocks show at this moment: SCET of the vehicle's now
     double light_time_s() const;
     ClockCorrelation correlation() const;
     const NavigationSolution& solution() const;
     TruthState truth() const;
     Outcome outcome() const;
     std::string outcome_reason() const;
-    bool flown() const;    ///< the outcome is known, and the computers are off
-    bool finished() const; ///< and the links are empty, and the recording is down, as ground has told the rover, or no pass is left
+    bool flown() const;     ///< the outcome is known, and the computers are off
+    bool finished() const;  ///< and the links are empty, and the recording is down, as ground has told the rover, or no
+                            ///< pass is left
     std::optional<TouchdownReport> touchdown() const;
     double peak_deceleration_mps2() const;
-    std::optional<ParachuteReport> parachute() const; ///< at deployment
+    std::optional<ParachuteReport> parachute() const;  ///< at deployment
     Inspection inspect() const;
     SeparationReport separation() const;
     flight::Computer::Counters counters() const;
-    std::span<const std::uint8_t> recording() const; ///< NVM so far: whole packets, one after another
-    bool recording_closed() const;                   ///< nothing will be added
-    bool relaying() const;                           ///< it comes, or came, down
+    std::span<const std::uint8_t> recording() const;  ///< NVM so far: whole packets, one after another
+    bool recording_closed() const;                    ///< nothing will be added
+    bool relaying() const;                            ///< it comes, or came, down
 
   private:
     struct State;
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -9,9 +9,9 @@ constexpr double slowest_reversal_mps = 1100.0;
 constexpr double felt_mps2 = 0.2 * standard_gravity_mps2;
 constexpr double certain_bank_rad = 10.0 * degree_rad;
 constexpr double certain_fall = 0.7;
-constexpr double least_peak_mps2 = 20.0; // ours: no entry is gentler
+constexpr double least_peak_mps2 = 20.0;  // ours: no entry is gentler
 
-} // namespace
+}  // namespace
 
 TruthEvent moment(const char* name, const TruthState& truth) {
     return {name, truth.sclk, truth.e_s, truth.altitude_m, truth.speed_mps};
@@ -50,4 +50,4 @@ std::optional<TruthEvent> PeakDeceleration::observe(const TruthState& truth) {
     return peak_;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -39,4 +39,4 @@ class PeakDeceleration {
 /// `truth` as an event of that name.
 TruthEvent moment(const char* name, const TruthState& truth);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -14,7 +14,7 @@ constexpr std::uint64_t mix(std::uint64_t z) {
     return z ^ (z >> 31);
 }
 
-} // namespace
+}  // namespace
 
 Random::Random(std::uint64_t seed, std::uint64_t case_number, Stream stream)
     : state_(mix(mix(mix(seed + golden_gamma) + case_number + golden_gamma) + static_cast<std::uint64_t>(stream))) {}
@@ -35,9 +35,8 @@ double Random::normal() {
 
 std::array<double, 3> Random::normal3() {
     std::array<double, 3> values{};
-    for (double& value : values)
-        value = normal();
+    for (double& value : values) value = normal();
     return values;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -47,12 +47,12 @@ class Random {
     Random(std::uint64_t seed, std::uint64_t case_number, Stream stream);
 
     std::uint64_t bits();
-    double uniform(); ///< in [0, 1)
-    double normal();  ///< mean 0, standard deviation 1
+    double uniform();  ///< in [0, 1)
+    double normal();   ///< mean 0, standard deviation 1
     std::array<double, 3> normal3();
 
   private:
     std::uint64_t state_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

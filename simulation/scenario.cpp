@@ -116,12 +116,15 @@ std::vector<Bounded> bounded_fields(const Scenario& s) {
 
 void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     const auto at_most = [&](std::size_t most, const std::string& list, std::size_t rows) {
-        if (rows > most) found.push_back(list + ": has " + std::to_string(rows) + " rows, more than the " + std::to_string(most) + " that are taken");
+        if (rows > most)
+            found.push_back(list + ": has " + std::to_string(rows) + " rows, more than the " + std::to_string(most) +
+                            " that are taken");
     };
     at_most(scenario_passes_max, "radio.relay_passes", s.radio.relay_passes.size());
     at_most(scenario_passes_max, "radio.tracking_passes", s.radio.tracking_passes.size());
     at_most(scenario_rows_max, "radio.tone_outages", s.radio.tone_outages.size());
-    at_most(scenario_rows_max, "radio.delivery_restarts_after_touchdown_s", s.radio.delivery_restarts_after_touchdown_s.size());
+    at_most(scenario_rows_max, "radio.delivery_restarts_after_touchdown_s",
+            s.radio.delivery_restarts_after_touchdown_s.size());
     at_most(scenario_rows_max, "density_scale", s.density_scale.size());
     at_most(scenario_rows_max, "commands", s.commands.size());
     at_most(scenario_rows_max, "second_person", s.second_person.size());
@@ -131,7 +134,8 @@ void check_list_sizes(const Scenario& s, std::vector<std::string>& found) {
     at_most(scenario_rows_max, "station_outages", s.station_outages.size());
     if (!found.empty()) return;
     for (std::size_t i = 0; i < s.radio.relay_passes.size(); ++i)
-        at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates", s.radio.relay_passes[i].rates.size());
+        at_most(scenario_rows_max, "radio.relay_passes[" + std::to_string(i) + "].rates",
+                s.radio.relay_passes[i].rates.size());
     for (std::size_t i = 0; i < s.commands.size(); ++i)
         at_most(scenario_rows_max, "commands[" + std::to_string(i) + "].arguments", s.commands[i].arguments.size());
 }
@@ -161,15 +165,18 @@ void check_density_scale(const std::vector<DensityScale>& scales, std::vector<st
 }
 
 bool is_word(const std::string& word) {
-    return !word.empty() && std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+    return !word.empty() && std::ranges::all_of(word, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_';
+    });
 }
 
 void check_relay_pass(const RelayPass& pass, const std::string& name, std::vector<std::string>& found) {
     const auto within = [&](const char* field, double value, double least, double most) {
         if (!(value >= least && value <= most))
-            found.push_back(name + "." + field + ": " + number(value) + " is outside " + number(least) + " … " + number(most));
+            found.push_back(name + "." + field + ": " + number(value) + " is outside " + number(least) + " … " +
+                            number(most));
     };
-    if (!is_word(pass.orbiter) || pass.orbiter.size() > 16 || pass.orbiter == "live") // it names links: uhf_<orbiter>
+    if (!is_word(pass.orbiter) || pass.orbiter.size() > 16 || pass.orbiter == "live")  // it names links: uhf_<orbiter>
         found.push_back(name + ".orbiter: '" + pass.orbiter + "' is not 1 … 16 of a-z, 0-9 and _, or is 'live'");
     within("rise_after_entry_s", pass.rise_after_entry_s, -1.0e6, 1.0e6);
     within("set_after_entry_s", pass.set_after_entry_s, -1.0e6, 1.0e6);
@@ -189,20 +196,24 @@ void check_relay_passes(const Radio& radio, std::vector<std::string>& found) {
         check_relay_pass(radio.relay_passes[i], "radio.relay_passes[" + std::to_string(i) + "]", found);
     for (const double restart : radio.delivery_restarts_after_touchdown_s)
         if (!(restart >= 0.0 && restart <= 1.0e6))
-            found.push_back("radio.delivery_restarts_after_touchdown_s: " + number(restart) + " is outside 0 … 1000000");
+            found.push_back("radio.delivery_restarts_after_touchdown_s: " + number(restart) +
+                            " is outside 0 … 1000000");
     if (!std::ranges::is_sorted(radio.delivery_restarts_after_touchdown_s))
         found.push_back("radio.delivery_restarts_after_touchdown_s: are not in order");
 }
 
 void check_tracking_passes(const std::vector<TrackingPass>& passes, std::vector<std::string>& found) {
-    constexpr double most_s = 1.0e6; // ours: eleven days
+    constexpr double most_s = 1.0e6;  // ours: eleven days
     for (std::size_t i = 0; i < passes.size(); ++i) {
         const TrackingPass& pass = passes[i];
         const std::string name = "radio.tracking_passes[" + std::to_string(i) + "]";
-        if (pass.station.empty() || pass.station.size() > 32) found.push_back(name + ".station: a name of 1 … 32 octets is wanted");
-        if (!(pass.begin_after_entry_s >= -most_s && pass.end_after_entry_s <= most_s && pass.end_after_entry_s > pass.begin_after_entry_s))
-            found.push_back(name + ": begin_after_entry_s " + number(pass.begin_after_entry_s) + " to end_after_entry_s " +
-                            number(pass.end_after_entry_s) + " is no stretch of time within " + number(most_s) + " s of entry");
+        if (pass.station.empty() || pass.station.size() > 32)
+            found.push_back(name + ".station: a name of 1 … 32 octets is wanted");
+        if (!(pass.begin_after_entry_s >= -most_s && pass.end_after_entry_s <= most_s &&
+              pass.end_after_entry_s > pass.begin_after_entry_s))
+            found.push_back(name + ": begin_after_entry_s " + number(pass.begin_after_entry_s) +
+                            " to end_after_entry_s " + number(pass.end_after_entry_s) +
+                            " is no stretch of time within " + number(most_s) + " s of entry");
     }
 }
 
@@ -244,14 +255,10 @@ bool is_possible(flight::Device device, DeviceFault::Kind kind) {
     using flight::Device;
     const bool sensor = device == Device::radar || device == Device::imu;
     switch (kind) {
-    case DeviceFault::Kind::silent:
-        return true;
-    case DeviceFault::Kind::refuses:
-        return !sensor;
-    case DeviceFault::Kind::late:
-        return !sensor && device != Device::descent_engines;
-    case DeviceFault::Kind::dropout:
-        return sensor || device == Device::uhf;
+    case DeviceFault::Kind::silent: return true;
+    case DeviceFault::Kind::refuses: return !sensor;
+    case DeviceFault::Kind::late: return !sensor && device != Device::descent_engines;
+    case DeviceFault::Kind::dropout: return sensor || device == Device::uhf;
     }
     return false;
 }
@@ -276,7 +283,8 @@ void check_device_faults(const Scenario& scenario, std::vector<std::string>& fou
 
 /// Of SystemFault or StationOutage.
 template <typename Row>
-void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const std::string& field, std::vector<std::string>& found) {
+void check_spells(const Scenario& scenario, const std::vector<Row>& rows, const std::string& field,
+                  std::vector<std::string>& found) {
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Row& fault = rows[i];
         const std::string name = field + "[" + std::to_string(i) + "]";
@@ -304,25 +312,22 @@ void check_computer_resets(const Scenario& scenario, std::vector<std::string>& f
 void check_test_venue(const Scenario& scenario, std::vector<std::string>& found) {
     if (scenario.test_venue != TestVenue::gnc_alone) return;
     const auto refuse = [&](bool any, const char* field) {
-        if (any) found.push_back(std::string(field) + ": in the test venue gnc_alone there is no computer that takes them");
+        if (any)
+            found.push_back(std::string(field) + ": in the test venue gnc_alone there is no computer that takes them");
     };
     refuse(!scenario.commands.empty(), "commands");
     refuse(!scenario.system_faults.empty(), "system_faults");
     refuse(!scenario.computer_resets.empty(), "computer_resets");
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(TestVenue venue) {
     switch (venue) {
-    case TestVenue::flight_software:
-        return "flight_software";
-    case TestVenue::gnc_alone:
-        return "gnc_alone";
-    case TestVenue::all_but_gnc:
-        return "all_but_gnc";
-    case TestVenue::performance:
-        return "performance";
+    case TestVenue::flight_software: return "flight_software";
+    case TestVenue::gnc_alone: return "gnc_alone";
+    case TestVenue::all_but_gnc: return "all_but_gnc";
+    case TestVenue::performance: return "performance";
     }
     return "flight_software";
 }
@@ -339,7 +344,7 @@ Scenario undispersed(Scenario scenario) {
 
 // Wider than any entry of this design reaches, so that what is refused is a mistake.
 void check_target_range(const Scenario& s, std::vector<std::string>& found) {
-    constexpr double least_km = 300.0, most_km = 1500.0; // ours; this vehicle steers within some 520 … 800 km
+    constexpr double least_km = 300.0, most_km = 1500.0;  // ours; this vehicle steers within some 520 … 800 km
     const auto direction = [](double latitude_deg, double longitude_deg) {
         return place(latitude_deg * degree_rad, longitude_deg * degree_rad, 1.0);
     };
@@ -354,7 +359,7 @@ void check_target_range(const Scenario& s, std::vector<std::string>& found) {
 std::vector<std::string> impossible_values(const Scenario& scenario) {
     std::vector<std::string> found;
     check_list_sizes(scenario, found);
-    if (!found.empty()) return found; // not a line for each row of a list that is too long
+    if (!found.empty()) return found;  // not a line for each row of a list that is too long
     // Not within, rather than outside: a value that is no number is neither.
     for (const Bounded& field : bounded_fields(scenario))
         if (!(field.value >= field.least && field.value <= field.most))
@@ -386,4 +391,4 @@ std::vector<std::string> impossible_values(const Scenario& scenario) {
     return found;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -13,7 +13,7 @@ using Vector3 = Eigen::Vector3d;
 using Quaternion = Eigen::Quaterniond;
 
 inline constexpr double degree_rad = std::numbers::pi / 180.0;
-inline constexpr double standard_gravity_mps2 = 9.80665; // [bipm-si]
+inline constexpr double standard_gravity_mps2 = 9.80665;  // [bipm-si]
 
 inline Vector3 vector3(const std::array<double, 3>& a) {
     return {a[0], a[1], a[2]};
@@ -42,4 +42,4 @@ inline Vector3 rotation_vector(const Quaternion& q) {
     return q.vec() * (sign * 2.0 * std::atan2(sine, sign * q.w()) / sine);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

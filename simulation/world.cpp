@@ -21,12 +21,12 @@ constexpr std::int64_t grid_hz = 1600;
 constexpr std::int64_t grid_per_tick = 25;
 constexpr std::int64_t grid_per_reading = 8;
 
-constexpr double entry_margin_m = 1.0;              // the state was propagated back and forth: far below a tick's 25 m
-constexpr double burns_up_m = 80000.0;              // ours: below it a cruise stage that is still there is the end
-constexpr double wheels_break_vertical_mps = 2.0;   // ours
-constexpr double wheels_break_horizontal_mps = 1.5; // ours
-constexpr double stage_clear_m = 50.0;              // ours: a stage that falls nearer has hit the rover
-constexpr double waits_for_cutting_s = 20.0;        // ours
+constexpr double entry_margin_m = 1.0;               // the state was propagated back and forth: far below a tick's 25 m
+constexpr double burns_up_m = 80000.0;               // ours: below it a cruise stage that is still there is the end
+constexpr double wheels_break_vertical_mps = 2.0;    // ours
+constexpr double wheels_break_horizontal_mps = 1.5;  // ours
+constexpr double stage_clear_m = 50.0;               // ours: a stage that falls nearer has hit the rover
+constexpr double waits_for_cutting_s = 20.0;         // ours
 
 Imu imu(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number, flight::Unit unit) {
     const bool a = unit == flight::Unit::a;
@@ -46,19 +46,19 @@ std::string seconds_text(double seconds) {
     return text.data();
 }
 
-} // namespace
+}  // namespace
 
 struct World::State {
     Scenario scenario;
     InitialState initial;
     Vehicle vehicle;
     Buses buses;
-    std::array<Imu, 2> imus; ///< units A and B
+    std::array<Imu, 2> imus;  ///< units A and B
     std::array<Radar, 2> radars;
     StarScanner star_scanner;
 
-    std::int64_t ticks = 0;                  ///< since the start
-    flight::Unit imu_unit = flight::Unit::a; ///< whose link the computer listens to
+    std::int64_t ticks = 0;                   ///< since the start
+    flight::Unit imu_unit = flight::Unit::a;  ///< whose link the computer listens to
     flight::DeviceInputs in;
     FixedVector<flight::ImuSample, 4> imu_samples;
     FixedVector<flight::UplinkPacket, 8> received;
@@ -78,8 +78,8 @@ struct World::State {
     State(const Scenario& s, std::uint64_t seed, std::uint64_t case_number)
         : scenario(s), initial(initial_state(s, seed, case_number)),
           vehicle(s, initial.truth, cruise_attitude(s.start_before_entry_s), seed, case_number),
-          buses(s, seed, case_number), imus{imu(s, seed, case_number, flight::Unit::a),
-                                            imu(s, seed, case_number, flight::Unit::b)},
+          buses(s, seed, case_number),
+          imus{imu(s, seed, case_number, flight::Unit::a), imu(s, seed, case_number, flight::Unit::b)},
           radars{radar(s, seed, case_number, flight::Unit::a), radar(s, seed, case_number, flight::Unit::b)},
           star_scanner(s.dispersions, Random{seed, case_number, Stream::star_scanner}) {
         events.reserve(8);
@@ -153,42 +153,26 @@ struct World::State {
 void World::State::take_pyro(flight::PyroId pyro) {
     using flight::PyroId;
     switch (pyro) {
-    case PyroId::cruise_stage_separation:
-        tell("cruise_stage_separation");
-        break;
-    case PyroId::entry_balance_1:
-        tell("sufr_start");
-        break;
-    case PyroId::parachute_mortar:
-        tell("parachute_deploy");
-        break;
-    case PyroId::heatshield_separation:
-        tell("heatshield_separation");
-        break;
-    case PyroId::engine_valves:
-        tell("engine_priming");
-        break;
-    case PyroId::backshell_separation:
-        tell("backshell_separation");
-        break;
-    case PyroId::rover_separation:
-        tell("rover_separation");
-        break;
+    case PyroId::cruise_stage_separation: tell("cruise_stage_separation"); break;
+    case PyroId::entry_balance_1: tell("sufr_start"); break;
+    case PyroId::parachute_mortar: tell("parachute_deploy"); break;
+    case PyroId::heatshield_separation: tell("heatshield_separation"); break;
+    case PyroId::engine_valves: tell("engine_priming"); break;
+    case PyroId::backshell_separation: tell("backshell_separation"); break;
+    case PyroId::rover_separation: tell("rover_separation"); break;
     case PyroId::bridle_cutter:
         tell("bridle_cut");
         bridle_cut = sclk();
         if (!contact) end(Outcome::impact, "the bridle was cut before the rover stood");
         break;
-    default:
-        break;
+    default: break;
     }
     vehicle.fire(pyro, now_s());
 }
 
 // What reached the devices with the frames of this tick.
 void World::State::obey() {
-    for (const flight::PyroId pyro : buses.fired())
-        take_pyro(pyro);
+    for (const flight::PyroId pyro : buses.fired()) take_pyro(pyro);
     const flight::EngineCommand& engines = buses.engines();
     vehicle.command(buses.thrusters(), buses.devices().thrusters_enabled(), engines, buses.pay_out_bridle(), now_s());
 
@@ -280,7 +264,8 @@ void World::State::watch() {
     if (now.altitude_m < burns_up_m && vehicle.configuration().cruise_stage)
         return end(Outcome::not_commanded, "entered with the cruise stage attached: nothing was commanded");
     if (const char* body = separation().struck)
-        return end(Outcome::lost, std::string{"the vehicle was struck by its "} + body + " at E+" + seconds_text(now.e_s));
+        return end(Outcome::lost,
+                   std::string{"the vehicle was struck by its "} + body + " at E+" + seconds_text(now.e_s));
     if (!contact && stage_down) return end(Outcome::impact, "the vehicle hit the ground");
     if (now.e_s > scenario.timeout_after_entry_s) return end(Outcome::timeout, "not on the ground in time");
     if (!contact) return;
@@ -359,8 +344,8 @@ flight::DeviceInputs& World::sense() {
         const bool blind = s.buses.faults().has(DeviceFault::Kind::dropout, flight::Device::radar, unit);
         for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
             if (!Radar::due(beam, s.grid() - grid_per_tick, s.grid())) continue;
-            flight::RadarBeam reading =
-                s.radars[static_cast<std::size_t>(unit)].measure(beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
+            flight::RadarBeam reading = s.radars[static_cast<std::size_t>(unit)].measure(
+                beam, s.vehicle.at(), s.vehicle.q_MB(), s.vehicle.terrain());
             if (blind || s.heatshield_hides(reading)) reading = {reading.beam, reading.direction_B, false, 0.0, 0.0};
             in.radar.push_back(reading);
         }
@@ -484,4 +469,4 @@ World::Inspection World::inspect() const {
             .parachute_open = s.vehicle.parachute_open(s.now_s())};
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -54,7 +54,8 @@ class World {
 
     /// The vehicle takes the commands of this cycle and flies on to the next tick.
     void advance(const flight::DeviceOutputs& out);
-    /// Flies on to the next tick while no computer runs the buses: thrusters close, engines keep their throttles for 2 s.
+    /// Flies on to the next tick while no computer runs the buses: thrusters close, engines keep their throttles for 2
+    /// s.
     void advance_uncommanded();
 
     /// An uplinked unit (CLTU) reaches the receiver with the next tick; false when it is too long for one.
@@ -65,20 +66,21 @@ class World {
     /// The vehicle's recorder tells the computer how full it is.
     void set_nvm(std::uint32_t used_octets, std::uint32_t capacity_octets);
 
-    Sclk sclk() const; ///< of the tick that is now
+    Sclk sclk() const;  ///< of the tick that is now
     TruthState truth() const;
     /// Moments that the last sense() or advance() brought to light; a moment's own time may lie some cycles back.
     std::span<const TruthEvent> events() const;
-    Outcome outcome() const; ///< `touchdown` once the rover stands and the stage has flown away
+    Outcome outcome() const;  ///< `touchdown` once the rover stands and the stage has flown away
     const std::string& outcome_reason() const;
-    const std::optional<TouchdownReport>& touchdown() const; ///< from the rover's first contact
-    std::optional<Sclk> contact() const;                     ///< when that was
+    const std::optional<TouchdownReport>& touchdown() const;  ///< from the rover's first contact
+    std::optional<Sclk> contact() const;                      ///< when that was
     double peak_deceleration_mps2() const;
     SeparationReport separation() const;
     const NavigationSolution& solution() const;
-    bool uhf_on() const; ///< the selected transmitter radiates through an antenna
-    bool parachute_antenna_on() const; ///< else that of entry
-    /// The way to Earth for X-band: above the terrain, and the selected antenna's gain towards it (none: none is selected).
+    bool uhf_on() const;                ///< the selected transmitter radiates through an antenna
+    bool parachute_antenna_on() const;  ///< else that of entry
+    /// The way to Earth for X-band: above the terrain, and the selected antenna's gain towards it (none: none is
+    /// selected).
     struct EarthView {
         bool up = false;
         std::optional<double> gain;
@@ -95,4 +97,4 @@ class World {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -23,7 +23,7 @@ void settle(AlarmState& state) {
     state.acknowledged = false;
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(AlarmAct act) {
     for (const auto& [each, word] : act_words)
@@ -64,14 +64,14 @@ Result<void> AlarmDesk::may(std::string_view name, AlarmAct act, Ert now) const 
         if (state.normal()) return Error{who + " is normal: there is nothing to acknowledge"};
         if (state.acknowledged) return Error{who + " has been acknowledged already"};
         return {};
-    case AlarmAct::shelve:
-        return {};
+    case AlarmAct::shelve: return {};
     case AlarmAct::unshelve:
         if (!is_shelved(state, now)) return Error{who + " is not shelved"};
         return {};
     case AlarmAct::reset:
         if (state.normal() || !state.latches) return Error{who + " is not latched: there is nothing to reset"};
-        if (state.severity != Severity::none) return Error{who + " still stands: it can be reset when its cause is gone"};
+        if (state.severity != Severity::none)
+            return Error{who + " still stands: it can be reset when its cause is gone"};
         if (!state.acknowledged) return Error{who + " is not acknowledged: acknowledge it first"};
         return {};
     }
@@ -82,15 +82,9 @@ void AlarmDesk::act(std::string_view name, AlarmAct act, Ert now, Ert until) {
     if (!may(name, act, now)) return;
     AlarmState& state = states_[std::string(name)];
     switch (act) {
-    case AlarmAct::acknowledge:
-        state.acknowledged = true;
-        return settle(state);
-    case AlarmAct::shelve:
-        state.shelved_until = until;
-        return;
-    case AlarmAct::unshelve:
-        state.shelved_until.reset();
-        return;
+    case AlarmAct::acknowledge: state.acknowledged = true; return settle(state);
+    case AlarmAct::shelve: state.shelved_until = until; return;
+    case AlarmAct::unshelve: state.shelved_until.reset(); return;
     case AlarmAct::reset:
         state.worst = Severity::none;
         state.acknowledged = false;
@@ -98,4 +92,4 @@ void AlarmDesk::act(std::string_view name, AlarmAct act, Ert now, Ert until) {
     }
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -13,10 +13,10 @@ namespace aeolis::telemetry {
 
 /// What a controller does about an alarm.
 enum class AlarmAct {
-    acknowledge, ///< "I have seen it": until it grows more severe, or comes again
-    shelve,      ///< out of sight for a limited time
+    acknowledge,  ///< "I have seen it": until it grows more severe, or comes again
+    shelve,       ///< out of sight for a limited time
     unshelve,
-    reset,       ///< of one that latches: its cause is gone, and it may go
+    reset,  ///< of one that latches: its cause is gone, and it may go
 };
 /// Their words in the API and in the archive.
 const char* name_of(AlarmAct act);
@@ -24,14 +24,14 @@ std::optional<AlarmAct> alarm_act(std::string_view word);
 
 /// An alarm and what has been done about it. [isa-18.2]
 struct AlarmState {
-    dictionary::Severity severity{}; ///< of what is so now; none: within limits
-    dictionary::Severity worst{};    ///< since it last was normal
+    dictionary::Severity severity{};  ///< of what is so now; none: within limits
+    dictionary::Severity worst{};     ///< since it last was normal
     bool latches = false;
     bool acknowledged = false;
     std::optional<Ert> shelved_until;
 
-    /// normal, unacknowledged, acknowledged, returned (within limits again, unacknowledged), latched (within limits again,
-    /// and it stays until it is reset), shelved (whatever else it is)
+    /// normal, unacknowledged, acknowledged, returned (within limits again, unacknowledged), latched (within limits
+    /// again, and it stays until it is reset), shelved (whatever else it is)
     const char* name(Ert now) const;
     bool normal() const { return worst == dictionary::Severity::none; }
 };
@@ -57,4 +57,4 @@ class AlarmDesk {
     std::map<std::string, AlarmState, std::less<>> states_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

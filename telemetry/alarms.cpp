@@ -25,7 +25,8 @@ Severity worst(const dictionary::Alarms& alarms, double value) {
 }
 
 /// The limit that `value` breaks, in words: the one of `severity`, or, where that one guards the other side only, any.
-std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& alarms, Severity severity, double value) {
+std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& alarms, Severity severity,
+                       double value) {
     std::string text;
     for (const dictionary::AlarmRange& range : alarms.ranges) {
         if (!breaks(range, value) || (!text.empty() && range.severity != severity)) continue;
@@ -35,22 +36,16 @@ std::string limit_text(const dictionary::Type& type, const dictionary::Alarms& a
     return text.empty() ? "= " + value_text(type, value) : text;
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(Severity severity) {
     switch (severity) {
-    case Severity::none:
-        return "none";
-    case Severity::watch:
-        return "watch";
-    case Severity::warning:
-        return "warning";
-    case Severity::distress:
-        return "distress";
-    case Severity::critical:
-        return "critical";
-    case Severity::severe:
-        return "severe";
+    case Severity::none: return "none";
+    case Severity::watch: return "watch";
+    case Severity::warning: return "warning";
+    case Severity::distress: return "distress";
+    case Severity::critical: return "critical";
+    case Severity::severe: return "severe";
     }
     return "";
 }
@@ -62,7 +57,8 @@ std::optional<Severity> severity_of(std::string_view word) {
     return {};
 }
 
-std::string context_text(const dictionary::Dictionary& dictionary, const std::vector<dictionary::Precondition>& context) {
+std::string context_text(const dictionary::Dictionary& dictionary,
+                         const std::vector<dictionary::Precondition>& context) {
     std::string text;
     for (const dictionary::Precondition& condition : context) {
         const dictionary::Channel& channel = dictionary.channels[condition.channel.value];
@@ -85,7 +81,8 @@ const dictionary::ContextAlarms* AlarmMonitor::context_of(const dictionary::Alar
         const auto& latest = latest_[condition.channel.value];
         return latest && condition.holds(*latest);
     };
-    const auto found = std::ranges::find_if(alarms.contexts, [&](const auto& each) { return std::ranges::all_of(each.context, holds); });
+    const auto found = std::ranges::find_if(alarms.contexts,
+                                            [&](const auto& each) { return std::ranges::all_of(each.context, holds); });
     return found == alarms.contexts.end() ? nullptr : &*found;
 }
 
@@ -98,8 +95,7 @@ void AlarmMonitor::sample(ChannelId channel, double value, Sclk sclk, std::vecto
     State& state = states_[channel.value];
     const auto* const context = context_of(type.alarms);
     if (context != std::exchange(state.context, context))
-        for (Level& level : state.levels)
-            level.violations = level.conformances = 0;
+        for (Level& level : state.levels) level.violations = level.conformances = 0;
     const dictionary::Alarms& alarms = context != nullptr ? context->alarms : type.alarms;
     const auto broken = static_cast<std::size_t>(worst(alarms, value));
     Severity now = Severity::none;
@@ -127,4 +123,4 @@ Severity AlarmMonitor::severity(ChannelId channel) const {
     return states_[channel.value].now;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -13,17 +13,18 @@ namespace aeolis::telemetry {
 
 struct AlarmChange {
     ChannelId channel;
-    dictionary::Severity severity{}; ///< none: cleared
+    dictionary::Severity severity{};  ///< none: cleared
     dictionary::Severity before{};
     double value = 0.0;
     Sclk sclk;
-    std::string limit; ///< what the value broke: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
+    std::string limit;  ///< what the value broke: "> 14.5 g", "= failed", "> 1.5 m/s in sky_crane"; empty when cleared
 };
 const char* name_of(dictionary::Severity severity);
 /// None for a word that is no severity's.
 std::optional<dictionary::Severity> severity_of(std::string_view word);
 /// "sky_crane" where one state of one channel is asked for; else the conditions in words.
-std::string context_text(const dictionary::Dictionary& dictionary, const std::vector<dictionary::Precondition>& context);
+std::string context_text(const dictionary::Dictionary& dictionary,
+                         const std::vector<dictionary::Precondition>& context);
 /// Whether an alarm of the channel stays until it is reset: in any context.
 bool latches(const dictionary::Alarms& alarms);
 
@@ -48,18 +49,19 @@ class AlarmMonitor {
   private:
     static constexpr std::size_t severities = 6;
     struct Level {
-        std::uint32_t violations = 0, conformances = 0; ///< samples in a row up to the last, at least this severe or less
+        std::uint32_t violations = 0,
+                      conformances = 0;  ///< samples in a row up to the last, at least this severe or less
         bool stands = false;
     };
     struct State {
         std::array<Level, severities> levels{};
-        const dictionary::ContextAlarms* context = nullptr; ///< none: the default limits
+        const dictionary::ContextAlarms* context = nullptr;  ///< none: the default limits
         dictionary::Severity now = dictionary::Severity::none;
     };
     const dictionary::ContextAlarms* context_of(const dictionary::Alarms& alarms) const;
     const dictionary::Dictionary& dictionary_;
     std::vector<State> states_;
-    std::vector<std::optional<double>> latest_; ///< by channel
+    std::vector<std::optional<double>> latest_;  ///< by channel
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -29,20 +29,16 @@ std::vector<Range> missing_in(const std::vector<Range>& ranges, const Range& wan
 
 cfdp::Condition condition_of(Outcome outcome) {
     switch (outcome) {
-    case Outcome::wrong_checksum:
-        return cfdp::Condition::file_checksum_failure;
-    case Outcome::wrong_size:
-        return cfdp::Condition::file_size_error;
-    case Outcome::cancelled:
-        return cfdp::Condition::cancel_received;
+    case Outcome::wrong_checksum: return cfdp::Condition::file_checksum_failure;
+    case Outcome::wrong_size: return cfdp::Condition::file_size_error;
+    case Outcome::cancelled: return cfdp::Condition::cancel_received;
     case Outcome::under_way:
-    case Outcome::complete:
-        break;
+    case Outcome::complete: break;
     }
     return cfdp::Condition::no_error;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<Reception> reception_of(const cfdp::Header& header) {
     if (header.toward_sender || header.unacknowledged || header.source > 0xFFFF || header.destination > 0xFFFF ||
@@ -215,4 +211,4 @@ std::optional<std::vector<std::uint8_t>> CfdpReceiver::next() {
     return written(cfdp::Finished{condition_of(state_.outcome), complete, static_cast<std::uint8_t>(complete ? 2 : 0)});
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -6,15 +6,16 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double fields_max = 10.0;       // [naif-sclk]: no clock has more
-constexpr double ticks_max = 1.0e17;      // ours: far beyond what a double counts without gaps
+constexpr double fields_max = 10.0;   // [naif-sclk]: no clock has more
+constexpr double ticks_max = 1.0e17;  // ours: far beyond what a double counts without gaps
 
 Error clock_fault(const TextKernel& kernel, const std::string& name, const std::string& what) {
     const auto* variable = kernel.find(name);
-    return Error{kernel.file() + ":" + std::to_string(variable == nullptr ? 1 : variable->line) + ": " + name + " " + what};
+    return Error{kernel.file() + ":" + std::to_string(variable == nullptr ? 1 : variable->line) + ": " + name + " " +
+                 what};
 }
 
-} // namespace
+}  // namespace
 
 Result<ClockKernel> ClockKernel::read(const TextKernel& kernel) {
     constexpr std::string_view type_name = "SCLK_DATA_TYPE_";
@@ -25,7 +26,8 @@ Result<ClockKernel> ClockKernel::read(const TextKernel& kernel) {
             return clock_fault(kernel, name, "is the clock of a second spacecraft: give a kernel of one");
         clock.spacecraft_ = name.substr(type_name.size());
     }
-    if (clock.spacecraft_.empty()) return Error{kernel.file() + ": it says no " + std::string{type_name} + "…: it is no SCLK kernel"};
+    if (clock.spacecraft_.empty())
+        return Error{kernel.file() + ": it says no " + std::string{type_name} + "…: it is no SCLK kernel"};
     const std::string type = std::string{type_name} + clock.spacecraft_;
     const auto number = kernel.numbers(type, 1);
     if (!number) return number.error();
@@ -34,7 +36,8 @@ Result<ClockKernel> ClockKernel::read(const TextKernel& kernel) {
     if (kernel.find(system) != nullptr) {
         const auto word = kernel.numbers(system, 1);
         if (!word) return word.error();
-        if ((*word)[0] != 1.0 && (*word)[0] != 2.0) return clock_fault(kernel, system, "is neither 1 (TDB) nor 2 (TDT)");
+        if ((*word)[0] != 1.0 && (*word)[0] != 2.0)
+            return clock_fault(kernel, system, "is neither 1 (TDB) nor 2 (TDT)");
         clock.terrestrial_ = (*word)[0] == 2.0;
     }
     if (auto done = clock.read_fields(kernel); !done) return done.error();
@@ -62,7 +65,8 @@ Result<void> ClockKernel::read_fields(const TextKernel& kernel) {
         offset_ticks_ += (*offsets)[i] * weight;
         if (i > 0) weight *= (*moduli)[i];
     }
-    if (weight > ticks_max) return clock_fault(kernel, "SCLK01_MODULI_" + spacecraft_, "are more ticks than can be counted");
+    if (weight > ticks_max)
+        return clock_fault(kernel, "SCLK01_MODULI_" + spacecraft_, "are more ticks than can be counted");
     ticks_per_count_ = weight;
     return {};
 }
@@ -76,8 +80,10 @@ Result<void> ClockKernel::read_partitions(const TextKernel& kernel) {
     double before = 0.0;
     for (std::size_t i = 0; i < starts->size(); ++i) {
         const Partition partition{(*starts)[i], (*ends)[i], before};
-        if (partition.end_ticks <= partition.start_ticks || partition.start_ticks < 0.0 || partition.end_ticks > ticks_max)
-            return clock_fault(kernel, end_name, "ends partition " + std::to_string(i + 1) + " before it begins, or nowhere");
+        if (partition.end_ticks <= partition.start_ticks || partition.start_ticks < 0.0 ||
+            partition.end_ticks > ticks_max)
+            return clock_fault(kernel, end_name,
+                               "ends partition " + std::to_string(i + 1) + " before it begins, or nowhere");
         before += partition.end_ticks - partition.start_ticks;
         partitions_.push_back(partition);
     }
@@ -93,7 +99,9 @@ Result<void> ClockKernel::read_points(const TextKernel& kernel) {
         const Point point{(*numbers)[i], (*numbers)[i + 1], (*numbers)[i + 2]};
         if (!points_.empty() && (point.ticks <= points_.back().ticks || point.time_s < points_.back().time_s))
             return clock_fault(kernel, name, "is not in order at its point " + std::to_string(i / 3 + 1));
-        if (point.rate_s <= 0.0) return clock_fault(kernel, name, "has a rate that is not above 0 at its point " + std::to_string(i / 3 + 1));
+        if (point.rate_s <= 0.0)
+            return clock_fault(kernel, name,
+                               "has a rate that is not above 0 at its point " + std::to_string(i / 3 + 1));
         points_.push_back(point);
     }
     return {};
@@ -106,7 +114,8 @@ std::optional<double> ClockKernel::parallel_time_of(double count, std::optional<
         if (*partition == 0 || *partition > partitions_.size()) return std::nullopt;
         in += static_cast<std::ptrdiff_t>(*partition - 1);
     } else {
-        in = std::ranges::find_if(partitions_, [&](const Partition& each) { return ticks >= each.start_ticks && ticks <= each.end_ticks; });
+        in = std::ranges::find_if(
+            partitions_, [&](const Partition& each) { return ticks >= each.start_ticks && ticks <= each.end_ticks; });
     }
     if (in == partitions_.end() || !(ticks >= in->start_ticks && ticks <= in->end_ticks)) return std::nullopt;
     const double all_ticks = ticks - in->start_ticks + in->before_ticks;
@@ -121,7 +130,8 @@ std::optional<std::pair<double, std::size_t>> ClockKernel::count_at(double paral
     if (after == points_.begin()) return std::nullopt;
     const Point& point = *std::prev(after);
     const double all_ticks = point.ticks + (parallel_time_s - point.time_s) / point.rate_s * ticks_per_count_;
-    if (after != points_.end() && all_ticks >= after->ticks) return std::nullopt; // passed over when the next point was set
+    if (after != points_.end() && all_ticks >= after->ticks)
+        return std::nullopt;  // passed over when the next point was set
     for (std::size_t i = 0; i < partitions_.size(); ++i) {
         const Partition& partition = partitions_[i];
         const double ticks = all_ticks - partition.before_ticks + partition.start_ticks;
@@ -131,10 +141,11 @@ std::optional<std::pair<double, std::size_t>> ClockKernel::count_at(double paral
     return std::nullopt;
 }
 
-std::optional<UtcInstant> ClockKernel::scet_of(double count, const LeapSeconds& leaps, std::optional<std::size_t> partition) const {
+std::optional<UtcInstant> ClockKernel::scet_of(double count, const LeapSeconds& leaps,
+                                               std::optional<std::size_t> partition) const {
     const auto time_s = parallel_time_of(count, partition);
     if (!time_s) return std::nullopt;
     return terrestrial_ ? leaps.utc_of_tt(*time_s) : leaps.utc_of_tdb(*time_s);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

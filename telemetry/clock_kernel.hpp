@@ -26,30 +26,31 @@ class ClockKernel {
     /// The count and its partition at that parallel time; none where the pieces leave a gap.
     std::optional<std::pair<double, std::size_t>> count_at(double parallel_time_s) const;
 
-    std::optional<UtcInstant> scet_of(double count, const LeapSeconds& leaps, std::optional<std::size_t> partition = {}) const;
+    std::optional<UtcInstant> scet_of(double count, const LeapSeconds& leaps,
+                                      std::optional<std::size_t> partition = {}) const;
 
-    const std::string& spacecraft() const { return spacecraft_; } ///< as the kernel names it: "76" for -76
+    const std::string& spacecraft() const { return spacecraft_; }  ///< as the kernel names it: "76" for -76
     std::size_t partitions() const { return partitions_.size(); }
 
   private:
     struct Partition {
         double start_ticks = 0.0, end_ticks = 0.0;
-        double before_ticks = 0.0; ///< of all partitions before it
+        double before_ticks = 0.0;  ///< of all partitions before it
     };
     struct Point {
-        double ticks = 0.0; ///< all partitions counted on
+        double ticks = 0.0;  ///< all partitions counted on
         double time_s = 0.0;
-        double rate_s = 0.0; ///< for a count of the first field
+        double rate_s = 0.0;  ///< for a count of the first field
     };
     Result<void> read_fields(const TextKernel& kernel);
     Result<void> read_partitions(const TextKernel& kernel);
     Result<void> read_points(const TextKernel& kernel);
 
     std::string spacecraft_;
-    bool terrestrial_ = false; ///< TT; else TDB
+    bool terrestrial_ = false;  ///< TT; else TDB
     double ticks_per_count_ = 1.0, offset_ticks_ = 0.0;
     std::vector<Partition> partitions_;
     std::vector<Point> points_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

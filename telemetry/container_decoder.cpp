@@ -18,7 +18,7 @@ namespace {
 
 using namespace dictionary::xtce;
 
-constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max; // entries read, of a packet
+constexpr std::size_t steps_max = 4 * ContainerDecoder::values_max;  // entries read, of a packet
 
 /// A number to compare and compute with; none for text and octets.
 std::optional<long double> number_of(const Datum& datum) {
@@ -31,18 +31,12 @@ std::optional<long double> number_of(const Datum& datum) {
 template <typename Left, typename Right>
 bool compared(const Left& left, Condition::Operator op, const Right& right) {
     switch (op) {
-    case Condition::Operator::equal:
-        return left == right;
-    case Condition::Operator::not_equal:
-        return left != right;
-    case Condition::Operator::less:
-        return left < right;
-    case Condition::Operator::less_or_equal:
-        return left <= right;
-    case Condition::Operator::greater:
-        return left > right;
-    case Condition::Operator::greater_or_equal:
-        return left >= right;
+    case Condition::Operator::equal: return left == right;
+    case Condition::Operator::not_equal: return left != right;
+    case Condition::Operator::less: return left < right;
+    case Condition::Operator::less_or_equal: return left <= right;
+    case Condition::Operator::greater: return left > right;
+    case Condition::Operator::greater_or_equal: return left >= right;
     }
     return false;
 }
@@ -53,7 +47,9 @@ std::optional<long double> compared_number(const std::string& word) {
     return std::nullopt;
 }
 
-Datum defined(double value) { return std::isfinite(value) ? Datum{value} : Datum{}; }
+Datum defined(double value) {
+    return std::isfinite(value) ? Datum{value} : Datum{};
+}
 
 Datum calibrated_by(const Calibration& calibration, double raw) {
     if (!calibration.polynomial.empty()) {
@@ -75,8 +71,7 @@ Datum calibrated_by(const Calibration& calibration, double raw) {
 /// The reading of one packet.
 class Reading {
   public:
-    Reading(const PacketModel& model, std::span<const std::uint8_t> packet)
-        : model_(model), packet_(packet) {}
+    Reading(const PacketModel& model, std::span<const std::uint8_t> packet) : model_(model), packet_(packet) {}
 
     /// False when the packet cannot be read on.
     bool read_container(const PacketContainer& container, std::size_t start_bits, unsigned depth) {
@@ -89,16 +84,11 @@ class Reading {
     bool holds(const Condition& condition) const {
         const auto part_holds = [&](const Condition& part) { return holds(part); };
         switch (condition.form) {
-        case Condition::Form::always:
-            return true;
-        case Condition::Form::all:
-            return std::ranges::all_of(condition.parts, part_holds);
-        case Condition::Form::any:
-            return std::ranges::any_of(condition.parts, part_holds);
-        case Condition::Form::compare:
-            return compare(condition);
-        case Condition::Form::unknown:
-            break;
+        case Condition::Form::always: return true;
+        case Condition::Form::all: return std::ranges::all_of(condition.parts, part_holds);
+        case Condition::Form::any: return std::ranges::any_of(condition.parts, part_holds);
+        case Condition::Form::compare: return compare(condition);
+        case Condition::Form::unknown: break;
         }
         return false;
     }
@@ -163,7 +153,8 @@ class Reading {
         return static_cast<std::size_t>(value);
     }
 
-    bool read_entry(const PacketContainer& container, const PacketEntry& entry, std::size_t start_bits, unsigned depth) {
+    bool read_entry(const PacketContainer& container, const PacketEntry& entry, std::size_t start_bits,
+                    unsigned depth) {
         if (++steps_ > steps_max) return stop("it has more entries than a packet may", entry.line);
         if (!holds(entry.when)) return true;
         const std::string where = "an entry of " + container.name;
@@ -171,7 +162,8 @@ class Reading {
         const auto offset = evaluate(entry.offset_bits);
         const auto count = evaluate(entry.count);
         const auto gap = evaluate(entry.gap_bits);
-        if (!offset || !count || !gap) return stop(where + " has a location or a count that cannot be known", entry.line);
+        if (!offset || !count || !gap)
+            return stop(where + " has a location or a count that cannot be known", entry.line);
         position_ = (entry.from == PacketEntry::From::container_start ? start_bits : position_) + *offset;
         const bool repeated = entry.count.parameter || !entry.count.cases.empty() || entry.count.intercept != 1.0;
         for (std::size_t i = 0; i < *count; ++i) {
@@ -224,16 +216,13 @@ class Reading {
         if (contents.values.size() >= ContainerDecoder::values_max)
             return stop("there are more values than a packet may have", type.line);
         switch (type.kind) {
-        case PacketType::Kind::unknown:
-            return stop("the type of " + name + " is not supported", type.line);
+        case PacketType::Kind::unknown: return stop("the type of " + name + " is not supported", type.line);
         case PacketType::Kind::aggregate:
             for (const auto& member : type.members)
                 if (!read_type(model_.types[member.type], name + "." + member.name, depth + 1)) return false;
             return true;
-        case PacketType::Kind::array:
-            return read_array(type, type.last_indices, name, depth + 1);
-        default:
-            break;
+        case PacketType::Kind::array: return read_array(type, type.last_indices, name, depth + 1);
+        default: break;
         }
         if (type.coding.form == Coding::Form::text) return read_text(type, name);
         const auto bits = evaluate(type.coding.bits);
@@ -313,7 +302,8 @@ class Reading {
                 type.labels, [&](const auto& label) { return number >= label.first && number <= label.last; });
             return found == type.labels.end() ? raw : Datum{found->label};
         }
-        const auto context = std::ranges::find_if(type.coding.contexts, [&](const auto& each) { return holds(each.when); });
+        const auto context =
+            std::ranges::find_if(type.coding.contexts, [&](const auto& each) { return holds(each.when); });
         const Calibration& calibration =
             context == type.coding.contexts.end() ? type.coding.calibration : context->calibration;
         Datum value = calibration.empty() ? raw : calibrated_by(calibration, static_cast<double>(number));
@@ -348,8 +338,11 @@ class Reading {
         if (!has(*bits)) return cut(name, *bits, type.line);
         auto octets = take_octets(*bits);
         position_ = coding.boxed ? end : position_ + terminator_bits;
-        const std::size_t kept = octets.size() - static_cast<std::size_t>(std::ranges::find_if(
-            octets.rbegin(), octets.rend(), [](std::uint8_t octet) { return octet != 0; }) - octets.rbegin());
+        const std::size_t kept =
+            octets.size() -
+            static_cast<std::size_t>(
+                std::ranges::find_if(octets.rbegin(), octets.rend(), [](std::uint8_t octet) { return octet != 0; }) -
+                octets.rbegin());
         std::string text{octets.begin(), octets.begin() + static_cast<std::ptrdiff_t>(kept)};
         contents.values.push_back({name, std::move(octets), std::move(text), begin, position_ - begin, reading_});
         return true;
@@ -357,11 +350,12 @@ class Reading {
 
     const PacketModel& model_;
     std::span<const std::uint8_t> packet_;
-    std::unordered_map<std::size_t, Latest> latest_; ///< by parameter; only those that the packet has: a model has thousands
+    std::unordered_map<std::size_t, Latest>
+        latest_;  ///< by parameter; only those that the packet has: a model has thousands
     std::size_t position_ = 0;
     std::size_t steps_ = 0;
-    std::size_t reading_ = 0; ///< the parameter
-    std::optional<std::size_t> time_from_; ///< the parameter that contents.time is of
+    std::size_t reading_ = 0;               ///< the parameter
+    std::optional<std::size_t> time_from_;  ///< the parameter that contents.time is of
 };
 
 bool is_named(const std::string& name, std::string_view part) {
@@ -371,7 +365,7 @@ bool is_named(const std::string& name, std::string_view part) {
 
 /// By names alone: so instruments' files have it that leave time to the reader.
 std::optional<PacketTime> coarse_and_fine(const std::vector<DecodedValue>& values) {
-    constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24; // [ccsds-301.0-b-4], without its extension
+    constexpr std::size_t coarse_bits_max = 32, fine_bits_max = 24;  // [ccsds-301.0-b-4], without its extension
     const auto coarse = std::ranges::find(values, primary_header_octets * 8, &DecodedValue::position_bits);
     if (coarse == values.end() || std::next(coarse) == values.end()) return std::nullopt;
     const auto fine = std::next(coarse);
@@ -381,10 +375,11 @@ std::optional<PacketTime> coarse_and_fine(const std::vector<DecodedValue>& value
         fine->position_bits != coarse->position_bits + coarse->bits || !is_named(coarse->name, "coarse") ||
         !is_named(fine->name, "fine"))
         return std::nullopt;
-    return PacketTime{static_cast<double>(*counts) + std::ldexp(static_cast<double>(*fraction), -static_cast<int>(fine->bits)), {}};
+    return PacketTime{
+        static_cast<double>(*counts) + std::ldexp(static_cast<double>(*fraction), -static_cast<int>(fine->bits)), {}};
 }
 
-} // namespace
+}  // namespace
 
 std::string datum_text(const Datum& datum) {
     if (const auto* value = std::get_if<std::uint64_t>(&datum)) return std::to_string(*value);
@@ -426,8 +421,8 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
         std::size_t at = root;
         bool readable = reading.read_container(model_.containers[at], 0, 0);
         while (readable) {
-            const auto next =
-                std::ranges::find_if(derived_[at], [&](std::size_t each) { return reading.holds(model_.containers[each].when); });
+            const auto next = std::ranges::find_if(
+                derived_[at], [&](std::size_t each) { return reading.holds(model_.containers[each].when); });
             if (next == derived_[at].end()) break;
             at = *next;
             readable = reading.read_container(model_.containers[at], 0, 0);
@@ -436,7 +431,8 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
         reading.contents.container = last.name;
         reading.contents.container_index = at;
         if (!reading.contents.time) reading.contents.time = coarse_and_fine(reading.contents.values);
-        if (readable && last.abstract) reading.contents.problem = "no container describes it: " + last.name + " is abstract";
+        if (readable && last.abstract)
+            reading.contents.problem = "no container describes it: " + last.name + " is abstract";
         const bool whole = reading.contents.problem.empty();
         if (!best || whole || reading.contents.values.size() > best->values.size()) best = std::move(reading.contents);
         if (whole) break;
@@ -447,4 +443,4 @@ DecodedContents ContainerDecoder::decode(std::span<const std::uint8_t> packet) c
     return none;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -18,26 +18,26 @@ using Datum = std::variant<std::monostate, std::uint64_t, std::int64_t, double, 
 std::string datum_text(const Datum& datum);
 
 struct DecodedValue {
-    std::string name; ///< "ATTITUDE.q[2]": members and elements of what is composed
+    std::string name;  ///< "ATTITUDE.q[2]": members and elements of what is composed
     Datum raw;
-    Datum calibrated; ///< a label where the type has labels
-    std::size_t position_bits = 0; ///< from the first octet of the packet
+    Datum calibrated;               ///< a label where the type has labels
+    std::size_t position_bits = 0;  ///< from the first octet of the packet
     std::size_t bits = 0;
-    std::size_t parameter = 0; ///< in PacketModel::parameters
+    std::size_t parameter = 0;  ///< in PacketModel::parameters
 };
 
 /// When a packet was made.
 struct PacketTime {
-    double seconds = 0.0; ///< since `epoch`, or counts of the spacecraft's clock
-    std::string epoch;    ///< as the file names it: "UNIX"; empty: it does not
+    double seconds = 0.0;  ///< since `epoch`, or counts of the spacecraft's clock
+    std::string epoch;     ///< as the file names it: "UNIX"; empty: it does not
 };
 
 struct DecodedContents {
-    std::string container;         ///< the last one that fits
-    std::size_t container_index = 0; ///< in PacketModel::containers
-    std::vector<DecodedValue> values; ///< in the order of the packet
+    std::string container;             ///< the last one that fits
+    std::size_t container_index = 0;   ///< in PacketModel::containers
+    std::vector<DecodedValue> values;  ///< in the order of the packet
     std::optional<PacketTime> time;
-    std::string problem;           ///< why it could not be read to its end; empty: it could
+    std::string problem;  ///< why it could not be read to its end; empty: it could
 };
 
 /// Packets of any mission to values, by the containers of its XTCE file.
@@ -52,8 +52,8 @@ struct DecodedContents {
 /// Our own packets have a faster way: telemetry/decommutator.hpp
 class ContainerDecoder {
   public:
-    static constexpr std::size_t values_max = 65536; ///< ours: as many as the longest packet has octets
-    static constexpr unsigned depth_max = 16;        ///< ours
+    static constexpr std::size_t values_max = 65536;  ///< ours: as many as the longest packet has octets
+    static constexpr unsigned depth_max = 16;         ///< ours
 
     /// `model` must outlive this.
     explicit ContainerDecoder(const dictionary::xtce::PacketModel& model);
@@ -63,7 +63,7 @@ class ContainerDecoder {
   private:
     const dictionary::xtce::PacketModel& model_;
     std::vector<std::size_t> roots_;
-    std::vector<std::vector<std::size_t>> derived_; ///< by container
+    std::vector<std::vector<std::size_t>> derived_;  ///< by container
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

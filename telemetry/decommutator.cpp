@@ -25,35 +25,24 @@ std::uint64_t read_field(std::span<const std::uint8_t> packet, std::uint32_t pos
     if (position_bits % 8 != 0) return read_bits(packet, position_bits, bits);
     const std::uint8_t* octet = packet.data() + position_bits / 8;
     switch (bits) {
-    case 8:
-        return octet[0];
-    case 16:
-        return static_cast<std::uint64_t>(octet[0]) << 8 | octet[1];
-    case 32:
-        return word32(octet);
-    case 64:
-        return word32(octet) << 32 | word32(octet + 4);
-    default:
-        return read_bits(packet, position_bits, bits);
+    case 8: return octet[0];
+    case 16: return static_cast<std::uint64_t>(octet[0]) << 8 | octet[1];
+    case 32: return word32(octet);
+    case 64: return word32(octet) << 32 | word32(octet + 4);
+    default: return read_bits(packet, position_bits, bits);
     }
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(Refusal refusal) {
     switch (refusal) {
-    case Refusal::not_a_packet:
-        return "not_a_packet";
-    case Refusal::bad_crc:
-        return "bad_crc";
-    case Refusal::other_dictionary:
-        return "other_dictionary";
-    case Refusal::unknown_apid:
-        return "unknown_apid";
-    case Refusal::unknown_event:
-        return "unknown_event";
-    case Refusal::wrong_length:
-        return "wrong_length";
+    case Refusal::not_a_packet: return "not_a_packet";
+    case Refusal::bad_crc: return "bad_crc";
+    case Refusal::other_dictionary: return "other_dictionary";
+    case Refusal::unknown_apid: return "unknown_apid";
+    case Refusal::unknown_event: return "unknown_event";
+    case Refusal::wrong_length: return "wrong_length";
     }
     return "";
 }
@@ -74,8 +63,7 @@ Decommutator::Decommutator(const dictionary::Dictionary& dictionary)
         }
         plans_.push_back({static_cast<std::uint32_t>(steps_.size()), static_cast<std::uint32_t>(packet.fields.size()),
                           packet.octets});
-        for (const dictionary::Field& field : packet.fields)
-            steps_.push_back(compile(field, packet));
+        for (const dictionary::Field& field : packet.fields) steps_.push_back(compile(field, packet));
     }
     std::sort(events_.begin(), events_.end());
 }
@@ -91,12 +79,8 @@ Decommutator::Step Decommutator::compile(const dictionary::Field& field, const d
     step.validity_bit = field.validity_bit ? *field.validity_bit : no_validity_bit;
     step.bits = static_cast<std::uint8_t>(type.bits);
     switch (type.encoding) {
-    case dictionary::Encoding::unsigned_integer:
-        step.form = Form::unsigned_integer;
-        break;
-    case dictionary::Encoding::twos_complement:
-        step.form = Form::signed_integer;
-        break;
+    case dictionary::Encoding::unsigned_integer: step.form = Form::unsigned_integer; break;
+    case dictionary::Encoding::twos_complement: step.form = Form::signed_integer; break;
     case dictionary::Encoding::ieee754:
         AEOLIS_CHECK(type.bits == 32 || type.bits == 64);
         step.form = type.bits == 32 ? Form::float32 : Form::float64;
@@ -157,24 +141,15 @@ std::optional<Refusal> Decommutator::decode(std::span<const std::uint8_t> packet
 std::optional<double> Decommutator::calibrated(const Step& step, std::uint64_t raw) const {
     double value = 0.0;
     switch (step.form) {
-    case Form::unsigned_integer:
-        value = static_cast<double>(raw);
-        break;
-    case Form::signed_integer:
-        value = static_cast<double>(sign_extend(raw, step.bits));
-        break;
-    case Form::float32:
-        value = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw)));
-        break;
-    case Form::float64:
-        value = std::bit_cast<double>(raw);
-        break;
+    case Form::unsigned_integer: value = static_cast<double>(raw); break;
+    case Form::signed_integer: value = static_cast<double>(sign_extend(raw, step.bits)); break;
+    case Form::float32: value = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(raw))); break;
+    case Form::float64: value = std::bit_cast<double>(raw); break;
     }
     if (step.coefficients > 0) {
         const double* coefficient = coefficients_.data() + step.first_coefficient;
         double sum = 0.0;
-        for (int k = step.coefficients - 1; k >= 0; --k)
-            sum = sum * value + coefficient[k];
+        for (int k = step.coefficients - 1; k >= 0; --k) sum = sum * value + coefficient[k];
         value = sum;
     }
     if (!std::isfinite(value)) return std::nullopt;
@@ -187,4 +162,4 @@ std::optional<std::size_t> field_index(const dictionary::Packet& packet, std::st
     return std::nullopt;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

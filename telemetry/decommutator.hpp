@@ -14,22 +14,22 @@ namespace aeolis::telemetry {
 
 /// Why a packet was not decoded.
 enum class Refusal {
-    not_a_packet, ///< no primary header of ours, a telecommand, or its length disagrees with the octets
+    not_a_packet,  ///< no primary header of ours, a telecommand, or its length disagrees with the octets
     bad_crc,
-    other_dictionary, ///< written with another version of the dictionary: its fields may mean something else
+    other_dictionary,  ///< written with another version of the dictionary: its fields may mean something else
     unknown_apid,
-    unknown_event, ///< an event packet whose event id the dictionary lacks
-    wrong_length,  ///< the container of this name is longer or shorter
+    unknown_event,  ///< an event packet whose event id the dictionary lacks
+    wrong_length,   ///< the container of this name is longer or shorter
 };
 inline constexpr std::size_t refusal_count = 6;
 const char* name_of(Refusal refusal);
 
 /// What one packet says. Keep one and give it to every decode(): its vectors keep their capacity.
 struct Decoded {
-    std::size_t packet = 0; ///< index in Dictionary::packets
+    std::size_t packet = 0;  ///< index in Dictionary::packets
     TmHeader header;
-    std::vector<std::uint64_t> raw;           ///< a field each: the bits as they stand, zero-extended
-    std::vector<std::optional<double>> value; ///< a field each: calibrated; none when undefined
+    std::vector<std::uint64_t> raw;            ///< a field each: the bits as they stand, zero-extended
+    std::vector<std::optional<double>> value;  ///< a field each: calibrated; none when undefined
 };
 
 /// Packets to calibrated values, by a flat plan compiled once from the dictionary's containers.
@@ -51,9 +51,9 @@ class Decommutator {
     enum class Form : std::uint8_t { unsigned_integer, signed_integer, float32, float64 };
     struct Step {
         std::uint32_t position_bits = 0;
-        std::uint32_t validity_bit = 0; ///< no_validity_bit: always defined
+        std::uint32_t validity_bit = 0;  ///< no_validity_bit: always defined
         std::uint32_t first_coefficient = 0;
-        std::uint16_t coefficients = 0; ///< 0: calibrated is raw
+        std::uint16_t coefficients = 0;  ///< 0: calibrated is raw
         std::uint8_t bits = 0;
         Form form{};
     };
@@ -76,15 +76,15 @@ class Decommutator {
     std::optional<double> calibrated(const Step& step, std::uint64_t raw) const;
 
     std::uint16_t dictionary_id_ = 0;
-    std::vector<Plan> plans_; ///< by index in Dictionary::packets
+    std::vector<Plan> plans_;  ///< by index in Dictionary::packets
     std::vector<Step> steps_;
     std::vector<double> coefficients_;
-    std::vector<std::uint16_t> by_apid_; ///< 2048: index of the packet, or no_packet
-    std::vector<bool> holds_events_;     ///< 2048
-    std::vector<EventPlan> events_;      ///< sorted by APID, then event id
+    std::vector<std::uint16_t> by_apid_;  ///< 2048: index of the packet, or no_packet
+    std::vector<bool> holds_events_;      ///< 2048
+    std::vector<EventPlan> events_;       ///< sorted by APID, then event id
 };
 
 /// The field's index in the packet, by name; for people and for the few fields that ground itself interprets.
 std::optional<std::size_t> field_index(const dictionary::Packet& packet, std::string_view name);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -92,7 +92,7 @@ std::vector<Condition> conditions_of(const Reader& reader) {
     return conditions;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded) {
     const dictionary::Packet& packet = dictionary.packets[decoded.packet];
@@ -115,4 +115,4 @@ std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, con
     return explanation;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -11,20 +11,20 @@
 namespace aeolis::telemetry {
 
 struct Condition {
-    std::string quantity; ///< "speed_mps"
+    std::string quantity;  ///< "speed_mps"
     double value = 0.0;
-    std::string comparison; ///< "<", "<=", "==", ">=", ">"
+    std::string comparison;  ///< "<", "<=", "==", ">=", ">"
     double bound = 0.0;
-    bool holds = false; ///< as flight found it; ground does not judge again
+    bool holds = false;  ///< as flight found it; ground does not judge again
 };
 
 /// A decision of the flight software and the conditions that led to it, in words. R38
 struct Explanation {
-    std::string text; ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
+    std::string text;  ///< "parachute_deploy fired: speed 404.6 m/s <= 405.0 m/s"
     std::string decision, verdict;
-    std::string subject; ///< name of the timepoint, command or tone that it is about; may be empty
+    std::string subject;  ///< name of the timepoint, command or tone that it is about; may be empty
     std::vector<Condition> conditions;
-    std::uint32_t suppressed = 0; ///< held just so, in as many cycles, and not told: flight's flood limit
+    std::uint32_t suppressed = 0;  ///< held just so, in as many cycles, and not told: flight's flood limit
 };
 
 /// Of the packet named "Explanation", else none.
@@ -36,4 +36,4 @@ struct Explanation {
 /// is enough.
 std::optional<Explanation> explain(const dictionary::Dictionary& dictionary, const Decoded& decoded);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

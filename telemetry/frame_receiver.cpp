@@ -10,7 +10,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t shortest_frame_octets = 9; // a header, a CRC and one octet
+constexpr std::size_t shortest_frame_octets = 9;  // a header, a CRC and one octet
 
 bool begins_with_marker(std::span<const std::uint8_t> octets) {
     return octets.size() >= attached_sync_marker.size() &&
@@ -39,7 +39,7 @@ std::optional<std::int64_t> packets_in_agreement(const FrameStream& stream, std:
     return agreement;
 }
 
-} // namespace
+}  // namespace
 
 FrameReceiver::FrameReceiver(const FrameStream& stream) : stream_(stream) {
     AEOLIS_CHECK(stream.frame_octets >= shortest_frame_octets && stream.frame_octets <= transfer_frame_octets_max);
@@ -127,7 +127,7 @@ std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets)
     std::optional<FrameStream> best;
     std::int64_t most = 0;
     for (const bool crc : {true, false}) {
-        if (best) break; // a CRC that holds leaves no doubt
+        if (best) break;  // a CRC that holds leaves no doubt
         for (const std::size_t symbols : check_symbols)
             for (const bool randomised : {false, true})
                 for (const auto kind : {FrameStream::Kind::tm, FrameStream::Kind::aos}) {
@@ -163,4 +163,4 @@ std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets
     return std::nullopt;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -16,10 +16,10 @@ namespace aeolis::telemetry {
 struct FrameStream {
     enum class Kind : std::uint8_t { tm, aos };
     Kind kind = Kind::tm;
-    std::size_t frame_octets = 1115; ///< without marker; 1115: five interleaved code words of Reed–Solomon
-    bool marker = true;              ///< each behind the attached sync marker (CADU)
-    std::size_t prefix_octets = 0;   ///< before each, without meaning, as a recorder at the station adds; no marker
-    std::size_t suffix_octets = 0;   ///< behind each, without meaning here: the code's check symbols
+    std::size_t frame_octets = 1115;  ///< without marker; 1115: five interleaved code words of Reed–Solomon
+    bool marker = true;               ///< each behind the attached sync marker (CADU)
+    std::size_t prefix_octets = 0;    ///< before each, without meaning, as a recorder at the station adds; no marker
+    std::size_t suffix_octets = 0;    ///< behind each, without meaning here: the code's check symbols
     bool randomised = false;
     FrameAgreement agreed{};
 };
@@ -34,8 +34,8 @@ struct FrameStream {
 class FrameReceiver {
   public:
     struct Received {
-        TransferFrame frame;              ///< until the next next() or receive()
-        std::uint32_t missing_before = 0; ///< frames of its virtual channel that did not come
+        TransferFrame frame;               ///< until the next next() or receive()
+        std::uint32_t missing_before = 0;  ///< frames of its virtual channel that did not come
     };
 
     explicit FrameReceiver(const FrameStream& stream);
@@ -68,8 +68,8 @@ std::optional<std::size_t> cadu_frame_octets(std::span<const std::uint8_t> octet
 /// which the first two are right, or the only one is.
 std::optional<std::size_t> crc_frame_octets(std::span<const std::uint8_t> octets, std::size_t prefix_octets);
 
-/// How the frames of a CADU stream are, found by trying: length, TM or AOS, randomised or not, check symbols of the code
-/// behind them, CRC. None when no two markers stand in it.
+/// How the frames of a CADU stream are, found by trying: length, TM or AOS, randomised or not, check symbols of the
+/// code behind them, CRC. None when no two markers stand in it.
 std::optional<FrameStream> recognise_cadus(std::span<const std::uint8_t> octets);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -8,13 +8,15 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t leap_seconds_max = 10'000; // ours
-constexpr double utc_s_max = 1.0e11;      // 3000 years: what the calendar's text can say
-constexpr std::size_t seconds_position = 15; // of the two digits in 2012-219T05:17:57.123
+constexpr std::size_t leap_seconds_max = 10'000;  // ours
+constexpr double utc_s_max = 1.0e11;              // 3000 years: what the calendar's text can say
+constexpr std::size_t seconds_position = 15;      // of the two digits in 2012-219T05:17:57.123
 
-std::int64_t microseconds_of(double seconds) { return static_cast<std::int64_t>(std::llround(seconds * 1.0e6)); }
+std::int64_t microseconds_of(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
+}
 
-} // namespace
+}  // namespace
 
 std::string UtcInstant::text() const {
     std::string text = day_of_year_text(Scet{microseconds});
@@ -37,13 +39,17 @@ Result<LeapSeconds> LeapSeconds::read(const TextKernel& kernel) {
     leaps.anomaly_ = (*anomaly)[0];
     leaps.anomaly_rate_ = (*anomaly)[1];
     const auto wrong = [&](const std::string& what) {
-        return Error{kernel.file() + ":" + std::to_string(kernel.find("DELTET/DELTA_AT")->line) + ": DELTET/DELTA_AT " + what};
+        return Error{kernel.file() + ":" + std::to_string(kernel.find("DELTET/DELTA_AT")->line) + ": DELTET/DELTA_AT " +
+                     what};
     };
-    if (table->size() % 2 != 0 || table->size() > 2 * leap_seconds_max) return wrong("is not a list of pairs: seconds, date");
+    if (table->size() % 2 != 0 || table->size() > 2 * leap_seconds_max)
+        return wrong("is not a list of pairs: seconds, date");
     for (std::size_t i = 0; i < table->size(); i += 2) {
         const Step step{(*table)[i + 1], (*table)[i]};
-        if (!leaps.steps_.empty() && step.utc_s <= leaps.steps_.back().utc_s) return wrong("is not in the order of its dates");
-        if (std::abs(step.utc_s) > utc_s_max || std::abs(step.tai_minus_utc_s) > 86400.0) return wrong("holds no possible number");
+        if (!leaps.steps_.empty() && step.utc_s <= leaps.steps_.back().utc_s)
+            return wrong("is not in the order of its dates");
+        if (std::abs(step.utc_s) > utc_s_max || std::abs(step.tai_minus_utc_s) > 86400.0)
+            return wrong("holds no possible number");
         leaps.steps_.push_back(step);
     }
     return leaps;
@@ -71,9 +77,8 @@ std::optional<double> LeapSeconds::tdb_of_utc(const UtcInstant& utc) const {
     const double utc_s = static_cast<double>(utc.microseconds) * 1.0e-6;
     const auto after = std::ranges::upper_bound(steps_, utc_s, {}, &Step::utc_s);
     if (after == steps_.begin()) return std::nullopt;
-    const double tt_s =
-        utc_s + (utc.leap_second ? 1.0 : 0.0) + std::prev(after)->tai_minus_utc_s + tt_minus_tai_s_;
+    const double tt_s = utc_s + (utc.leap_second ? 1.0 : 0.0) + std::prev(after)->tai_minus_utc_s + tt_minus_tai_s_;
     return tt_s + tdb_minus_tt(tt_s);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

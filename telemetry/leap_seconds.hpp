@@ -12,8 +12,9 @@ namespace aeolis::telemetry {
 
 /// An instant of UTC, to the microsecond.
 struct UtcInstant {
-    std::int64_t microseconds = 0; ///< since 2000-01-01T12:00:00 UTC, leap seconds not counted; in one: as the second before
-    bool leap_second = false;      ///< it lies in the second that is called 60
+    std::int64_t microseconds =
+        0;  ///< since 2000-01-01T12:00:00 UTC, leap seconds not counted; in one: as the second before
+    bool leap_second = false;  ///< it lies in the second that is called 60
     constexpr bool operator==(const UtcInstant&) const = default;
 
     /// Day-of-year form with milliseconds: 2012-219T05:17:57.123, 2016-366T23:59:60.500.
@@ -39,12 +40,12 @@ class LeapSeconds {
 
   private:
     struct Step {
-        double utc_s = 0.0;       ///< from here on, by the calendar
+        double utc_s = 0.0;  ///< from here on, by the calendar
         double tai_minus_utc_s = 0.0;
     };
     double tt_minus_tai_s_ = 0.0, amplitude_s_ = 0.0, eccentricity_ = 0.0;
-    double anomaly_ = 0.0, anomaly_rate_ = 0.0; ///< [rad], [rad/s]
+    double anomaly_ = 0.0, anomaly_rate_ = 0.0;  ///< [rad], [rad/s]
     std::vector<Step> steps_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

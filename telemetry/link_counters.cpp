@@ -13,7 +13,7 @@ std::int64_t whole_seconds(Ert at) {
     return at.microseconds / microseconds_a_second;
 }
 
-} // namespace
+}  // namespace
 
 std::uint32_t SequenceGaps::next(std::uint32_t sequence, std::uint32_t modulus, LinkCounters& counters) {
     AEOLIS_CHECK(modulus > 0 && (modulus & (modulus - 1)) == 0);
@@ -47,4 +47,4 @@ double RateMeter::per_second(Ert now) const {
     return static_cast<double>(sum) / static_cast<double>(seconds);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

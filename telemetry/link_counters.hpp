@@ -10,13 +10,13 @@ namespace aeolis::telemetry {
 /// What a link brought so far. Every octet received is counted once: in a good unit, or as skipped.
 struct LinkCounters {
     std::uint64_t octets = 0;
-    std::uint64_t frames = 0;         ///< whole, with a good CRC
-    std::uint64_t bad_crc = 0;        ///< a marker with a possible header and a wrong CRC behind it
-    std::uint64_t bad_header = 0;     ///< a marker with something else than a header behind it
-    std::uint64_t skipped_octets = 0; ///< between good units
-    std::uint64_t gaps = 0;           ///< places where the frame sequence is not the next
-    std::uint64_t missing_frames = 0; ///< by the frame sequence: a multiple of its modulus cannot be seen
-    std::uint64_t repeated_frames = 0;///< with the sequence of the one before
+    std::uint64_t frames = 0;           ///< whole, with a good CRC
+    std::uint64_t bad_crc = 0;          ///< a marker with a possible header and a wrong CRC behind it
+    std::uint64_t bad_header = 0;       ///< a marker with something else than a header behind it
+    std::uint64_t skipped_octets = 0;   ///< between good units
+    std::uint64_t gaps = 0;             ///< places where the frame sequence is not the next
+    std::uint64_t missing_frames = 0;   ///< by the frame sequence: a multiple of its modulus cannot be seen
+    std::uint64_t repeated_frames = 0;  ///< with the sequence of the one before
 
     bool operator==(const LinkCounters&) const = default;
 };
@@ -48,4 +48,4 @@ class RateMeter {
     std::int64_t newest_s_ = 0;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

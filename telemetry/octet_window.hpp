@@ -38,4 +38,4 @@ inline std::size_t find_octet(std::span<const std::uint8_t> octets, std::uint8_t
                             : static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - octets.data());
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -13,18 +13,21 @@ namespace {
 
 using namespace dictionary::xtce;
 
-constexpr unsigned apid_position_bits = 5, apid_bits = 11; // [ccsds-133.0-b-2]
+constexpr unsigned apid_position_bits = 5, apid_bits = 11;  // [ccsds-133.0-b-2]
 
 std::optional<std::size_t> fixed_amount(const Amount& amount) {
     const double value = amount.intercept;
-    if (!amount.known || amount.parameter || !amount.cases.empty() || !(value >= 0.0) || value > 1.0e6) return std::nullopt;
+    if (!amount.known || amount.parameter || !amount.cases.empty() || !(value >= 0.0) || value > 1.0e6)
+        return std::nullopt;
     return static_cast<std::size_t>(value);
 }
 
 /// How many of a list are fields: all of a short list of known length.
 std::size_t elements_of(const std::vector<Amount>& last_indices) {
     std::size_t elements = 1;
-    for (const Amount& last : last_indices) elements *= std::min(fixed_amount(last).value_or(OtherMission::elements_max - 1) + 1, OtherMission::elements_max);
+    for (const Amount& last : last_indices)
+        elements *=
+            std::min(fixed_amount(last).value_or(OtherMission::elements_max - 1) + 1, OtherMission::elements_max);
     return std::min(elements, OtherMission::elements_max);
 }
 
@@ -36,8 +39,7 @@ bool is_number(const PacketType& type) {
     case PacketType::Kind::boolean:
     case PacketType::Kind::time:
         return type.coding.form != Coding::Form::text && type.coding.form != Coding::Form::octets;
-    default:
-        return false;
+    default: return false;
     }
 }
 
@@ -51,7 +53,8 @@ dictionary::Type type_of(const PacketType& type) {
     } else if (type.kind == PacketType::Kind::enumerated) {
         words.kind = dictionary::ValueKind::enumerated;
         for (const auto& label : type.labels) words.enumeration.push_back({label.first, label.label});
-    } else if (type.kind != PacketType::Kind::integer || !type.coding.calibration.empty() || !type.coding.contexts.empty()) {
+    } else if (type.kind != PacketType::Kind::integer || !type.coding.calibration.empty() ||
+               !type.coding.contexts.empty()) {
         words.kind = dictionary::ValueKind::real;
     }
     const auto form = type.coding.form;
@@ -74,7 +77,7 @@ std::optional<double> channel_value(const DecodedValue& value) {
     return number(value.calibrated);
 }
 
-} // namespace
+}  // namespace
 
 /// Makes packets and channels of containers and parameters, once.
 class OtherMission::Builder {
@@ -106,7 +109,7 @@ class OtherMission::Builder {
         const PacketContainer& container = model_.containers[index];
         if (container.base) add_container(*container.base, depth + 1);
         for (const PacketEntry& entry : container.entries) {
-            if (entry.what == PacketEntry::What::unknown) return; // packets are read up to it
+            if (entry.what == PacketEntry::What::unknown) return;  // packets are read up to it
             if (entry.what == PacketEntry::What::container) {
                 add_container(entry.index, depth + 1);
                 continue;
@@ -119,17 +122,20 @@ class OtherMission::Builder {
                 continue;
             }
             for (std::size_t i = 0; i < std::min(count.value_or(elements_max), elements_max); ++i)
-                add_type(parameter.name + "[" + std::to_string(i) + "]", model_.types[parameter.type], entry.last_indices, 0);
+                add_type(parameter.name + "[" + std::to_string(i) + "]", model_.types[parameter.type],
+                         entry.last_indices, 0);
         }
     }
 
-    void add_type(const std::string& name, const PacketType& type, const std::vector<Amount>& last_indices, unsigned depth) {
+    void add_type(const std::string& name, const PacketType& type, const std::vector<Amount>& last_indices,
+                  unsigned depth) {
         if (depth == ContainerDecoder::depth_max || mission_.left_out_ > 0 || too_many_steps()) return;
         if (type.kind == PacketType::Kind::aggregate) {
-            for (const auto& member : type.members) add_type(name + "." + member.name, model_.types[member.type], {}, depth + 1);
+            for (const auto& member : type.members)
+                add_type(name + "." + member.name, model_.types[member.type], {}, depth + 1);
         } else if (type.kind == PacketType::Kind::array) {
             const auto& dimensions = last_indices.empty() ? type.last_indices : last_indices;
-            if (dimensions.size() != 1) return; // of tables only contents() speaks
+            if (dimensions.size() != 1) return;  // of tables only contents() speaks
             for (std::size_t i = 0; i < elements_of(dimensions); ++i)
                 add_type(name + "[" + std::to_string(i) + "]", model_.types[type.element], {}, depth + 1);
         } else if (is_number(type)) {
@@ -166,7 +172,8 @@ class OtherMission::Builder {
         std::size_t position = 0;
         for (const PacketEntry& entry : model_.containers[root].entries) {
             if (entry.what != PacketEntry::What::parameter || entry.from != PacketEntry::From::previous ||
-                entry.when.form != Condition::Form::always || fixed_amount(entry.offset_bits) != 0U || fixed_amount(entry.count) != 1U)
+                entry.when.form != Condition::Form::always || fixed_amount(entry.offset_bits) != 0U ||
+                fixed_amount(entry.count) != 1U)
                 return std::nullopt;
             const PacketType& type = model_.types[model_.parameters[entry.index].type];
             const auto bits = fixed_amount(type.coding.bits);
@@ -190,8 +197,8 @@ class OtherMission::Builder {
     }
 
     static std::optional<Apid> asked_for(const Condition& condition, std::size_t parameter) {
-        if (condition.form == Condition::Form::compare && condition.parameter == parameter && condition.member.empty() &&
-            condition.op == Condition::Operator::equal) {
+        if (condition.form == Condition::Form::compare && condition.parameter == parameter &&
+            condition.member.empty() && condition.op == Condition::Operator::equal) {
             const auto value = dictionary::to_integer(condition.value);
             if (value && *value >= 0 && *value < 2048) return Apid{static_cast<std::uint16_t>(*value)};
         }
@@ -201,13 +208,14 @@ class OtherMission::Builder {
         return std::nullopt;
     }
 
-    static constexpr std::size_t steps_max = std::size_t{1} << 21U; ///< ours: a second's work, and twice what fields_max takes
+    static constexpr std::size_t steps_max = std::size_t{1}
+                                             << 21U;  ///< ours: a second's work, and twice what fields_max takes
     std::size_t steps_ = 0;
     OtherMission& mission_;
     const PacketModel& model_;
     std::map<FieldKey, ChannelId> channels_;
-    std::set<std::string> names_; ///< taken
-    std::size_t parameter_ = 0;   ///< whose fields are being added
+    std::set<std::string> names_;  ///< taken
+    std::size_t parameter_ = 0;    ///< whose fields are being added
     std::size_t fields_ = 0;
 };
 
@@ -240,4 +248,4 @@ std::optional<std::string> OtherMission::decode(std::span<const std::uint8_t> pa
     return std::nullopt;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -14,7 +14,8 @@
 
 namespace aeolis::telemetry {
 
-/// Another mission in the words that our ground speaks: a packet a container, a channel a number that its containers hold.
+/// Another mission in the words that our ground speaks: a packet a container, a channel a number that its containers
+/// hold.
 ///
 /// In       the octets of a packet                       Out   Decoded by the indices of dictionary(), or why not
 /// Channels numbers, labels (by their number), flags and times; of what is repeated or sized by the packet the first
@@ -27,7 +28,7 @@ class OtherMission {
   public:
     static constexpr std::size_t elements_max = 16;  ///< ours: of a list of unknown length
     static constexpr std::size_t channels_max = 0xFFFF;
-    static constexpr std::size_t fields_max = std::size_t{1} << 20U; ///< ours: of all packets together
+    static constexpr std::size_t fields_max = std::size_t{1} << 20U;  ///< ours: of all packets together
     /// APID of a packet whose container does not ask for one: no packet has it.
     static constexpr Apid any_apid{0xFFFF};
 
@@ -46,13 +47,13 @@ class OtherMission {
 
   private:
     class Builder;
-    using FieldKey = std::pair<std::size_t, std::string>; ///< parameter, and its name with member and element
+    using FieldKey = std::pair<std::size_t, std::string>;  ///< parameter, and its name with member and element
 
     dictionary::xtce::PacketModel model_;
     ContainerDecoder decoder_;
     dictionary::Dictionary dictionary_;
-    std::vector<std::map<FieldKey, std::size_t>> fields_; ///< by packet
+    std::vector<std::map<FieldKey, std::size_t>> fields_;  ///< by packet
     std::size_t left_out_ = 0;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

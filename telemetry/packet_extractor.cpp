@@ -72,4 +72,4 @@ std::optional<std::span<const std::uint8_t>> PacketExtractor::next() {
     }
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -12,10 +12,10 @@ namespace aeolis::telemetry {
 
 /// What became of the data of frames.
 struct PacketCounters {
-    std::uint64_t packets = 0;           ///< given out
-    std::uint64_t idle_packets = 0;      ///< APID 7FF: fill, not given out
-    std::uint64_t cut_packets = 0;       ///< begun, and never completed
-    std::uint64_t unreadable_octets = 0; ///< that belong to no packet that could be read
+    std::uint64_t packets = 0;            ///< given out
+    std::uint64_t idle_packets = 0;       ///< APID 7FF: fill, not given out
+    std::uint64_t cut_packets = 0;        ///< begun, and never completed
+    std::uint64_t unreadable_octets = 0;  ///< that belong to no packet that could be read
 
     bool operator==(const PacketCounters&) const = default;
 };
@@ -40,11 +40,11 @@ class PacketExtractor {
     void begin_at(const TransferFrame& frame);
     bool pointer_agrees(const TransferFrame& frame) const;
 
-    std::vector<std::uint8_t> octets_; ///< from the beginning of a packet
+    std::vector<std::uint8_t> octets_;  ///< from the beginning of a packet
     std::size_t used_ = 0;
-    std::size_t begun_octets_ = 0;     ///< of the packet that the last frame left unfinished
+    std::size_t begun_octets_ = 0;  ///< of the packet that the last frame left unfinished
     bool in_step_ = false;
     PacketCounters counters_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

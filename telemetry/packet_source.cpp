@@ -9,10 +9,10 @@ namespace aeolis::telemetry {
 
 std::optional<DownlinkFormat> downlink_format(std::string_view name) {
     constexpr std::array<std::pair<std::string_view, DownlinkFormat>, 5> formats{{{"packets", DownlinkFormat::packets},
-                                                                                {"tm", DownlinkFormat::tm},
-                                                                                {"aos", DownlinkFormat::aos},
-                                                                                {"cadu", DownlinkFormat::cadu},
-                                                                                {"pltu", DownlinkFormat::pltu}}};
+                                                                                  {"tm", DownlinkFormat::tm},
+                                                                                  {"aos", DownlinkFormat::aos},
+                                                                                  {"cadu", DownlinkFormat::cadu},
+                                                                                  {"pltu", DownlinkFormat::pltu}}};
     for (const auto& [word, format] : formats)
         if (word == name) return format;
     return std::nullopt;
@@ -46,8 +46,7 @@ void PacketSource::take_from(BarePackets& packets) {
 
 void PacketSource::take_from(Frames& frames) {
     while (const auto received = frames.receiver.next()) {
-        PacketExtractor& channel =
-            frames.channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
+        PacketExtractor& channel = frames.channels[received->frame.spacecraft * 64U + received->frame.virtual_channel];
         channel.add(received->frame, received->missing_before > 0);
         while (const auto packet = channel.next()) keep(*packet);
     }
@@ -114,4 +113,4 @@ PacketCounters PacketSource::packets() const {
     return sum;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

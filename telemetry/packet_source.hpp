@@ -54,13 +54,13 @@ class PacketSource {
 
     /// Bare packets that cannot be found any more: nothing will come.
     bool lost() const;
-    LinkCounters link() const;     ///< of frames; nothing for bare packets
+    LinkCounters link() const;  ///< of frames; nothing for bare packets
     PacketCounters packets() const;
 
   private:
     struct Frames {
         FrameReceiver receiver;
-        std::map<std::uint32_t, PacketExtractor> channels; ///< by spacecraft and virtual channel
+        std::map<std::uint32_t, PacketExtractor> channels;  ///< by spacecraft and virtual channel
     };
     struct Pltus {
         PltuReceiver receiver;
@@ -78,4 +78,4 @@ class PacketSource {
     std::vector<std::uint8_t> given_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

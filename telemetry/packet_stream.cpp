@@ -13,4 +13,4 @@ std::optional<std::span<const std::uint8_t>> PacketStream::next() {
     return packet;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

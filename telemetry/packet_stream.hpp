@@ -29,4 +29,4 @@ class PacketStream {
     std::size_t packets_ = 0;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -6,12 +6,12 @@ namespace aeolis::telemetry {
 namespace {
 
 // All to 2000-01-01T12:00:00 of their own scale, by the calendar. [ccsds-301.0-b-4], [naif-time]
-constexpr double unix_epoch_s = -946728000.0;             // 1970-01-01 UTC
-constexpr double tai_epoch_s = -1325419200.0;             // 1958-01-01 TAI
-constexpr double gps_epoch_tai_s = -630763200.0 + 19.0;   // 1980-01-06 UTC, when TAI was 19 s ahead
+constexpr double unix_epoch_s = -946728000.0;            // 1970-01-01 UTC
+constexpr double tai_epoch_s = -1325419200.0;            // 1958-01-01 TAI
+constexpr double gps_epoch_tai_s = -630763200.0 + 19.0;  // 1980-01-06 UTC, when TAI was 19 s ahead
 constexpr double seconds_max = 1.0e11;
 
-} // namespace
+}  // namespace
 
 std::optional<UtcInstant> scet_of(const PacketTime& time, const TimeKernels& kernels) {
     if (!(std::abs(time.seconds) < seconds_max)) return std::nullopt;
@@ -30,4 +30,4 @@ std::string time_text(const PacketTime& time, const TimeKernels& kernels) {
     return datum_text(time.seconds);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -50,4 +50,4 @@ std::optional<PltuReceiver::Received> PltuReceiver::next() {
     }
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -21,8 +21,8 @@ namespace aeolis::telemetry {
 class PltuReceiver {
   public:
     struct Received {
-        ProximityFrame frame;           ///< until the next receive()
-        std::uint32_t missing_before = 0; ///< frames of its spacecraft, channel and service that did not come
+        ProximityFrame frame;              ///< until the next receive()
+        std::uint32_t missing_before = 0;  ///< frames of its spacecraft, channel and service that did not come
     };
 
     void receive(std::span<const std::uint8_t> octets);
@@ -30,7 +30,8 @@ class PltuReceiver {
     /// The next frame; none when more octets are needed.
     std::optional<Received> next();
 
-    /// Nothing more will come, or not for long: what waits to become a frame is searched as it is by next(), until more comes.
+    /// Nothing more will come, or not for long: what waits to become a frame is searched as it is by next(), until more
+    /// comes.
     void end() { ended_ = true; }
 
     const LinkCounters& counters() const { return counters_; }
@@ -44,4 +45,4 @@ class PltuReceiver {
     bool ended_ = false;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

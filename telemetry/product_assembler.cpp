@@ -9,9 +9,9 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr std::size_t part_cost_octets = 64; // of keeping one, about: its vector and its place; ours
+constexpr std::size_t part_cost_octets = 64;  // of keeping one, about: its vector and its place; ours
 
-} // namespace
+}  // namespace
 
 std::optional<ProductPart> part_of(const dictionary::Dictionary& dictionary, const Decoded& decoded,
                                    std::span<const std::uint8_t> packet) {
@@ -57,8 +57,7 @@ std::string Product::gaps() const {
     for (std::size_t first = 0; first < received.size(); ++first) {
         if (received[first]) continue;
         std::size_t last = first;
-        while (last + 1 < received.size() && !received[last + 1])
-            ++last;
+        while (last + 1 < received.size() && !received[last + 1]) ++last;
         text += (text.empty() ? "" : ", ") + std::to_string(first + 1);
         if (last > first) text += "-" + std::to_string(last + 1);
         first = last;
@@ -112,4 +111,4 @@ std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::
     return rows;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

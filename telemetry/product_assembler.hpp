@@ -24,10 +24,10 @@ struct ProductIdentity {
 /// One part, as a packet of the container "DataProduct" says it.
 struct ProductPart {
     ProductIdentity product;
-    std::string kind; ///< label: "as_flown"
-    Apid row_apid;    ///< the packet whose data field each row is
+    std::string kind;  ///< label: "as_flown"
+    Apid row_apid;     ///< the packet whose data field each row is
     std::uint16_t part = 0, parts = 0;
-    std::vector<std::uint8_t> content; ///< without what fills up the last part
+    std::vector<std::uint8_t> content;  ///< without what fills up the last part
 };
 
 /// None when the packet is no part of a product, or when its numbers disagree with one another. `packet`: the octets
@@ -40,7 +40,7 @@ struct Product {
     std::string kind;
     Apid row_apid;
     std::uint16_t parts = 0;
-    std::vector<std::optional<std::vector<std::uint8_t>>> received; ///< by part, from 0
+    std::vector<std::optional<std::vector<std::uint8_t>>> received;  ///< by part, from 0
 
     /// The whole content; none while parts are missing, or when its CRC is wrong.
     std::optional<std::vector<std::uint8_t>> content(const ProductIdentity& identity) const;
@@ -51,9 +51,9 @@ struct Product {
 
 enum class PartStanding : std::uint8_t {
     taken,
-    again,   ///< the same octets were there already
-    differs, ///< other octets, kind or number of parts than those that were there: not taken
-    refused, ///< memory is full
+    again,    ///< the same octets were there already
+    differs,  ///< other octets, kind or number of parts than those that were there: not taken
+    refused,  ///< memory is full
 };
 
 /// Puts data products together from parts in any order, real time and recording mixed. R30
@@ -62,7 +62,8 @@ enum class PartStanding : std::uint8_t {
 /// Memory   the octets of the products, at most `octets_max` together; a part beyond that is refused
 class ProductAssembler {
   public:
-    static constexpr std::size_t octets_max_default = std::size_t{16} << 20; ///< ours: hundreds of a landing's products
+    static constexpr std::size_t octets_max_default = std::size_t{16}
+                                                      << 20;  ///< ours: hundreds of a landing's products
 
     explicit ProductAssembler(std::size_t octets_max = octets_max_default) : octets_max_(octets_max) {}
 
@@ -83,4 +84,4 @@ std::string text_of(const ProductIdentity& identity, const Product& product);
 std::optional<std::vector<std::vector<std::uint8_t>>> rows_of(const dictionary::Dictionary& dictionary, Apid row_apid,
                                                               std::span<const std::uint8_t> content);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

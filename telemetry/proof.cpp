@@ -7,7 +7,7 @@ std::string units(std::uint64_t count) {
     return std::to_string(count) + (count == 1 ? " unit" : " units");
 }
 
-} // namespace
+}  // namespace
 
 Proof prove(const UnitRegister& register_of_run) {
     const UnitRegister::Counts& counts = register_of_run.counts();
@@ -34,4 +34,4 @@ std::string text_of(const Proof& proof) {
            " were never seen live";
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

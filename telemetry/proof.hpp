@@ -14,8 +14,8 @@ struct Proof {
     std::uint64_t realtime = 0;
     std::uint64_t realtime_not_recorded = 0;
     std::uint64_t realtime_differs = 0;
-    std::uint64_t never_seen_live = 0; ///< recorded, and lost on the link or never sent over it
-    std::uint64_t unregistered = 0;    ///< not compared: the register was full
+    std::uint64_t never_seen_live = 0;  ///< recorded, and lost on the link or never sent over it
+    std::uint64_t unregistered = 0;     ///< not compared: the register was full
 
     bool holds() const { return realtime_not_recorded == 0 && realtime_differs == 0 && unregistered == 0; }
 };
@@ -26,4 +26,4 @@ Proof prove(const UnitRegister& register_of_run);
 /// …"
 std::string text_of(const Proof& proof);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

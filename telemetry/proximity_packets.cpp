@@ -79,4 +79,4 @@ std::optional<std::span<const std::uint8_t>> ProximityPackets::next() {
     return given_;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

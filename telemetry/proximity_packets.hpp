@@ -27,7 +27,7 @@ class ProximityPackets {
     std::optional<std::span<const std::uint8_t>> next();
 
     const PacketCounters& counters() const { return counters_; }
-    std::uint64_t other_frames() const { return other_frames_; } ///< supervisory, or without packets
+    std::uint64_t other_frames() const { return other_frames_; }  ///< supervisory, or without packets
 
   private:
     using StreamId = std::uint32_t;
@@ -43,4 +43,4 @@ class ProximityPackets {
     std::uint64_t other_frames_ = 0;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -48,9 +48,11 @@ std::uint64_t bcd_of(std::uint64_t field, unsigned bits) {
     return value;
 }
 
-std::int64_t negative(std::uint64_t magnitude) { return -static_cast<std::int64_t>(magnitude); }
+std::int64_t negative(std::uint64_t magnitude) {
+    return -static_cast<std::int64_t>(magnitude);
+}
 
-} // namespace
+}  // namespace
 
 RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
     if (coding.least_significant_octet_first && bits % 8 == 0) field = octets_reversed(field, bits);
@@ -59,24 +61,18 @@ RawNumber number_in(std::uint64_t field, unsigned bits, const Coding& coding) {
     const std::uint64_t all = sign | (sign - 1);
     const bool below_zero = (field & sign) != 0;
     switch (coding.form) {
-    case Coding::Form::twos_complement:
-        return sign_extend(field, bits);
-    case Coding::Form::ones_complement:
-        return below_zero ? negative(~field & all) : static_cast<std::int64_t>(field);
+    case Coding::Form::twos_complement: return sign_extend(field, bits);
+    case Coding::Form::ones_complement: return below_zero ? negative(~field & all) : static_cast<std::int64_t>(field);
     case Coding::Form::sign_and_magnitude:
         return below_zero ? negative(field & ~sign) : static_cast<std::int64_t>(field);
-    case Coding::Form::bcd:
-        return bcd_of(field, bits);
-    case Coding::Form::ieee754:
-        return real_of(field, bits);
-    case Coding::Form::mil1750a:
-        return mil1750a_of(field);
+    case Coding::Form::bcd: return bcd_of(field, bits);
+    case Coding::Form::ieee754: return real_of(field, bits);
+    case Coding::Form::mil1750a: return mil1750a_of(field);
     case Coding::Form::unsigned_integer:
     case Coding::Form::text:
-    case Coding::Form::octets:
-        break;
+    case Coding::Form::octets: break;
     }
     return field;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

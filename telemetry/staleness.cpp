@@ -15,7 +15,7 @@ bool brings_packets(std::string_view link) {
     return link.starts_with("uhf") || link == "downlink";
 }
 
-} // namespace
+}  // namespace
 
 StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary) {
     for (std::size_t i = 0; i < dictionary.packets.size(); ++i) {
@@ -26,7 +26,7 @@ StalenessMonitor::StalenessMonitor(const dictionary::Dictionary& dictionary) {
         const auto row = std::ranges::find_if(dictionary.telemetry_plan, named);
         if (row == dictionary.telemetry_plan.end() && !dictionary.telemetry_plan.empty()) continue;
         if (row != dictionary.telemetry_plan.end()) {
-            if (row->plan != "all") continue; // which plan is flown ground is not told
+            if (row->plan != "all") continue;  // which plan is flown ground is not told
             expected.interval_s.clear();
             for (const std::uint32_t every : row->every)
                 expected.interval_s.push_back(every / *packet.expected_rate_hz);
@@ -53,7 +53,8 @@ double StalenessMonitor::reckon(const Expected& expected, Ert ert) {
     return std::clamp(std::log(stale_chance) / std::log(lost), stale_intervals, stale_intervals_max);
 }
 
-void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert now, std::vector<StalenessChange>& out) const {
+void StalenessMonitor::clear(Expected& expected, const std::string& reason, Ert now,
+                             std::vector<StalenessChange>& out) const {
     if (!std::exchange(expected.stale, false)) return;
     out.push_back({expected.packet, false, seconds_between(*expected.last, now), 0.0, reason});
 }
@@ -72,15 +73,16 @@ void StalenessMonitor::heard(std::size_t packet, Ert ert, std::vector<StalenessC
     found->last = found->since = ert;
 }
 
-void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view reason, Ert ert, std::vector<StalenessChange>& out) {
+void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view reason, Ert ert,
+                            std::vector<StalenessChange>& out) {
     if (!brings_packets(name)) return;
     links_.insert_or_assign(std::string(name), Link{is, std::string(reason)});
     LinkIs best = LinkIs::down;
-    for (const auto& each : links_)
-        best = std::max(best, each.second.is);
+    for (const auto& each : links_) best = std::max(best, each.second.is);
     const LinkIs before = std::exchange(best_, best);
     if (best == before) return;
-    if (before == LinkIs::up && best == LinkIs::lost) return; // its absence goes on to count from when it was last heard
+    if (before == LinkIs::up && best == LinkIs::lost)
+        return;  // its absence goes on to count from when it was last heard
     for (Expected& expected : expected_) {
         if (best == LinkIs::down) clear(expected, "the link is down: " + std::string(reason), ert, out);
         expected.since = ert;
@@ -90,8 +92,10 @@ void StalenessMonitor::link(std::string_view name, LinkIs is, std::string_view r
 void StalenessMonitor::phase(std::string_view label, Ert ert, std::vector<StalenessChange>& out) {
     if (label == phase_) return;
     phase_ = label;
-    const auto found = std::ranges::find(dictionary::telemetry_state_of_phase, label, [](const auto& each) { return each.first; });
-    const auto state = found == dictionary::telemetry_state_of_phase.end() ? std::nullopt : std::optional(found->second);
+    const auto found =
+        std::ranges::find(dictionary::telemetry_state_of_phase, label, [](const auto& each) { return each.first; });
+    const auto state =
+        found == dictionary::telemetry_state_of_phase.end() ? std::nullopt : std::optional(found->second);
     if (state == std::exchange(state_, state)) return;
     for (Expected& expected : expected_) {
         if (interval_s(expected) == 0.0) clear(expected, "not expected in " + phase_, ert, out);
@@ -110,4 +114,4 @@ void StalenessMonitor::pass(Ert now, std::vector<StalenessChange>& out) {
     }
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -9,8 +9,8 @@ namespace {
 
 /// How a unit is written and how many decimals tell a person enough. Ours.
 struct Notation {
-    std::string_view unit;   ///< as in the dictionary
-    std::string_view suffix; ///< as the ending of a name
+    std::string_view unit;    ///< as in the dictionary
+    std::string_view suffix;  ///< as the ending of a name
     int decimals;
 };
 constexpr std::array notations{
@@ -28,7 +28,7 @@ bool is_whole(double value) {
 }
 
 std::string digits(double value, std::optional<int> decimals) {
-    char buffer[400]; // a double printed whole has at most 309 digits before the point
+    char buffer[400];  // a double printed whole has at most 309 digits before the point
     if (decimals && std::abs(value) < 1e12)
         std::snprintf(buffer, sizeof buffer, "%.*f", *decimals, value);
     else
@@ -59,14 +59,10 @@ bool is_reference(std::string_view field) {
 
 std::string moment_words(const dictionary::Dictionary& dictionary, const dictionary::Moment& moment) {
     switch (moment.kind) {
-    case dictionary::Moment::Kind::anchor:
-        return "the anchor " + dictionary.anchors[moment.index].name;
-    case dictionary::Moment::Kind::triggered:
-        return "the triggering of " + dictionary.timeline[moment.index].name;
-    case dictionary::Moment::Kind::fired:
-        return "the firing of " + dictionary.timeline[moment.index].name;
-    case dictionary::Moment::Kind::do_edl:
-        break;
+    case dictionary::Moment::Kind::anchor: return "the anchor " + dictionary.anchors[moment.index].name;
+    case dictionary::Moment::Kind::triggered: return "the triggering of " + dictionary.timeline[moment.index].name;
+    case dictionary::Moment::Kind::fired: return "the firing of " + dictionary.timeline[moment.index].name;
+    case dictionary::Moment::Kind::do_edl: break;
     }
     return "the acceptance of do edl";
 }
@@ -77,22 +73,20 @@ const std::string* label_of(const dictionary::Type& type, double value) {
     return nullptr;
 }
 
-} // namespace
+}  // namespace
 
 std::string number_text(const dictionary::Type& type, std::optional<double> value) {
     if (!value) return "undefined";
     switch (type.kind) {
-    case dictionary::ValueKind::boolean:
-        return *value != 0.0 ? "true" : "false";
+    case dictionary::ValueKind::boolean: return *value != 0.0 ? "true" : "false";
     case dictionary::ValueKind::enumerated: {
         const std::string* label = label_of(type, *value);
         return label != nullptr ? *label : digits(*value, 0) + " (no label)";
     }
     case dictionary::ValueKind::integer:
         if (is_whole(*value)) return digits(*value, 0);
-        break; // calibrated to a fraction
-    case dictionary::ValueKind::real:
-        break;
+        break;  // calibrated to a fraction
+    case dictionary::ValueKind::real: break;
     }
     const Notation* notation = notation_of_unit(type.unit);
     return digits(*value, notation != nullptr ? std::optional{notation->decimals} : std::nullopt);
@@ -142,20 +136,13 @@ std::string reference_text(const dictionary::Dictionary& dictionary, std::string
 
 const char* name_of(dictionary::EventLevel level) {
     switch (level) {
-    case dictionary::EventLevel::fatal:
-        return "FATAL";
-    case dictionary::EventLevel::warning_hi:
-        return "WARNING_HI";
-    case dictionary::EventLevel::warning_lo:
-        return "WARNING_LO";
-    case dictionary::EventLevel::command:
-        return "COMMAND";
-    case dictionary::EventLevel::activity_hi:
-        return "ACTIVITY_HI";
-    case dictionary::EventLevel::activity_lo:
-        return "ACTIVITY_LO";
-    case dictionary::EventLevel::diagnostic:
-        return "DIAGNOSTIC";
+    case dictionary::EventLevel::fatal: return "FATAL";
+    case dictionary::EventLevel::warning_hi: return "WARNING_HI";
+    case dictionary::EventLevel::warning_lo: return "WARNING_LO";
+    case dictionary::EventLevel::command: return "COMMAND";
+    case dictionary::EventLevel::activity_hi: return "ACTIVITY_HI";
+    case dictionary::EventLevel::activity_lo: return "ACTIVITY_LO";
+    case dictionary::EventLevel::diagnostic: return "DIAGNOSTIC";
     }
     return "";
 }
@@ -174,7 +161,7 @@ std::string argument_text(const dictionary::Dictionary& dictionary, const dictio
                                                      : number_text(field.type, value);
 }
 
-} // namespace
+}  // namespace
 
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded) {
@@ -195,4 +182,4 @@ std::string event_text(const dictionary::Dictionary& dictionary, const dictionar
     return text.append(rest);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -19,15 +19,15 @@ std::string number_text(const dictionary::Type& type, std::optional<double> valu
 std::string value_text(const dictionary::Type& type, std::optional<double> value);
 
 /// A number that names a thing of the dictionary, by the name of its field: "opcode", "timepoint", "anchor", "tone",
-/// "constraint". "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; the number alone where
-/// it names nothing.
+/// "constraint". "EDL_DO_EDL", "14 parachute_mortar"; of a constraint its two moments and its line; the number alone
+/// where it names nothing.
 std::string reference_text(const dictionary::Dictionary& dictionary, std::string_view field, double number);
 
 /// For a number whose unit is only known from the ending of its name, "speed_mps": "speed" and "12.3 m/s".
-std::string_view without_unit(std::string_view name); ///< "speed"
+std::string_view without_unit(std::string_view name);  ///< "speed"
 std::string named_value_text(std::string_view name, double value);
 
-const char* name_of(dictionary::EventLevel level); ///< "ACTIVITY_HI"
+const char* name_of(dictionary::EventLevel level);  ///< "ACTIVITY_HI"
 
 /// The event of a packet that is one, else none.
 const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, const Decoded& decoded);
@@ -36,4 +36,4 @@ const dictionary::Event* event_of(const dictionary::Dictionary& dictionary, cons
 std::string event_text(const dictionary::Dictionary& dictionary, const dictionary::Event& event,
                        const Decoded& decoded);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -38,7 +38,7 @@ std::optional<unsigned> month_of(std::string_view word) {
 /// "1972-JAN-1", "01-JAN-1980-00:00:00.0", "2012-08-06/05:17:57", "2012-219T05:17".
 std::optional<double> kernel_date(std::string_view word) {
     std::vector<std::string_view> parts;
-    std::size_t date_parts = 0; // those before a sign that only a time of day follows
+    std::size_t date_parts = 0;  // those before a sign that only a time of day follows
     std::size_t begin = 0;
     for (std::size_t i = 0; i <= word.size(); ++i) {
         const bool digit_before = i > 0 && std::isdigit(static_cast<unsigned char>(word[i - 1])) != 0;
@@ -59,13 +59,15 @@ std::optional<double> kernel_date(std::string_view word) {
         }
         const auto number = kernel_number(parts[i]);
         const bool seconds = i == date_parts + 2;
-        if (!number || *number < 0.0 || *number > 9999.0 || (!seconds && *number != std::floor(*number))) return std::nullopt;
+        if (!number || *number < 0.0 || *number > 9999.0 || (!seconds && *number != std::floor(*number)))
+            return std::nullopt;
         numbers.push_back(*number);
     }
-    if (named && parts[2].size() > parts[0].size()) std::swap(numbers[0], numbers[2]); // 1-JAN-1980
+    if (named && parts[2].size() > parts[0].size()) std::swap(numbers[0], numbers[2]);  // 1-JAN-1980
     const int year = static_cast<int>(numbers[0]);
     const bool of_year = date_parts == 2;
-    auto day = days_since_2000(year, of_year ? 1 : static_cast<unsigned>(numbers[1]), of_year ? 1 : static_cast<unsigned>(numbers[2]));
+    auto day = days_since_2000(year, of_year ? 1 : static_cast<unsigned>(numbers[1]),
+                               of_year ? 1 : static_cast<unsigned>(numbers[2]));
     if (!day || (of_year && (numbers[1] < 1 || numbers[1] > 366))) return std::nullopt;
     if (of_year) *day += static_cast<std::int64_t>(numbers[1]) - 1;
     numbers.resize(date_parts + 3, 0.0);
@@ -141,7 +143,8 @@ Result<std::vector<Word>> words_of(std::string_view text, const std::string& fil
         } else if (data && !words_of_line(line, number, words)) {
             return fault_at(file, number, "a text that begins with ' does not end in its line");
         } else if (words.size() > 2 * TextKernel::values_max) {
-            return fault_at(file, number, "there is more in it than " + std::to_string(TextKernel::values_max) + " values");
+            return fault_at(file, number,
+                            "there is more in it than " + std::to_string(TextKernel::values_max) + " values");
         }
     }
     if (!any) return fault_at(file, 1, "it has no line \\begindata: it is no text kernel");
@@ -150,12 +153,13 @@ Result<std::vector<Word>> words_of(std::string_view text, const std::string& fil
 
 Result<TextKernel::Value> value_of_word(const Word& word, const std::string& file) {
     if (word.quoted) return TextKernel::Value{word.text};
-    const auto number = word.text.starts_with('@') ? kernel_date(std::string_view{word.text}.substr(1)) : kernel_number(word.text);
+    const auto number =
+        word.text.starts_with('@') ? kernel_date(std::string_view{word.text}.substr(1)) : kernel_number(word.text);
     if (number) return TextKernel::Value{*number};
     return fault_at(file, word.line, "'" + word.text + "' is neither a number, a date behind @ nor a text in quotes");
 }
 
-} // namespace
+}  // namespace
 
 Result<TextKernel> TextKernel::parse(std::string_view text, const std::string& file) {
     const auto words = words_of(text, file);
@@ -187,7 +191,8 @@ Result<TextKernel> TextKernel::parse(std::string_view text, const std::string& f
             ++word;
             if (!list) break;
         }
-        if (list && word == words->end()) return fault_at(file, name.line, "the ( of '" + name.text + "' is never closed");
+        if (list && word == words->end())
+            return fault_at(file, name.line, "the ( of '" + name.text + "' is never closed");
         if (list) ++word;
         if (variable.values.size() == before) return fault_at(file, name.line, "'" + name.text + "' has no value");
     }
@@ -209,9 +214,10 @@ Result<std::vector<double>> TextKernel::numbers(const std::string& name, std::si
         numbers.push_back(*number);
     }
     if (numbers.size() < least)
-        return fault_at(file_, variable->line, name + " has " + std::to_string(numbers.size()) + " values where " +
-                                                   std::to_string(least) + " are wanted");
+        return fault_at(file_, variable->line,
+                        name + " has " + std::to_string(numbers.size()) + " values where " + std::to_string(least) +
+                            " are wanted");
     return numbers;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

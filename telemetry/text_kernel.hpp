@@ -11,8 +11,8 @@
 
 namespace aeolis::telemetry {
 
-/// The variables of a SPICE text kernel: NAME = VALUE or NAME = ( VALUE, … ) between \begindata and \begintext, += to add
-/// to what is there. A value is a number (exponents with E or D), a date behind @, or a text in single quotes.
+/// The variables of a SPICE text kernel: NAME = VALUE or NAME = ( VALUE, … ) between \begindata and \begintext, += to
+/// add to what is there. A value is a number (exponents with E or D), a date behind @, or a text in single quotes.
 ///
 /// Dates   become seconds since 2000-01-01T12:00:00 by the calendar, every day 86400 s
 /// Faults  "FILE:LINE: …" for the first line that cannot be read
@@ -21,10 +21,10 @@ class TextKernel {
   public:
     using Value = std::variant<double, std::string>;
     struct Variable {
-        unsigned line = 0; ///< of its last assignment
+        unsigned line = 0;  ///< of its last assignment
         std::vector<Value> values;
     };
-    static constexpr std::size_t values_max = std::size_t{1} << 22U; ///< ours: of all variables together
+    static constexpr std::size_t values_max = std::size_t{1} << 22U;  ///< ours: of all variables together
 
     /// `file` is what faults call it.
     static Result<TextKernel> parse(std::string_view text, const std::string& file);
@@ -40,4 +40,4 @@ class TextKernel {
     std::map<std::string, Variable> variables_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -27,7 +27,7 @@ std::uint64_t digest_of(std::span<const std::uint8_t> octets) {
     return mixed(digest ^ (word << 1 | 1U));
 }
 
-} // namespace
+}  // namespace
 
 UnitIdentity identity_of(std::span<const std::uint8_t> packet) {
     AEOLIS_CHECK(packet.size() >= tm_overhead_octets);
@@ -38,16 +38,11 @@ UnitIdentity identity_of(std::span<const std::uint8_t> packet) {
 
 const char* name_of(Standing standing) {
     switch (standing) {
-    case Standing::first:
-        return "first";
-    case Standing::again:
-        return "again";
-    case Standing::duplicate:
-        return "duplicate";
-    case Standing::differs:
-        return "differs";
-    case Standing::unregistered:
-        return "unregistered";
+    case Standing::first: return "first";
+    case Standing::again: return "again";
+    case Standing::duplicate: return "duplicate";
+    case Standing::differs: return "differs";
+    case Standing::unregistered: return "unregistered";
     }
     return "";
 }
@@ -92,4 +87,4 @@ Standing UnitRegister::add(std::span<const std::uint8_t> packet, Path path) {
     return repeated ? Standing::again : Standing::duplicate;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -14,7 +14,7 @@ namespace aeolis::telemetry {
 /// What names a unit within its run. The 14-bit count wraps; together with SCLK it does not repeat.
 struct UnitIdentity {
     Apid apid;
-    std::uint64_t sclk_65536 = 0; ///< SCLK in its own unit, 1/65536 s: 48 bits as they stand
+    std::uint64_t sclk_65536 = 0;  ///< SCLK in its own unit, 1/65536 s: 48 bits as they stand
     std::uint16_t count = 0;
     std::uint16_t crc = 0;
     constexpr auto operator<=>(const UnitIdentity&) const = default;
@@ -27,11 +27,11 @@ enum class Path : std::uint8_t { realtime, recorded };
 
 /// How a unit stands to those that came before it in its run.
 enum class Standing : std::uint8_t {
-    first,     ///< never seen
-    again,     ///< the same octets came before on the same path
-    duplicate, ///< the same octets came before, on the other path only: live is found in the recording, or the reverse
-    differs,   ///< same APID, SCLK and count as one before, other octets
-    unregistered ///< the register is full: nothing can be said
+    first,      ///< never seen
+    again,      ///< the same octets came before on the same path
+    duplicate,  ///< the same octets came before, on the other path only: live is found in the recording, or the reverse
+    differs,    ///< same APID, SCLK and count as one before, other octets
+    unregistered  ///< the register is full: nothing can be said
 };
 const char* name_of(Standing standing);
 
@@ -44,18 +44,18 @@ const char* name_of(Standing standing);
 /// random
 class UnitRegister {
   public:
-    static constexpr std::size_t units_max_default = 1'000'000; ///< ours: ten landings' worth, 64 MB
+    static constexpr std::size_t units_max_default = 1'000'000;  ///< ours: ten landings' worth, 64 MB
 
     explicit UnitRegister(std::size_t units_max = units_max_default) : units_max_(units_max) {}
 
     Standing add(std::span<const std::uint8_t> packet, Path path);
 
     struct Counts {
-        std::uint64_t realtime = 0; ///< distinct units seen in real time
-        std::uint64_t recorded = 0; ///< distinct units of the recording
-        std::uint64_t both = 0;     ///< on both paths, octets equal or not
-        std::uint64_t differs = 0;  ///< of `both`: octets differ
-        std::uint64_t again = 0;    ///< repeats on the same path
+        std::uint64_t realtime = 0;  ///< distinct units seen in real time
+        std::uint64_t recorded = 0;  ///< distinct units of the recording
+        std::uint64_t both = 0;      ///< on both paths, octets equal or not
+        std::uint64_t differs = 0;   ///< of `both`: octets differ
+        std::uint64_t again = 0;     ///< repeats on the same path
         std::uint64_t unregistered = 0;
     };
     const Counts& counts() const { return counts_; }
@@ -85,4 +85,4 @@ class UnitRegister {
     std::vector<UnitIdentity> differing_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -9,8 +9,14 @@ const preloadScript: Plugin = {
   name: 'preload-script',
   transformIndexHtml: {
     order: 'post',
-    handler: (_html, { bundle = {} }) => Object.values(bundle).filter((chunk) => chunk.type === 'chunk' && !chunk.isEntry).map(({ fileName }) => (
-      { tag: 'link', attrs: { rel: 'modulepreload', crossorigin: true, href: `./${fileName}` }, injectTo: 'head' as const })),
+    handler: (_html, { bundle = {} }) =>
+      Object.values(bundle)
+        .filter((chunk) => chunk.type === 'chunk' && !chunk.isEntry)
+        .map(({ fileName }) => ({
+          tag: 'link',
+          attrs: { rel: 'modulepreload', crossorigin: true, href: `./${fileName}` },
+          injectTo: 'head' as const,
+        })),
   },
 };
 
@@ -20,6 +26,10 @@ export default defineConfig({
   build: { target: 'es2023', sourcemap: false, cssCodeSplit: false, modulePreload: false },
   worker: { format: 'es' },
   oxc: { jsx: { runtime: 'automatic', importSource: 'preact' } },
-  server: { host: '127.0.0.1', fs: { allow: ['.', '../docs'] }, proxy: { '/api': { target: server, ws: true, changeOrigin: true, headers: { origin: server } } } },
+  server: {
+    host: '127.0.0.1',
+    fs: { allow: ['.', '../docs'] },
+    proxy: { '/api': { target: server, ws: true, changeOrigin: true, headers: { origin: server } } },
+  },
   test: { environment: 'node', css: true, include: ['src/**/*.spec.{ts,tsx}'] },
 });

@@ -3,7 +3,12 @@
 const names = new URLSearchParams(location.search).get('channels').split(',');
 const get = async (path) => (await fetch(`/api/v1${path}`)).json();
 
-const [{ channels: words }, { runs: [run] }] = await Promise.all([get('/dictionary'), get('/runs')]);
+const [
+  { channels: words },
+  {
+    runs: [run],
+  },
+] = await Promise.all([get('/dictionary'), get('/runs')]);
 const idOf = new Map(words.map((each) => [each.name, each.id]));
 const { channels } = await get(`/runs/${run.run}/channels?names=${names.join()}&points=1000`);
 const wide = Math.floor(innerWidth / 2) - 20;
@@ -14,15 +19,28 @@ const plots = names.map((name) => {
   const data = [sclk.map((at) => at - run.entry_sclk), value];
   const element = document.body.appendChild(document.createElement('div'));
   element.className = 'plot';
-  const plot = new uPlot({
-    width: wide, height: high, legend: { show: false }, cursor: { drag: { x: false, y: false } }, scales: { x: { time: false } },
-    series: [{}, { stroke: '#6cb6ff', width: 1, points: { show: false } }],
-  }, data, element);
+  const plot = new uPlot(
+    {
+      width: wide,
+      height: high,
+      legend: { show: false },
+      cursor: { drag: { x: false, y: false } },
+      scales: { x: { time: false } },
+      series: [{}, { stroke: '#6cb6ff', width: 1, points: { show: false } }],
+    },
+    data,
+    element,
+  );
   return { id: idOf.get(name), data, plot, element };
 });
 let changed = false;
 const socket = new WebSocket(`${location.origin.replace(/^http/, 'ws')}/api/v1/stream`, 'aeolis.v1.json');
-socket.onopen = () => socket.send(JSON.stringify({ subscribe: { run: run.run, after_seq: run.last_seq ?? '0', channels: plots.map((each) => each.id) } }));
+socket.onopen = () =>
+  socket.send(
+    JSON.stringify({
+      subscribe: { run: run.run, after_seq: run.last_seq ?? '0', channels: plots.map((each) => each.id) },
+    }),
+  );
 socket.onmessage = ({ data }) => {
   for (const { samples } of JSON.parse(data).batch?.items ?? []) {
     if (!samples) continue;

@@ -25,7 +25,7 @@ std::optional<std::size_t> relax(const std::vector<DifferenceNetwork::Edge>& edg
     return moved;
 }
 
-} // namespace
+}  // namespace
 
 DifferenceNetwork::Earliest DifferenceNetwork::earliest() const {
     std::vector<std::int64_t> ticks(moments_, 0);
@@ -37,8 +37,7 @@ DifferenceNetwork::Earliest DifferenceNetwork::earliest() const {
     }
     // Still moving after as many sweeps as there are moments: whoever walks back that far stands on the ring.
     std::size_t on_ring = *moved;
-    for (std::size_t step = 0; step < moments_; ++step)
-        on_ring = edges_[reached_by[on_ring]].from;
+    for (std::size_t step = 0; step < moments_; ++step) on_ring = edges_[reached_by[on_ring]].from;
     Earliest none;
     std::size_t at = on_ring;
     do {
@@ -54,13 +53,12 @@ std::optional<DifferenceNetwork::Path> DifferenceNetwork::least_difference(std::
     std::vector<EdgeIndex> reached_by(moments_, no_edge);
     ticks[from] = 0;
     for (std::size_t sweep = 0; relax(edges_, ticks, reached_by); ++sweep)
-        AEOLIS_CHECK(sweep <= moments_); // a ring: the edges have no solution
+        AEOLIS_CHECK(sweep <= moments_);  // a ring: the edges have no solution
     if (ticks[to] == unreached) return std::nullopt;
     Path path{ticks[to], {}};
-    for (std::size_t at = to; at != from; at = edges_[reached_by[at]].from)
-        path.edges.push_back(reached_by[at]);
+    for (std::size_t at = to; at != from; at = edges_[reached_by[at]].from) path.edges.push_back(reached_by[at]);
     std::ranges::reverse(path.edges);
     return path;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

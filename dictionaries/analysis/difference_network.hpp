@@ -31,14 +31,14 @@ class DifferenceNetwork {
 
     /// Of all solutions without a negative time the one in which every moment is earliest; or why there is none.
     struct Earliest {
-        std::vector<std::int64_t> ticks;      ///< a time for each moment; empty when the edges contradict one another
-        std::vector<EdgeIndex> contradiction; ///< a ring of edges whose least differences add up to more than nil
+        std::vector<std::int64_t> ticks;       ///< a time for each moment; empty when the edges contradict one another
+        std::vector<EdgeIndex> contradiction;  ///< a ring of edges whose least differences add up to more than nil
     };
     Earliest earliest() const;
 
     struct Path {
         std::int64_t ticks = 0;
-        std::vector<EdgeIndex> edges; ///< those that force it, from the first moment to the last
+        std::vector<EdgeIndex> edges;  ///< those that force it, from the first moment to the last
     };
     /// The least that t(to) - t(from) can be; none: it has no lower bound. Only where `earliest` has a solution.
     std::optional<Path> least_difference(std::size_t from, std::size_t to) const;
@@ -48,4 +48,4 @@ class DifferenceNetwork {
     std::vector<Edge> edges_;
 };
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -33,11 +33,12 @@ BoundProof prove(TimelineNetwork& network, const Moment& from, const Moment& to,
     return result;
 }
 
-TimelineNetwork network_of(const Dictionary& dictionary, TimelineAnalysis& analysis, const std::function<bool()>& stop) {
+TimelineNetwork network_of(const Dictionary& dictionary, TimelineAnalysis& analysis,
+                           const std::function<bool()>& stop) {
     return {dictionary, [&analysis, &stop] { return analysis.stopped = analysis.stopped || (stop && stop()); }};
 }
 
-} // namespace
+}  // namespace
 
 bool TimelineAnalysis::all_proven() const {
     return contradiction.empty() && admits_schedule &&
@@ -46,14 +47,10 @@ bool TimelineAnalysis::all_proven() const {
 
 std::string moment_text(const Dictionary& dictionary, const Moment& moment) {
     switch (moment.kind) {
-    case Kind::do_edl:
-        return "do_edl";
-    case Kind::anchor:
-        return dictionary.anchors[moment.index].name + ":anchor";
-    case Kind::triggered:
-        return dictionary.timeline[moment.index].name + ":triggered";
-    case Kind::fired:
-        return dictionary.timeline[moment.index].name + ":fired";
+    case Kind::do_edl: return "do_edl";
+    case Kind::anchor: return dictionary.anchors[moment.index].name + ":anchor";
+    case Kind::triggered: return dictionary.timeline[moment.index].name + ":triggered";
+    case Kind::fired: return dictionary.timeline[moment.index].name + ":fired";
     }
     return {};
 }
@@ -102,4 +99,4 @@ TimelineAnalysis analyse_timeline(const Dictionary& dictionary, const std::funct
     return analysis;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

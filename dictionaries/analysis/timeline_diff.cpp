@@ -91,8 +91,7 @@ std::vector<CellChange> changed_cells(const Row& before, const Row& after) {
 
 std::map<std::string, std::size_t> places_of(const Rows& rows) {
     std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < rows.size(); ++i)
-        places.emplace(rows[i].name, i);
+    for (std::size_t i = 0; i < rows.size(); ++i) places.emplace(rows[i].name, i);
     return places;
 }
 
@@ -125,7 +124,7 @@ SheetDiff compare(std::string file, const Rows& before, const Rows& after) {
     return diff;
 }
 
-} // namespace
+}  // namespace
 
 bool TimelineDiff::same() const {
     return std::ranges::all_of(sheets, [](const SheetDiff& sheet) { return sheet.rows.empty(); });
@@ -139,4 +138,4 @@ TimelineDiff compare_timelines(const Dictionary& before, const Dictionary& after
              compare("constraints.csv", constraint_rows(before), constraint_rows(after))}};
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -9,8 +9,8 @@ namespace {
 using Kind = Moment::Kind;
 using Reason = ChainStep::Reason;
 
-constexpr std::size_t triggered_per_cycle_max = 5; // R15
-constexpr std::size_t search_nodes_max = 20'000;   // ours: a hundred times what the landing's hardest row takes
+constexpr std::size_t triggered_per_cycle_max = 5;  // R15
+constexpr std::size_t search_nodes_max = 20'000;    // ours: a hundred times what the landing's hardest row takes
 
 std::int64_t ticks_of(double seconds) {
     return Sclk{seconds}.ticks();
@@ -20,30 +20,25 @@ Moment at(Kind kind, std::size_t index = 0) {
     return {kind, static_cast<std::uint16_t>(index)};
 }
 
-} // namespace
+}  // namespace
 
 TimelineNetwork::TimelineNetwork(const Dictionary& dictionary, std::function<bool()> stop)
-    : dictionary_(dictionary), stop_(std::move(stop)), network_(1 + dictionary.anchors.size() + 2 * dictionary.timeline.size()),
-      causes_(dictionary.timeline.size()) {
+    : dictionary_(dictionary), stop_(std::move(stop)),
+      network_(1 + dictionary.anchors.size() + 2 * dictionary.timeline.size()), causes_(dictionary.timeline.size()) {
     add_anchors();
-    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i)
-        add_timepoint(i);
+    for (std::size_t i = 0; i < dictionary.timeline.size(); ++i) add_timepoint(i);
     add_given();
     for (const auto& edge : network_.edges())
-        horizon_ticks_ += 2 * std::abs(edge.ticks) + 1; // twice: "as soon as" turns an edge round
+        horizon_ticks_ += 2 * std::abs(edge.ticks) + 1;  // twice: "as soon as" turns an edge round
 }
 
 // The nodes: do_edl, the anchors, then triggering and firing of each timepoint.
 std::size_t TimelineNetwork::node(const Moment& moment) const {
     switch (moment.kind) {
-    case Kind::do_edl:
-        return 0;
-    case Kind::anchor:
-        return std::size_t{1} + moment.index;
-    case Kind::triggered:
-        return 1 + dictionary_.anchors.size() + std::size_t{2} * moment.index;
-    case Kind::fired:
-        return 2 + dictionary_.anchors.size() + std::size_t{2} * moment.index;
+    case Kind::do_edl: return 0;
+    case Kind::anchor: return std::size_t{1} + moment.index;
+    case Kind::triggered: return 1 + dictionary_.anchors.size() + std::size_t{2} * moment.index;
+    case Kind::fired: return 2 + dictionary_.anchors.size() + std::size_t{2} * moment.index;
     }
     return 0;
 }
@@ -101,7 +96,7 @@ void TimelineNetwork::add_timepoint(std::size_t index) {
         cause(at(Kind::anchor, row.anchor->value), ticks_of(*row.desired_offset_s), Reason::desired);
     if (index >= triggered_per_cycle_max)
         cause(at(Kind::triggered, index - triggered_per_cycle_max), 1, Reason::cycle_limit);
-    if (!row.desired_offset_s || !row.minimum_offset_s) causes_[index].clear(); // a command may define it at any time
+    if (!row.desired_offset_s || !row.minimum_offset_s) causes_[index].clear();  // a command may define it at any time
 
     add(triggered, fired, 0, Reason::reply, row.line);
     add(fired, triggered, row.reply_timeout_s ? -ticks_of(*row.reply_timeout_s) : 0, Reason::reply_timeout, row.line);
@@ -198,4 +193,4 @@ void TimelineNetwork::search(Query& query) {
     }
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -25,13 +25,13 @@ class TimelineNetwork {
 
     /// The least difference of two moments.
     struct Worst {
-        bool found = false;  ///< `ticks`, `chain` and `schedule` are those of a real schedule
-        bool bounded = true; ///< false: there is no least difference; the schedule may have the one that was enough
+        bool found = false;   ///< `ticks`, `chain` and `schedule` are those of a real schedule
+        bool bounded = true;  ///< false: there is no least difference; the schedule may have the one that was enough
         std::int64_t ticks = 0;
         std::vector<ChainStep> chain;
         std::vector<Instant> schedule;
-        bool exhausted = false; ///< the search was cut short
-        MaybeTicks open_ticks;  ///< then: what was not searched is no less than this, if anything
+        bool exhausted = false;  ///< the search was cut short
+        MaybeTicks open_ticks;   ///< then: what was not searched is no less than this, if anything
     };
     /// The least that t(to) - t(from) can be. Where it has no bound, a schedule with `enough_ticks`.
     Worst least_difference(const Moment& from, const Moment& to, std::int64_t enough_ticks);
@@ -61,9 +61,9 @@ class TimelineNetwork {
     const Dictionary& dictionary_;
     std::function<bool()> stop_;
     DifferenceNetwork network_;
-    std::int64_t horizon_ticks_ = 0;                              ///< no bounded difference is less than its negative
-    std::vector<std::pair<ChainStep::Reason, unsigned>> reasons_; ///< of the edges, by index
-    std::vector<std::vector<DifferenceNetwork::Edge>> causes_;    ///< of each triggering; empty: it is free
+    std::int64_t horizon_ticks_ = 0;                               ///< no bounded difference is less than its negative
+    std::vector<std::pair<ChainStep::Reason, unsigned>> reasons_;  ///< of the edges, by index
+    std::vector<std::vector<DifferenceNetwork::Edge>> causes_;     ///< of each triggering; empty: it is free
 };
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

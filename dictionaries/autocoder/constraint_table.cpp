@@ -9,19 +9,16 @@ namespace {
 
 std::string moment_expression(const Dictionary& dictionary, const Moment& moment) {
     switch (moment.kind) {
-    case Moment::Kind::anchor:
-        return "Moment::of_anchor(anchor::" + dictionary.anchors[moment.index].name + ")";
+    case Moment::Kind::anchor: return "Moment::of_anchor(anchor::" + dictionary.anchors[moment.index].name + ")";
     case Moment::Kind::triggered:
         return "Moment::of_triggered(timepoint::" + dictionary.timeline[moment.index].name + ")";
-    case Moment::Kind::fired:
-        return "Moment::of_fired(timepoint::" + dictionary.timeline[moment.index].name + ")";
-    case Moment::Kind::do_edl:
-        break;
+    case Moment::Kind::fired: return "Moment::of_fired(timepoint::" + dictionary.timeline[moment.index].name + ")";
+    case Moment::Kind::do_edl: break;
     }
     return "Moment::of_do_edl()";
 }
 
-} // namespace
+}  // namespace
 
 std::string constraint_table(const Dictionary& dictionary) {
     std::ostringstream out;
@@ -34,4 +31,4 @@ std::string constraint_table(const Dictionary& dictionary) {
     return out.str();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -10,4 +10,4 @@ namespace aeolis::dictionary::autocoder {
 /// constraints.csv, its moments as C++ names of timepoints and anchors. R39, R40
 std::string constraint_table(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -14,7 +14,7 @@ std::string integer_type(const Type& type) {
     return std::string{"std::"} + (is_signed ? "int" : "uint") + std::to_string(bits) + "_t";
 }
 
-} // namespace
+}  // namespace
 
 std::string made_by_autocoder(const Dictionary& dictionary, std::string_view source) {
     return "// Made by the autocoder from the dictionary of " + dictionary.mission + ". Not to be edited: change " +
@@ -68,4 +68,4 @@ std::string value_type(const Type& type) {
     return integer_type(type);
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -30,4 +30,4 @@ std::string camel_case(std::string_view name);
 /// The C++ type that holds a raw value: float, std::uint16_t, bool, EdlPhase.
 std::string value_type(const Type& type);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

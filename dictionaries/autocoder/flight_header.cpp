@@ -41,7 +41,7 @@ class HeaderWriter {
 
     std::string write() {
         out_ << made_by_autocoder(dictionary_, "the dictionary")
-           << "#pragma once\n\n"
+             << "#pragma once\n\n"
                 "#include \"common/bytes.hpp\"\n#include \"common/ids.hpp\"\n\n"
                 "#include <array>\n#include <cmath>\n#include <cstddef>\n#include <cstdint>\n#include "
                 "<optional>\n#include <span>\n\n"
@@ -57,11 +57,9 @@ class HeaderWriter {
         for (const Packet& packet : dictionary_.packets)
             if (!packet.event) write_packet(packet, nullptr);
         out_ << "}  // namespace packet\n\nnamespace evr {\n\n";
-        for (const Event& event : dictionary_.events)
-            write_packet(dictionary_.packets[event.packet], &event);
+        for (const Event& event : dictionary_.events) write_packet(dictionary_.packets[event.packet], &event);
         out_ << "}  // namespace evr\n\nnamespace command {\n\n";
-        for (const Command& command : dictionary_.commands)
-            write_command(command);
+        for (const Command& command : dictionary_.commands) write_command(command);
         out_ << "}  // namespace command\n\n";
         write_ids();
         write_parameters();
@@ -145,20 +143,13 @@ class HeaderWriter {
 
     static const char* level_name(EventLevel level) {
         switch (level) {
-        case EventLevel::fatal:
-            return "fatal";
-        case EventLevel::warning_hi:
-            return "warning_hi";
-        case EventLevel::warning_lo:
-            return "warning_lo";
-        case EventLevel::command:
-            return "command";
-        case EventLevel::activity_hi:
-            return "activity_hi";
-        case EventLevel::activity_lo:
-            return "activity_lo";
-        case EventLevel::diagnostic:
-            break;
+        case EventLevel::fatal: return "fatal";
+        case EventLevel::warning_hi: return "warning_hi";
+        case EventLevel::warning_lo: return "warning_lo";
+        case EventLevel::command: return "command";
+        case EventLevel::activity_hi: return "activity_hi";
+        case EventLevel::activity_lo: return "activity_lo";
+        case EventLevel::diagnostic: break;
         }
         return "diagnostic";
     }
@@ -177,8 +168,7 @@ class HeaderWriter {
              << "        if (octets.size() != argument_octets) return std::nullopt;\n"
              << "        " << command.name << " c;\n";
         if (!command.arguments.empty()) out_ << "        BitReader in{octets};\n";
-        for (const Argument& argument : command.arguments)
-            write_argument(argument);
+        for (const Argument& argument : command.arguments) write_argument(argument);
         out_ << "        return c;\n    }\n";
         write_carry(command);
         out_ << "    bool operator==(const " << command.name << "&) const = default;\n};\n\n";
@@ -265,10 +255,10 @@ class HeaderWriter {
     std::ostringstream out_;
 };
 
-} // namespace
+}  // namespace
 
 std::string flight_header(const Dictionary& dictionary) {
     return HeaderWriter{dictionary}.write();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -10,4 +10,4 @@ namespace aeolis::dictionary::autocoder {
 /// It includes the standard library and common/ only. R40, R48
 std::string flight_header(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

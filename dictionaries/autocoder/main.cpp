@@ -25,7 +25,7 @@ bool write(const std::filesystem::path& path, const std::string& text) {
     return static_cast<bool>(out);
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv) {
     if (argc != 3) {
@@ -36,8 +36,7 @@ int main(int argc, char** argv) {
     const std::filesystem::path mission{argv[1]};
     const std::filesystem::path out{argv[2]};
     const dictionary::Loaded loaded = dictionary::load(mission);
-    for (const auto& finding : loaded.findings)
-        std::cerr << (mission / finding.text()).string() << '\n';
+    for (const auto& finding : loaded.findings) std::cerr << (mission / finding.text()).string() << '\n';
     if (!loaded.dictionary) return 1;
     std::error_code error;
     std::filesystem::create_directories(out, error);

@@ -19,18 +19,18 @@ void each_row(const Dictionary& dictionary, Kind kind, Write&& write) {
 void write_owner_of(const Dictionary& dictionary, Kind kind, const char* type, std::ostringstream& out) {
     out << "constexpr ModuleId owner_of(" << type << " which) {\n    switch (which) {\n";
     each_row(dictionary, kind, [&](const OwnerRow& row) {
-        out << "#line " << row.line << " \"owners.csv\"\n    case " << type << "::" << row.name << ": return ModuleId::"
-            << row.module << ";\n";
+        out << "#line " << row.line << " \"owners.csv\"\n    case " << type << "::" << row.name
+            << ": return ModuleId::" << row.module << ";\n";
     });
     out << "    }\n    return {};\n}\n\n";
 }
 
-} // namespace
+}  // namespace
 
 std::string owners_header(const Dictionary& dictionary) {
     std::ostringstream out;
     out << made_by_autocoder(dictionary, "owners.csv")
-           << "#pragma once\n\n#include \"flight/kernel/message.hpp\"\n\n#include <cstddef>\n#include <cstdint>\n\n"
+        << "#pragma once\n\n#include \"flight/kernel/message.hpp\"\n\n#include <cstddef>\n#include <cstdint>\n\n"
            "namespace aeolis::flight {\n\nenum class DeviceLine : std::uint8_t {\n";
     each_row(dictionary, Kind::device, [&](const OwnerRow& row) { out << "    " << row.name << ",\n"; });
     out << "};\ninline constexpr std::size_t device_line_count = "
@@ -39,11 +39,11 @@ std::string owners_header(const Dictionary& dictionary) {
     write_owner_of(dictionary, Kind::device, "DeviceLine", out);
     out << "namespace action_owner {\n";
     each_row(dictionary, Kind::action, [&](const OwnerRow& row) {
-        out << "#line " << row.line << " \"owners.csv\"\ninline constexpr ModuleId " << row.name << " = ModuleId::"
-            << row.module << ";\n";
+        out << "#line " << row.line << " \"owners.csv\"\ninline constexpr ModuleId " << row.name
+            << " = ModuleId::" << row.module << ";\n";
     });
     out << "}  // namespace action_owner\n\n}  // namespace aeolis::flight\n";
     return out.str();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

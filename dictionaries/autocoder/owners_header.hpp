@@ -10,4 +10,4 @@ namespace aeolis::dictionary::autocoder {
 /// flight's ModuleId, each row under a #line of owners.csv, so that the compiler checks them. R5, R40
 std::string owners_header(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -15,4 +15,4 @@ std::string state_diagrams(const Dictionary& dictionary) {
     return out.str();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -10,4 +10,4 @@ namespace aeolis::dictionary::autocoder {
 /// each. R48
 std::string state_diagrams(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

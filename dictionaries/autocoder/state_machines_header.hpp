@@ -11,4 +11,4 @@ namespace aeolis::dictionary::autocoder {
 /// state_machines.csv. R40, R48
 std::string state_machines_header(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -11,16 +11,16 @@ namespace {
 /// The encoder's name of what the row speaks of; of event reports, which share an APID, any.
 std::string encoder_of(const Dictionary& dictionary, const TelemetryPlanRow& row) {
     const auto packet = std::ranges::find(dictionary.packets, row.apid, &Packet::apid);
-    if (packet == dictionary.packets.end()) return row.packet; // the loader has made sure that there is one
+    if (packet == dictionary.packets.end()) return row.packet;  // the loader has made sure that there is one
     return (packet->event ? "evr::" : "packet::") + packet->name;
 }
 
-} // namespace
+}  // namespace
 
 std::string telemetry_plan_source(const Dictionary& dictionary) {
     std::ostringstream out;
     out << made_by_autocoder(dictionary, "the spreadsheets")
-           << "#include \"flight/edl_comm/telemetry_plan.hpp\"\n\n"
+        << "#include \"flight/edl_comm/telemetry_plan.hpp\"\n\n"
            "#include <array>\n\n"
            "namespace aeolis::flight {\nnamespace {\n\n"
         << "constexpr std::array<TelemetryPlanRow, " << dictionary.telemetry_plan.size() << "> rows{{\n";
@@ -37,4 +37,4 @@ std::string telemetry_plan_source(const Dictionary& dictionary) {
     return out.str();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

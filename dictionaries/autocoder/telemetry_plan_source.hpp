@@ -10,4 +10,4 @@ namespace aeolis::dictionary::autocoder {
 /// C++ names, each row under a #line of the spreadsheet, so that the compiler checks them and names the row. R30, R40
 std::string telemetry_plan_source(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

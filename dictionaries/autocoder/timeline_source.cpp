@@ -58,12 +58,12 @@ void write_tones(const Dictionary& dictionary, std::ostringstream& out) {
     out << "}};\n\n";
 }
 
-} // namespace
+}  // namespace
 
 std::string timeline_source(const Dictionary& dictionary) {
     std::ostringstream out;
     out << made_by_autocoder(dictionary, "the spreadsheets")
-           << "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
+        << "#include \"flight/timeline/actions.hpp\"\n#include \"flight/timeline/constraint_monitor.hpp\"\n"
            "#include \"flight/timeline/timepoint.hpp\"\n#include \"generated/owners.hpp\"\n\n"
            "namespace aeolis::flight {\n\n";
     write_timeline(dictionary, out);
@@ -74,4 +74,4 @@ std::string timeline_source(const Dictionary& dictionary) {
     return out.str();
 }
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

@@ -11,4 +11,4 @@ namespace aeolis::dictionary::autocoder {
 /// R40
 std::string timeline_source(const Dictionary& dictionary);
 
-} // namespace aeolis::dictionary::autocoder
+}  // namespace aeolis::dictionary::autocoder

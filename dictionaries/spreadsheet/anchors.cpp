@@ -10,7 +10,7 @@ namespace {
 
 struct Anchor {
     std::string name;
-    std::string parent; ///< empty: none, or not known
+    std::string parent;  ///< empty: none, or not known
     MaybeOffset offset_s;
     std::string note;
     unsigned line = 0;
@@ -48,13 +48,11 @@ void report_cycle(std::vector<Anchor>& anchors, const std::map<std::string, std:
     const auto ring = std::ranges::find(path, at);
     if (ring != path.end()) {
         std::string text;
-        for (auto step = ring; step != path.end(); ++step)
-            text += anchors[*step].name + " -> ";
+        for (auto step = ring; step != path.end(); ++step) text += anchors[*step].name + " -> ";
         findings.add(anchors[at].line,
                      "anchor " + in_quotes(anchors[at].name) + ": a cycle of anchors: " + text + anchors[at].name);
     }
-    for (const std::size_t step : path)
-        anchors[step].placed = true;
+    for (const std::size_t step : path) anchors[step].placed = true;
 }
 
 /// Parents before children; otherwise the order of the file is kept.
@@ -95,7 +93,7 @@ std::vector<Anchor> read_rows(const Table& table, Findings& findings) {
     return anchors;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findings& findings) {
     const auto table = Table::read(text, {"name", "parent", "offset_s", "note"}, findings);
@@ -122,9 +120,9 @@ std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findin
                         anchor.offset_s, anchor.note});
         placed.emplace(anchor.name, id);
     }
-    for (const Anchor& anchor : anchors) // those on a cycle are names all the same
+    for (const Anchor& anchor : anchors)  // those on a cycle are names all the same
         if (!placed.contains(anchor.name)) rows.push_back({AnchorId{}, anchor.name, {}, {}, anchor.note});
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::size_t clock_rows_max = 1000;  // ours: one a week for twenty years
 constexpr double drift_max = 1.0e-4;          // ours: an oscillator that is off by more is broken
-constexpr double step_max_s = 0.5;            // ours: less than a leap second, more than a clock drifts between two rows
-constexpr std::int64_t leap_seconds_max = 99; // ours: 37 in 2017
+constexpr double step_max_s = 0.5;  // ours: less than a leap second, more than a clock drifts between two rows
+constexpr std::int64_t leap_seconds_max = 99;  // ours: 37 in 2017
 
 ClockRow row_of(RowReader& cells) {
     ClockRow row;
@@ -31,20 +31,23 @@ ClockRow row_of(RowReader& cells) {
 }
 
 void check_order(const ClockRow& row, const ClockRow& before, RowReader& cells) {
-    if (row.correlation.version <= before.correlation.version) cells.fault("version: is not above that of the row before");
+    if (row.correlation.version <= before.correlation.version)
+        cells.fault("version: is not above that of the row before");
     if (row.valid_from <= before.valid_from) return cells.fault("valid_from_sclk: is not after that of the row before");
     const std::int64_t now_us = row.correlation.scet_of(row.valid_from).microseconds;
     const std::int64_t then_us = before.correlation.scet_of(row.valid_from).microseconds;
-    const int leap_s = row.correlation.leap_seconds - before.correlation.leap_seconds; // UTC stands still for it
+    const int leap_s = row.correlation.leap_seconds - before.correlation.leap_seconds;  // UTC stands still for it
     if (std::abs(static_cast<double>(now_us - then_us) * 1.0e-6 + leap_s) > step_max_s)
-        cells.fault("scet: by the row before it was " + day_of_year_text(Scet{then_us}) + " at valid_from_sclk, by this one " +
-                    day_of_year_text(Scet{now_us}) + "; leap seconds do not explain it");
+        cells.fault("scet: by the row before it was " + day_of_year_text(Scet{then_us}) +
+                    " at valid_from_sclk, by this one " + day_of_year_text(Scet{now_us}) +
+                    "; leap seconds do not explain it");
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view text, Findings& findings) {
-    const auto table = Table::read(text, {"version", "valid_from_sclk", "sclk", "scet", "drift", "leap_seconds", "note"}, findings);
+    const auto table =
+        Table::read(text, {"version", "valid_from_sclk", "sclk", "scet", "drift", "leap_seconds", "note"}, findings);
     if (!table) return std::nullopt;
     if (table->rows().size() > clock_rows_max) {
         findings.add(table->rows()[clock_rows_max].line, "more than " + std::to_string(clock_rows_max) + " rows");
@@ -60,4 +63,4 @@ std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view tex
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

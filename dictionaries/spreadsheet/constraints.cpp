@@ -63,7 +63,7 @@ bool may_be_given(const Moment& to) {
     return to.kind == Moment::Kind::anchor;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<ConstraintRow>> read_constraints(std::string_view text, const ConstraintContext& context,
                                                            Findings& findings) {
@@ -107,4 +107,4 @@ std::optional<std::vector<ConstraintRow>> read_constraints(std::string_view text
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

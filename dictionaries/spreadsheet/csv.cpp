@@ -125,11 +125,11 @@ class Reader {
     bool sound_ = true;
 };
 
-} // namespace
+}  // namespace
 
 std::optional<Sheet> read_csv(std::string_view text, Findings& findings) {
     if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
     return Reader{text, findings}.read();
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -16,7 +16,7 @@ struct Sheet {
         std::vector<std::string> cells;
     };
     Row header;
-    std::vector<Row> rows; ///< rows whose cells are all empty are left out
+    std::vector<Row> rows;  ///< rows whose cells are all empty are left out
 };
 
 /// RFC 4180: commas, quotes doubled within quotes, line breaks within quotes. A byte order mark and CRLF, which
@@ -24,4 +24,4 @@ struct Sheet {
 /// sheet.
 std::optional<Sheet> read_csv(std::string_view text, Findings& findings);
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -35,7 +35,7 @@ void check_mfsk(const MfskWaveform& mfsk, Findings& findings) {
         findings.add(1, "modulation_index_deg is not below 90: no carrier is left");
 }
 
-} // namespace
+}  // namespace
 
 std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings) {
     const auto table = Table::read(text, {"name", "value", "unit", "text", "source"}, findings);
@@ -55,7 +55,8 @@ std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings)
             continue;
         }
         if (!read.insert(known->name).second) cells.fault("is there twice");
-        if (cells.text("unit") != known->unit) cells.fault("is in " + in_quotes(cells.text("unit")) + ", not in " + std::string{known->unit});
+        if (cells.text("unit") != known->unit)
+            cells.fault("is in " + in_quotes(cells.text("unit")) + ", not in " + std::string{known->unit});
         if (value && *value <= 0.0) cells.fault("is not above 0");
         sound = sound && value && *value > 0.0;
         mfsk.*known->value = value.value_or(0.0) * known->per_unit;
@@ -69,4 +70,4 @@ std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings)
     return mfsk;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

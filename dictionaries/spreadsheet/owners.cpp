@@ -24,7 +24,8 @@ std::optional<Kind> read_owned_kind(RowReader& cells) {
 
 const Type* decisions_of(const OwnerContext& context) {
     if (context.enumerations == nullptr) return nullptr;
-    const auto found = std::ranges::find(*context.enumerations, "Decision", [](const Type* type) { return type->name; });
+    const auto found =
+        std::ranges::find(*context.enumerations, "Decision", [](const Type* type) { return type->name; });
     return found == context.enumerations->end() ? nullptr : *found;
 }
 
@@ -48,16 +49,13 @@ void check_missing(const OwnerContext& context, const Lines& lines, unsigned las
             missing.push_back(text);
     };
     if (context.timeline != nullptr)
-        for (const TimelineRow& row : *context.timeline)
-            need(Kind::action, "action", row.action);
+        for (const TimelineRow& row : *context.timeline) need(Kind::action, "action", row.action);
     if (const Type* decisions = decisions_of(context))
-        for (const EnumValue& label : decisions->enumeration)
-            need(Kind::decision, "decision", label.label);
-    for (const std::string& text : missing)
-        findings.add(last_line, text);
+        for (const EnumValue& label : decisions->enumeration) need(Kind::decision, "decision", label.label);
+    for (const std::string& text : missing) findings.add(last_line, text);
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const OwnerContext& context,
                                                  Findings& findings) {
@@ -69,7 +67,7 @@ std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const Ow
     }
     Lines lines;
     std::vector<OwnerRow> rows;
-    bool sound = true; // what a broken row may have meant to own is not called missing as well
+    bool sound = true;  // what a broken row may have meant to own is not called missing as well
     for (const Sheet::Row& sheet_row : table->rows()) {
         const std::size_t before = findings.size();
         RowReader cells{*table, sheet_row, sheet_row.cells[table->column("kind")], "name", findings};
@@ -91,4 +89,4 @@ std::optional<std::vector<OwnerRow>> read_owners(std::string_view text, const Ow
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -37,4 +37,4 @@ std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, 
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -16,7 +16,8 @@ read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anch
         RowReader cells{*table, line, "anchor", "anchor", findings};
         const std::string name = cells.identifier("anchor");
         const auto after_entry_s = cells.number("after_entry_s");
-        if (after_entry_s && std::abs(*after_entry_s) > 1.0e6) cells.fault("after_entry_s: is more than 1000000 s from entry");
+        if (after_entry_s && std::abs(*after_entry_s) > 1.0e6)
+            cells.fault("after_entry_s: is more than 1000000 s from entry");
         if (anchors == nullptr) continue;
         const auto known = std::ranges::find(*anchors, name, &AnchorRow::name);
         if (known == anchors->end()) {
@@ -30,4 +31,4 @@ read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anch
     return predicted;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

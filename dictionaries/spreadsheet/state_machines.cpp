@@ -13,18 +13,18 @@ namespace {
 
 struct Machine {
     StateMachineTable table;
-    const Type* states = nullptr; ///< none: not known, not checked
+    const Type* states = nullptr;  ///< none: not known, not checked
     unsigned first_line = 0;
     std::optional<unsigned> initial_line;
-    std::map<std::pair<std::string, std::string>, unsigned> line_of; ///< of each from and event
+    std::map<std::pair<std::string, std::string>, unsigned> line_of;  ///< of each from and event
 };
 
 /// A state's name; a finding when the machine's enumeration has no such label.
 std::string read_state(RowReader& cells, std::string_view column, const Machine& machine) {
     const std::string state = cells.identifier(column);
-    const bool known = machine.states == nullptr || state.empty() ||
-                       std::ranges::find(machine.states->enumeration, state, &EnumValue::label) !=
-                           machine.states->enumeration.end();
+    const bool known =
+        machine.states == nullptr || state.empty() ||
+        std::ranges::find(machine.states->enumeration, state, &EnumValue::label) != machine.states->enumeration.end();
     if (!known)
         cells.fault(std::string{column} + " " + in_quotes(state) + " is no label of the enumeration " +
                     in_quotes(machine.table.name));
@@ -49,8 +49,8 @@ void read_transition(RowReader& cells, Machine& machine) {
     if (row.from == row.to) cells.fault("from " + in_quotes(row.from) + " leads to itself: leave the row out");
     const auto [first, added] = machine.line_of.emplace(std::pair{row.from, row.event}, row.line);
     if (!added)
-        cells.fault("event " + in_quotes(row.event) + " leads from " + in_quotes(row.from) +
-                    " already, in line " + std::to_string(first->second));
+        cells.fault("event " + in_quotes(row.event) + " leads from " + in_quotes(row.from) + " already, in line " +
+                    std::to_string(first->second));
     machine.table.transitions.push_back(std::move(row));
 }
 
@@ -68,11 +68,10 @@ void check_reachable(const Machine& machine, Findings& findings) {
                                                  in_quotes(machine.table.initial));
 }
 
-} // namespace
+}  // namespace
 
-std::optional<std::vector<StateMachineTable>> read_state_machines(std::string_view text,
-                                                                  const std::vector<const Type*>* enumerations,
-                                                                  Findings& findings) {
+std::optional<std::vector<StateMachineTable>>
+read_state_machines(std::string_view text, const std::vector<const Type*>* enumerations, Findings& findings) {
     const auto table = Table::read(text, {"machine", "from", "event", "to", "note"}, findings);
     if (!table) return std::nullopt;
     if (table->rows().size() > transitions_max) {
@@ -81,7 +80,7 @@ std::optional<std::vector<StateMachineTable>> read_state_machines(std::string_vi
         return std::nullopt;
     }
     std::vector<Machine> machines;
-    bool sound = true; // what a broken row would have led to is not called unreachable as well
+    bool sound = true;  // what a broken row would have led to is not called unreachable as well
     for (const Sheet::Row& sheet_row : table->rows()) {
         const std::size_t before = findings.size();
         RowReader cells{*table, sheet_row, "machine", "machine", findings};
@@ -118,4 +117,4 @@ std::optional<std::vector<StateMachineTable>> read_state_machines(std::string_vi
     return tables;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -84,4 +84,4 @@ bool RowReader::yes_or_no(std::string_view column) {
     return cell == "yes";
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

@@ -52,4 +52,4 @@ class RowReader {
     std::string subject_;
 };
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

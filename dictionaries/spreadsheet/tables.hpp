@@ -13,8 +13,8 @@ namespace aeolis::dictionary {
 inline constexpr std::size_t timepoints_max = 1000;  ///< ours: ten times the landing's; numbers fit the command's range
 inline constexpr std::size_t anchors_max = 100;      ///< ours
 inline constexpr std::size_t parameters_max = 1000;  ///< ours
-inline constexpr std::size_t constraints_max = 1000; ///< ours: ten times the landing's
-inline constexpr std::size_t tones_count = 256;      ///< R31
+inline constexpr std::size_t constraints_max = 1000;  ///< ours: ten times the landing's
+inline constexpr std::size_t tones_count = 256;       ///< R31
 
 /// In topological order: parents before children, else as in the file. R12
 std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findings& findings);
@@ -22,18 +22,18 @@ std::optional<std::vector<AnchorRow>> read_anchors(std::string_view text, Findin
 /// By id. Every prime tone NAME has a Second Chance tone sc_NAME. R31, R35
 std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& findings);
 
-/// Each number of the waveform once, under its name and in its unit; tones orthogonal over a symbol, and no odd harmonic of
-/// one falls on another.
+/// Each number of the waveform once, under its name and in its unit; tones orthogonal over a symbol, and no odd
+/// harmonic of one falls on another.
 std::optional<MfskWaveform> read_mfsk(std::string_view text, Findings& findings);
 
 std::optional<std::vector<ParameterRow>> read_parameters(std::string_view text, Findings& findings);
 
-/// clock_correlation.csv, by valid_from: versions and times rise, rates are those of a clock, and where one row follows another
-/// both give the same SCET but for leap seconds and what a clock is off by.
+/// clock_correlation.csv, by valid_from: versions and times rise, rates are those of a clock, and where one row follows
+/// another both give the same SCET but for leap seconds and what a clock is off by.
 std::optional<std::vector<ClockRow>> read_clock_correlation(std::string_view text, Findings& findings);
 
-/// predicted_anchors.csv, by anchor: when each comes in the design, in seconds from entry. `anchors` null: unknown because
-/// their file could not be read, so names are not checked.
+/// predicted_anchors.csv, by anchor: when each comes in the design, in seconds from entry. `anchors` null: unknown
+/// because their file could not be read, so names are not checked.
 std::optional<std::vector<std::optional<double>>>
 read_predicted_anchors(std::string_view text, const std::vector<AnchorRow>* anchors, Findings& findings);
 
@@ -63,4 +63,4 @@ struct ConstraintContext {
 std::optional<std::vector<ConstraintRow>> read_constraints(std::string_view text, const ConstraintContext& context,
                                                            Findings& findings);
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

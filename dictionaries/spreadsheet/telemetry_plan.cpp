@@ -67,7 +67,7 @@ void check_complete(const std::vector<TelemetryPlanRow>& rows, const std::map<st
         }
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<TelemetryPlanRow>>
 read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, Findings& findings) {
@@ -95,4 +95,4 @@ read_telemetry_plan(std::string_view text, const std::vector<Packet>* packets, F
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

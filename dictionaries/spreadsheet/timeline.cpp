@@ -60,7 +60,7 @@ void read_backtrack(RowReader& cells, const LinesByName& all, const LinesByName&
                                             : "there is no timepoint " + in_quotes(row.backtrack) + " to backtrack to");
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, const TimelineContext& context,
                                                       Findings& findings) {
@@ -76,8 +76,7 @@ std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, con
     if (table->rows().empty()) findings.add(1, "the timeline has no timepoint");
 
     LinesByName all;
-    for (const Sheet::Row& row : table->rows())
-        all.emplace(row.cells[table->column("name")], row.line);
+    for (const Sheet::Row& row : table->rows()) all.emplace(row.cells[table->column("name")], row.line);
     LinesByName so_far;
     std::vector<TimelineRow> rows;
     for (const Sheet::Row& sheet_row : table->rows()) {
@@ -102,4 +101,4 @@ std::optional<std::vector<TimelineRow>> read_timeline(std::string_view text, con
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

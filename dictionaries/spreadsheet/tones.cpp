@@ -8,7 +8,7 @@
 namespace aeolis::dictionary {
 namespace {
 
-constexpr std::int64_t priority_max = 255; // ToneSelected holds it in an octet
+constexpr std::int64_t priority_max = 255;  // ToneSelected holds it in an octet
 
 struct Read {
     ToneRow tone;
@@ -64,7 +64,7 @@ void check_names(const std::vector<Read>& tones, Findings& findings) {
     }
 }
 
-} // namespace
+}  // namespace
 
 std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& findings) {
     const auto table =
@@ -89,10 +89,9 @@ std::optional<std::vector<ToneRow>> read_tones(std::string_view text, Findings& 
 
     std::vector<ToneRow> rows;
     rows.reserve(tones.size());
-    for (Read& read : tones)
-        rows.push_back(std::move(read.tone));
+    for (Read& read : tones) rows.push_back(std::move(read.tone));
     std::ranges::stable_sort(rows, {}, &ToneRow::id);
     return rows;
 }
 
-} // namespace aeolis::dictionary
+}  // namespace aeolis::dictionary

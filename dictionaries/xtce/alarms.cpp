@@ -88,8 +88,8 @@ Alarms read_one(pugi::xml_node element, const Type& type, Reporter& report) {
     return alarms;
 }
 
-std::vector<ContextAlarms> read_contexts(const Symbols& symbols, const Parameters& parameters, const Symbol& of, const Type& type,
-                                         Reporter& report) {
+std::vector<ContextAlarms> read_contexts(const Symbols& symbols, const Parameters& parameters, const Symbol& of,
+                                         const Type& type, Reporter& report) {
     const std::string name = "type " + in_quotes(type.name);
     const pugi::xml_node list = of.element.child("ContextAlarmList");
     report.expect(list, {"ContextAlarm"}, {});
@@ -104,12 +104,13 @@ std::vector<ContextAlarms> read_contexts(const Symbols& symbols, const Parameter
             for (const pugi::xml_node comparison : all.children("Comparison"))
                 if (auto condition = read_comparison(symbols, parameters, of.scope, comparison, name, report))
                     context.push_back(std::move(*condition));
-        if (!match.first_child()) report.fault(match ? match : element, name + ": a context alarm without ContextMatch");
+        if (!match.first_child())
+            report.fault(match ? match : element, name + ": a context alarm without ContextMatch");
     }
     return contexts;
 }
 
-} // namespace
+}  // namespace
 
 Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& report) {
     if (!default_alarm) return {};
@@ -119,7 +120,7 @@ Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& rep
 }
 
 void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporter& report) {
-    std::map<std::string, std::vector<ContextAlarms>> by_type; // each is read, and its faults told, once
+    std::map<std::string, std::vector<ContextAlarms>> by_type;  // each is read, and its faults told, once
     for (const auto& [path, parameter] : parameters.by_path) {
         if (!parameter.channel || !parameter.type) continue;
         const Symbol* symbol = symbols.find(Kind::parameter_type, path.substr(0, path.rfind('/')),
@@ -130,4 +131,4 @@ void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporte
     }
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

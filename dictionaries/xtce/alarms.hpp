@@ -13,4 +13,4 @@ Alarms read_alarms(pugi::xml_node default_alarm, const Type& type, Reporter& rep
 /// The ContextAlarmList of each channel's type, into the channel: the context compares other channels.
 void read_context_alarms(const Symbols& symbols, Parameters& parameters, Reporter& report);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -214,7 +214,8 @@ class CommandReader {
     }
 
     void read_precondition(const Symbol& symbol, pugi::xml_node comparison, Command& command) {
-        auto condition = read_comparison(symbols_, parameters_, symbol.scope, comparison, "command " + in_quotes(command.name), report_);
+        auto condition = read_comparison(symbols_, parameters_, symbol.scope, comparison,
+                                         "command " + in_quotes(command.name), report_);
         if (condition) command.preconditions.push_back(std::move(*condition));
     }
 
@@ -254,7 +255,7 @@ class CommandReader {
         const auto event = packets_.event_by_path.find(found->path);
         if (event != packets_.event_by_path.end()) return Verifier{{}, event->second, std::nullopt, *window_s};
         const auto is_declared = [&](const auto& e) { return e.name == name_of(found->element); };
-        if (std::ranges::none_of(packets_.declared_events, is_declared)) // else it has findings of its own
+        if (std::ranges::none_of(packets_.declared_events, is_declared))  // else it has findings of its own
             fault(container, command, in_quotes(reference) + " is no event");
         return std::nullopt;
     }
@@ -267,7 +268,7 @@ class CommandReader {
     std::map<Opcode, unsigned> opcode_lines_;
 };
 
-} // namespace
+}  // namespace
 
 std::vector<Command> read_commands(const Symbols& symbols, const Types& types, const Parameters& parameters,
                                    const Packets& packets, Reporter& report) {
@@ -277,4 +278,4 @@ std::vector<Command> read_commands(const Symbols& symbols, const Types& types, c
     return std::move(reader.commands);
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -10,4 +10,4 @@ namespace aeolis::dictionary::xtce {
 std::vector<Command> read_commands(const Symbols& symbols, const Types& types, const Parameters& parameters,
                                    const Packets& packets, Reporter& report);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

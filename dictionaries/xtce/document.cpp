@@ -27,7 +27,8 @@ std::unique_ptr<Document> Document::parse(const std::string& text, Findings& fin
     return document;
 }
 
-/// The root's prefix stands for XTCE, whatever it is called: "xtce:SpaceSystem". Elements of other prefixes keep theirs.
+/// The root's prefix stands for XTCE, whatever it is called: "xtce:SpaceSystem". Elements of other prefixes keep
+/// theirs.
 void Document::drop_prefix() {
     const std::string root = xml_.document_element().name();
     const std::size_t colon = root.find(':');
@@ -85,4 +86,4 @@ std::optional<std::int64_t> Reporter::integer(pugi::xml_node element, const char
     return std::nullopt;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

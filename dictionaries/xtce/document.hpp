@@ -56,4 +56,4 @@ inline std::string name_of(pugi::xml_node element) {
     return element.attribute("name").value();
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

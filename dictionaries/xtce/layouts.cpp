@@ -6,10 +6,10 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned base_depth_max = 16; // of base containers: ours; a longer chain can only be a cycle
+constexpr unsigned base_depth_max = 16;  // of base containers: ours; a longer chain can only be a cycle
 constexpr unsigned bits_max = static_cast<unsigned>(packet_octets_max - packet_crc_octets) * 8;
 
-} // namespace
+}  // namespace
 
 Layouts::Layouts(const Symbols& symbols, const Parameters& parameters, Reporter& report)
     : symbols_(symbols), parameters_(parameters), report_(report) {
@@ -162,4 +162,4 @@ void Layouts::read_entry(const Symbol& container, pugi::xml_node entry, Layout& 
     }
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

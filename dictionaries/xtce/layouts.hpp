@@ -11,17 +11,17 @@ namespace aeolis::dictionary::xtce {
 /// A parameter at its place in a packet.
 struct Placed {
     const Parameter* parameter = nullptr;
-    unsigned position_bits = 0; ///< from the first octet of the packet
+    unsigned position_bits = 0;  ///< from the first octet of the packet
     pugi::xml_node element;
 };
 
 /// A SequenceContainer with all that its base containers put before it.
 struct Layout {
-    bool sound = true; ///< false: something of it has findings; then nothing more is said about it
+    bool sound = true;  ///< false: something of it has findings; then nothing more is said about it
     bool abstract = false;
     std::vector<Placed> entries;
     unsigned end_bits = 0;
-    std::map<std::string, std::int64_t> conditions; ///< restriction criteria, by name of the parameter
+    std::map<std::string, std::int64_t> conditions;  ///< restriction criteria, by name of the parameter
 };
 
 /// Lays every container out, base containers first.
@@ -47,4 +47,4 @@ class Layouts {
     std::map<std::string, Layout> layouts_;
 };
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

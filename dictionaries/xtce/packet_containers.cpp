@@ -14,8 +14,13 @@ class ContainerReader {
 
     PacketContainer read(const Symbol& symbol) {
         const pugi::xml_node element = symbol.element;
-        PacketContainer container{name_of(element), symbol.path, parts_.report.line(element), element.attribute("abstract").as_bool(),
-                                  std::nullopt, {}, {}};
+        PacketContainer container{name_of(element),
+                                  symbol.path,
+                                  parts_.report.line(element),
+                                  element.attribute("abstract").as_bool(),
+                                  std::nullopt,
+                                  {},
+                                  {}};
         if (const pugi::xml_node base = element.child("BaseContainer")) {
             container.base = index_of(symbol, base);
             container.when = parts_.condition(symbol.scope, base.child("RestrictionCriteria"));
@@ -63,7 +68,8 @@ class ContainerReader {
             entry.when = parts_.condition(symbol.scope, include);
         if (const pugi::xml_node repeat = element.child("RepeatEntry")) {
             entry.count = parts_.amount(symbol.scope, repeat.child("Count"));
-            if (const pugi::xml_node offset = repeat.child("Offset")) entry.gap_bits = parts_.amount(symbol.scope, offset);
+            if (const pugi::xml_node offset = repeat.child("Offset"))
+                entry.gap_bits = parts_.amount(symbol.scope, offset);
         }
         return entry;
     }
@@ -75,7 +81,8 @@ class ContainerReader {
         if (from == "containerStart") {
             entry.from = PacketEntry::From::container_start;
         } else if (from != "previousEntry") {
-            parts_.report.fault(location, "a location from " + in_quotes(from) + " is not supported: packets are read up to it");
+            parts_.report.fault(location,
+                                "a location from " + in_quotes(from) + " is not supported: packets are read up to it");
             entry.what = PacketEntry::What::unknown;
         }
         entry.offset_bits = parts_.amount(symbol.scope, location);
@@ -85,7 +92,7 @@ class ContainerReader {
     std::map<std::string, std::size_t> containers_;
 };
 
-} // namespace
+}  // namespace
 
 std::vector<PacketContainer> read_model_containers(const ModelParts& parts) {
     ContainerReader reader{parts};
@@ -95,4 +102,4 @@ std::vector<PacketContainer> read_model_containers(const ModelParts& parts) {
     return containers;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

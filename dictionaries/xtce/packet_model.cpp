@@ -10,7 +10,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned condition_depth_max = 16; // ours, so that a hostile file cannot exhaust the stack
+constexpr unsigned condition_depth_max = 16;  // ours, so that a hostile file cannot exhaust the stack
 
 std::optional<Condition::Operator> operator_of(std::string_view word) {
     using enum Condition::Operator;
@@ -23,7 +23,7 @@ std::optional<Condition::Operator> operator_of(std::string_view word) {
     return std::nullopt;
 }
 
-} // namespace
+}  // namespace
 
 ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols(symbols_in), report(report_in) {
     for (const Symbol& symbol : symbols.all())
@@ -32,11 +32,13 @@ ModelParts::ModelParts(const Symbols& symbols_in, Reporter& report_in) : symbols
 
 /// Whether the parameter's type has members that `path` ("flags/valid") leads to.
 bool ModelParts::has_member(const Symbol& parameter, std::string_view path) const {
-    const Symbol* type = symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
+    const Symbol* type =
+        symbols.find(Kind::parameter_type, parameter.scope, parameter.element.attribute("parameterTypeRef").value());
     while (type != nullptr && !path.empty()) {
         const std::string name{path.substr(0, path.find('/'))};
         path.remove_prefix(std::min(path.size(), name.size() + 1));
-        const pugi::xml_node member = type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
+        const pugi::xml_node member =
+            type->element.child("MemberList").find_child_by_attribute("Member", "name", name.c_str());
         if (!member) return false;
         const char* attribute = member.attribute("typeRef") ? "typeRef" : "parameterTypeRef";
         type = symbols.find(Kind::parameter_type, type->scope, member.attribute(attribute).value());
@@ -71,7 +73,8 @@ Condition ModelParts::comparison(const std::string& scope, pugi::xml_node elemen
     Condition condition{.form = Condition::Form::unknown};
     const auto found = parameter(scope, element, "parameterRef");
     const auto op = operator_of(element.attribute("comparisonOperator").value());
-    if (!op) report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
+    if (!op)
+        report.fault(element, "operator " + in_quotes(element.attribute("comparisonOperator").value()) + " is unknown");
     if (!found || !op) return condition;
     condition.form = Condition::Form::compare;
     condition.parameter = found->parameter;
@@ -127,7 +130,8 @@ Condition ModelParts::condition(const std::string& scope, pugi::xml_node parent)
     for (const pugi::xml_node child : parent.children()) {
         if (child.type() != pugi::node_element) continue;
         if (found.form != Condition::Form::always)
-            report.fault(child, std::string{child.name()} + " beside another condition is not supported: it is left out");
+            report.fault(child,
+                         std::string{child.name()} + " beside another condition is not supported: it is left out");
         else
             found = part(scope, child, 0);
     }
@@ -192,10 +196,11 @@ std::optional<PacketModel> read_packet_model(const std::string& text, Findings& 
         if (symbol.kind == Kind::parameter)
             model.parameters.push_back(
                 {name_of(symbol.element), symbol.path, types.of(symbol.scope, symbol.element, "parameterTypeRef"),
-                 parts.condition(symbol.scope, symbol.element.child("ParameterProperties").child("ValidityCondition"))});
+                 parts.condition(symbol.scope,
+                                 symbol.element.child("ParameterProperties").child("ValidityCondition"))});
     model.containers = read_model_containers(parts);
     model.types = std::move(types.types);
     return model;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -19,19 +19,19 @@ struct Condition {
     enum class Form : std::uint8_t {
         always,
         compare,
-        all, ///< of `parts`
+        all,  ///< of `parts`
         any,
-        unknown, ///< not supported: taken as false
+        unknown,  ///< not supported: taken as false
     };
     enum class Operator : std::uint8_t { equal, not_equal, less, less_or_equal, greater, greater_or_equal };
 
     Form form = Form::always;
     std::vector<Condition> parts{};
-    std::size_t parameter = 0; ///< in PacketModel::parameters; its latest value in the packet
-    std::string member{};      ///< of what is composed: ".flags.valid", as the decoder names it
+    std::size_t parameter = 0;  ///< in PacketModel::parameters; its latest value in the packet
+    std::string member{};       ///< of what is composed: ".flags.valid", as the decoder names it
     bool calibrated = true;
     Operator op = Operator::equal;
-    std::string value{}; ///< a number or a label
+    std::string value{};  ///< a number or a label
 };
 
 /// A number of bits, octets or repetitions: fixed, or computed from the packet.
@@ -40,21 +40,21 @@ struct Amount {
         Condition when{};
         double value = 0.0;
     };
-    std::optional<std::size_t> parameter{}; ///< intercept + slope × its value
-    std::string member{};                   ///< of what is composed: ".length"
+    std::optional<std::size_t> parameter{};  ///< intercept + slope × its value
+    std::string member{};                    ///< of what is composed: ".length"
     bool calibrated = true;
     double slope = 1.0;
-    double intercept = 0.0; ///< without parameter: the number itself
-    std::vector<Case> cases{}; ///< where there are any: that of the first that holds
-    bool known = true;       ///< false: not supported
+    double intercept = 0.0;     ///< without parameter: the number itself
+    std::vector<Case> cases{};  ///< where there are any: that of the first that holds
+    bool known = true;          ///< false: not supported
 
     static Amount fixed(double value) { return {.intercept = value}; }
 };
 
 struct Calibration {
-    std::vector<double> polynomial{};                ///< coefficient of each power
-    std::vector<std::pair<double, double>> spline{}; ///< raw, calibrated; sorted; straight lines between
-    bool flat = false;                             ///< spline of order 0: steps
+    std::vector<double> polynomial{};                 ///< coefficient of each power
+    std::vector<std::pair<double, double>> spline{};  ///< raw, calibrated; sorted; straight lines between
+    bool flat = false;                                ///< spline of order 0: steps
     bool empty() const { return polynomial.empty() && spline.empty(); }
 };
 
@@ -64,29 +64,40 @@ struct Coding {
         twos_complement,
         ones_complement,
         sign_and_magnitude,
-        bcd, ///< a decimal digit each four bits
+        bcd,  ///< a decimal digit each four bits
         ieee754,
         mil1750a,
         text,
         octets,
     };
     Form form = Form::unsigned_integer;
-    Amount bits{};                              ///< of text and octets: without what ends or precedes them
+    Amount bits{};  ///< of text and octets: without what ends or precedes them
     bool least_significant_octet_first = false;
     bool least_significant_bit_first = false;
-    std::optional<std::uint8_t> terminator{};   ///< text ends with it; `bits` is the most it may take
-    unsigned leading_size_bits = 0;           ///< text: its number of bits stands before it, in so many
-    bool boxed = true; ///< text takes `bits`, wherever it ends in them; else only what it needs
+    std::optional<std::uint8_t> terminator{};  ///< text ends with it; `bits` is the most it may take
+    unsigned leading_size_bits = 0;            ///< text: its number of bits stands before it, in so many
+    bool boxed = true;                         ///< text takes `bits`, wherever it ends in them; else only what it needs
     Calibration calibration{};
     struct Context {
         Condition when;
         Calibration calibration;
     };
-    std::vector<Context> contexts{}; ///< the first that holds is taken instead
+    std::vector<Context> contexts{};  ///< the first that holds is taken instead
 };
 
 struct PacketType {
-    enum class Kind : std::uint8_t { integer, real, enumerated, boolean, text, octets, time, aggregate, array, unknown };
+    enum class Kind : std::uint8_t {
+        integer,
+        real,
+        enumerated,
+        boolean,
+        text,
+        octets,
+        time,
+        aggregate,
+        array,
+        unknown
+    };
     struct Label {
         std::int64_t first = 0;
         std::int64_t last = 0;
@@ -99,25 +110,25 @@ struct PacketType {
 
     std::string name{};
     unsigned line = 0;
-    Kind kind = Kind::unknown; ///< unknown: not supported; a packet is read up to where it stands
-    std::string unit{};        ///< the first one; empty: the file says none
+    Kind kind = Kind::unknown;  ///< unknown: not supported; a packet is read up to where it stands
+    std::string unit{};         ///< the first one; empty: the file says none
     Coding coding{};
     std::vector<Label> labels{};
-    std::string zero = "False", one = "True"; ///< of a boolean
+    std::string zero = "False", one = "True";  ///< of a boolean
     double time_offset_s = 0.0, time_scale_s = 1.0;
-    bool relative = false;   ///< of a time: a duration, or a time since something other than an epoch
-    std::string epoch{};       ///< of a time: "UNIX", "TAI", "GPS", "J2000", a date; empty: the file does not say
-    std::optional<std::size_t> time_since{}; ///< of a time: counts from the time in this parameter
+    bool relative = false;  ///< of a time: a duration, or a time since something other than an epoch
+    std::string epoch{};    ///< of a time: "UNIX", "TAI", "GPS", "J2000", a date; empty: the file does not say
+    std::optional<std::size_t> time_since{};  ///< of a time: counts from the time in this parameter
     std::vector<Member> members{};
-    std::size_t element = 0;          ///< type of an array's elements
-    std::vector<Amount> last_indices{}; ///< of an array's dimensions, which begin at 0
+    std::size_t element = 0;             ///< type of an array's elements
+    std::vector<Amount> last_indices{};  ///< of an array's dimensions, which begin at 0
 };
 
 struct PacketParameter {
     std::string name;
-    std::string path; ///< "/MSL/Events/opcode": no other has it
-    std::size_t type = 0; ///< in PacketModel::types
-    Condition valid{};    ///< where it does not hold, the value is undefined
+    std::string path;      ///< "/MSL/Events/opcode": no other has it
+    std::size_t type = 0;  ///< in PacketModel::types
+    Condition valid{};     ///< where it does not hold, the value is undefined
 };
 
 struct PacketEntry {
@@ -125,23 +136,23 @@ struct PacketEntry {
     enum class From : std::uint8_t { previous, container_start };
 
     What what = What::unknown;
-    std::size_t index = 0; ///< of the parameter or container
+    std::size_t index = 0;  ///< of the parameter or container
     From from = From::previous;
     Amount offset_bits = Amount::fixed(0);
     Condition when{};
     Amount count = Amount::fixed(1);
-    Amount gap_bits = Amount::fixed(0);   ///< between repetitions
-    std::vector<Amount> last_indices{};     ///< of an array that is given its dimensions here
+    Amount gap_bits = Amount::fixed(0);  ///< between repetitions
+    std::vector<Amount> last_indices{};  ///< of an array that is given its dimensions here
     unsigned line = 0;
 };
 
 struct PacketContainer {
     std::string name;
-    std::string path; ///< as of parameters
+    std::string path;  ///< as of parameters
     unsigned line = 0;
     bool abstract = false;
     std::optional<std::size_t> base;
-    Condition when; ///< on what the base holds
+    Condition when;  ///< on what the base holds
     std::vector<PacketEntry> entries;
 };
 
@@ -155,4 +166,4 @@ struct PacketModel {
 /// None when the text is no XTCE at all; what is not supported, and what is wrong, are findings with their line.
 std::optional<PacketModel> read_packet_model(const std::string& text, Findings& findings);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

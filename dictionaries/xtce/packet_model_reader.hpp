@@ -17,7 +17,7 @@ class ModelParts {
 
     struct Reference {
         std::size_t parameter = 0;
-        std::string member; ///< ".flags.valid" for "STATUS/flags/valid"
+        std::string member;  ///< ".flags.valid" for "STATUS/flags/valid"
     };
     std::optional<Reference> parameter(const std::string& scope, pugi::xml_node at, const char* attribute) const;
     /// The children of `parent`: Comparison, ComparisonList, BooleanExpression, or nothing.
@@ -70,4 +70,4 @@ std::vector<PacketContainer> read_model_containers(const ModelParts& parts);
 /// One at most for each dimension: DimensionList, or those that the type counts.
 std::vector<Amount> read_last_indices(const ModelParts& parts, const std::string& scope, pugi::xml_node list);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -8,8 +8,8 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned type_depth_max = 16;       // ours: types within types, and types of types
-constexpr std::int64_t exponent_max = 32;     // ours: of a polynomial
+constexpr unsigned type_depth_max = 16;    // ours: types within types, and types of types
+constexpr std::int64_t exponent_max = 32;  // ours: of a polynomial
 constexpr std::size_t label_values_max = 1U << 20U;
 
 PacketType::Kind model_kind_of(std::string_view element) {
@@ -44,7 +44,7 @@ std::optional<Coding::Form> real_form(std::string_view word, std::int64_t bits) 
     return std::nullopt;
 }
 
-} // namespace
+}  // namespace
 
 std::size_t ModelTypes::of(const std::string& scope, pugi::xml_node at, const char* reference) {
     const std::string word = at.attribute(reference).value();
@@ -81,25 +81,18 @@ PacketType ModelTypes::read(const Symbol& symbol) {
     case PacketType::Kind::unknown:
         parts_.report.fault(element, std::string{element.name()} + " is unknown or not supported");
         return type;
-    case PacketType::Kind::aggregate:
-        read_members(symbol, type);
-        return type;
+    case PacketType::Kind::aggregate: read_members(symbol, type); return type;
     case PacketType::Kind::array:
         type.element = of(symbol.scope, element, "arrayTypeRef");
         type.last_indices = read_last_indices(parts_, symbol.scope, element.child("DimensionList"));
         return type;
-    case PacketType::Kind::time:
-        read_time(symbol, type);
-        return type;
-    case PacketType::Kind::enumerated:
-        read_labels(element, type);
-        break;
+    case PacketType::Kind::time: read_time(symbol, type); return type;
+    case PacketType::Kind::enumerated: read_labels(element, type); break;
     case PacketType::Kind::boolean:
         type.zero = element.attribute("zeroStringValue").as_string(type.zero.c_str());
         type.one = element.attribute("oneStringValue").as_string(type.one.c_str());
         break;
-    default:
-        break;
+    default: break;
     }
     read_coding(symbol, element, type);
     return type;
@@ -114,10 +107,11 @@ void ModelTypes::read_coding(const Symbol& symbol, pugi::xml_node holder, Packet
         type.coding.bits = parts_.amount(symbol.scope, coding.child("SizeInBits"));
         for (const char* algorithm : {"FromBinaryTransformAlgorithm", "ToBinaryTransformAlgorithm"})
             if (const pugi::xml_node found = coding.child(algorithm))
-                parts_.report.fault(found, std::string{algorithm} + " is not supported: the octets are given as they are");
+                parts_.report.fault(found,
+                                    std::string{algorithm} + " is not supported: the octets are given as they are");
         return;
     }
-    if (symbol.element.attribute("baseType")) return; // that of its base
+    if (symbol.element.attribute("baseType")) return;  // that of its base
     parts_.report.fault(holder, "type " + in_quotes(type.name) + " has no data encoding that is supported");
     type.kind = PacketType::Kind::unknown;
 }
@@ -149,7 +143,8 @@ void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
     const std::string_view order = coding.attribute("byteOrder").value();
     into.least_significant_octet_first = order == "leastSignificantByteFirst";
     if (!order.empty() && order != "leastSignificantByteFirst" && order != "mostSignificantByteFirst")
-        parts_.report.fault(coding, "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
+        parts_.report.fault(coding,
+                            "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
     // 1.0 and 1.1 list the octets, each with its significance.
     std::vector<int> significances;
     for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
@@ -170,8 +165,8 @@ void ModelTypes::read_text(const Symbol& symbol, pugi::xml_node coding, PacketTy
     const pugi::xml_node variable = coding.child("Variable");
     if (!size) size = variable;
     type.coding.bits = Amount::fixed(variable.attribute("maxSizeInBits").as_double(8.0 * 65536));
-    type.coding.boxed =
-        size.child("Fixed") || size.child("FixedValue") || size.child("DynamicValue") || size.child("DiscreteLookupList");
+    type.coding.boxed = size.child("Fixed") || size.child("FixedValue") || size.child("DynamicValue") ||
+                        size.child("DiscreteLookupList");
     if (type.coding.boxed) type.coding.bits = parts_.amount(symbol.scope, size);
     if (const pugi::xml_node leading = size.child("LeadingSize"))
         type.coding.leading_size_bits = leading.attribute("sizeInBitsOfSizeTag").as_uint(16);
@@ -221,10 +216,12 @@ Calibration ModelTypes::calibration(pugi::xml_node calibrator) {
         std::ranges::sort(result.spline);
         const int order = spline.attribute("order").as_int(1);
         result.flat = order == 0;
-        if (order > 1) parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
+        if (order > 1)
+            parts_.report.fault(spline, "a spline of order " + std::to_string(order) + " is read as straight lines");
         return result;
     }
-    parts_.report.fault(calibrator, "a calibrator that is neither polynomial nor spline is not supported: values stay raw");
+    parts_.report.fault(calibrator,
+                        "a calibrator that is neither polynomial nor spline is not supported: values stay raw");
     return result;
 }
 
@@ -236,7 +233,8 @@ void ModelTypes::read_labels(pugi::xml_node element, PacketType& type) {
             parts_.report.fault(entry, "its value is not a whole number");
             continue;
         }
-        if (type.labels.size() < label_values_max) type.labels.push_back({*first, *last, entry.attribute("label").value()});
+        if (type.labels.size() < label_values_max)
+            type.labels.push_back({*first, *last, entry.attribute("label").value()});
     }
 }
 
@@ -270,13 +268,15 @@ void ModelTypes::read_reference_time(const Symbol& symbol, PacketType& type) {
         else
             type.relative = true;
         if (found && !found->member.empty())
-            parts_.report.fault(since, "a time since a member is not supported: it is given without what it counts from");
+            parts_.report.fault(since,
+                                "a time since a member is not supported: it is given without what it counts from");
     }
 }
 
 void ModelTypes::read_members(const Symbol& symbol, PacketType& type) {
     for (const pugi::xml_node member : symbol.element.child("MemberList").children("Member"))
-        type.members.push_back({name_of(member), of(symbol.scope, member, member.attribute("typeRef") ? "typeRef" : "parameterTypeRef")});
+        type.members.push_back(
+            {name_of(member), of(symbol.scope, member, member.attribute("typeRef") ? "typeRef" : "parameterTypeRef")});
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -9,17 +9,17 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr std::int64_t apid_max = 0x7FE; // 7FF is idle [ccsds-133.0-b-2]
+constexpr std::int64_t apid_max = 0x7FE;  // 7FF is idle [ccsds-133.0-b-2]
 constexpr std::int64_t event_id_max = 0xFFFF;
 constexpr unsigned header_bits = static_cast<unsigned>(tm_data_offset_octets) * 8;
 
 constexpr std::array event_levels{std::pair{"FATAL", EventLevel::fatal},
-                            std::pair{"WARNING_HI", EventLevel::warning_hi},
-                            std::pair{"WARNING_LO", EventLevel::warning_lo},
-                            std::pair{"COMMAND", EventLevel::command},
-                            std::pair{"ACTIVITY_HI", EventLevel::activity_hi},
-                            std::pair{"ACTIVITY_LO", EventLevel::activity_lo},
-                            std::pair{"DIAGNOSTIC", EventLevel::diagnostic}};
+                                  std::pair{"WARNING_HI", EventLevel::warning_hi},
+                                  std::pair{"WARNING_LO", EventLevel::warning_lo},
+                                  std::pair{"COMMAND", EventLevel::command},
+                                  std::pair{"ACTIVITY_HI", EventLevel::activity_hi},
+                                  std::pair{"ACTIVITY_LO", EventLevel::activity_lo},
+                                  std::pair{"DIAGNOSTIC", EventLevel::diagnostic}};
 
 std::string ancillary(pugi::xml_node container, std::string_view name) {
     for (const pugi::xml_node data : container.child("AncillaryDataSet").children("AncillaryData"))
@@ -87,8 +87,7 @@ class PacketReader {
     std::vector<Field> fields(const Layout& layout) {
         std::vector<Field> all;
         std::set<std::string> flags;
-        for (const Placed& placed : layout.entries)
-            flags.insert(placed.parameter->valid_by);
+        for (const Placed& placed : layout.entries) flags.insert(placed.parameter->valid_by);
         for (const Placed& placed : layout.entries) {
             const Parameter& parameter = *placed.parameter;
             if (placed.position_bits < header_bits || flags.contains(parameter.path) || parameter.type->binary)
@@ -199,7 +198,7 @@ class PacketReader {
     std::map<std::string, unsigned> names_;
 };
 
-} // namespace
+}  // namespace
 
 Packets read_packets(const Symbols& symbols, const Parameters& parameters, const Layouts& layouts, Reporter& report) {
     PacketReader reader{parameters, report};
@@ -211,4 +210,4 @@ Packets read_packets(const Symbols& symbols, const Parameters& parameters, const
     return std::move(reader.result);
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

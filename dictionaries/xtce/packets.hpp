@@ -25,4 +25,4 @@ struct Packets {
 
 Packets read_packets(const Symbols& symbols, const Parameters& parameters, const Layouts& layouts, Reporter& report);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -8,7 +8,7 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr std::size_t channels_max = 4096; // ours
+constexpr std::size_t channels_max = 4096;  // ours
 constexpr std::array comparisons{"==", "!=", "<", "<=", ">", ">="};
 
 /// A label of the parameter's enumeration, or a number.
@@ -93,10 +93,11 @@ class Channels {
     std::map<std::string, unsigned> names_;
 };
 
-} // namespace
+}  // namespace
 
-std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters, const std::string& scope,
-                                            pugi::xml_node comparison, const std::string& of, Reporter& report) {
+std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters,
+                                            const std::string& scope, pugi::xml_node comparison, const std::string& of,
+                                            Reporter& report) {
     report.expect(comparison, {}, {"parameterRef", "value", "comparisonOperator", "useCalibratedValue"});
     const auto fault = [&](const std::string& message) {
         report.fault(comparison, of + ": " + message);
@@ -110,7 +111,7 @@ std::optional<Precondition> read_comparison(const Symbols& symbols, const Parame
     Precondition condition{*parameter.channel, comparison.attribute("comparisonOperator").as_string("=="), 0.0, {}};
     if (std::ranges::find(comparisons, condition.comparison) == comparisons.end())
         return fault("comparison " + in_quotes(condition.comparison) + " is unknown");
-    if (!parameter.type) return std::nullopt; // that has been told
+    if (!parameter.type) return std::nullopt;  // that has been told
     const std::string word = comparison.attribute("value").value();
     const auto value = value_of(parameter, word);
     if (!value) return fault("value " + in_quotes(word) + " is neither a number nor a label");
@@ -144,4 +145,4 @@ Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter&
     return parameters;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -12,9 +12,9 @@ namespace aeolis::dictionary::xtce {
 struct Parameter {
     std::string name;
     std::string path;
-    std::optional<Type> type; ///< none: its type has findings
+    std::optional<Type> type;  ///< none: its type has findings
     std::optional<ChannelId> channel;
-    std::string valid_by; ///< path of the flag that says whether the value is defined; empty: always
+    std::string valid_by;  ///< path of the flag that says whether the value is defined; empty: always
     pugi::xml_node element;
 };
 
@@ -27,9 +27,10 @@ struct Parameters {
 
 /// A Comparison of a channel with a number or a label; none, with a finding that begins with `of`, when it is wrong.
 /// @param scope  path of the SpaceSystem in which it stands
-std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters, const std::string& scope,
-                                            pugi::xml_node comparison, const std::string& of, Reporter& report);
+std::optional<Precondition> read_comparison(const Symbols& symbols, const Parameters& parameters,
+                                            const std::string& scope, pugi::xml_node comparison, const std::string& of,
+                                            Reporter& report);
 
 Parameters read_parameters(const Symbols& symbols, const Types& types, Reporter& report);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

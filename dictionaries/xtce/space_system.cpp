@@ -14,8 +14,7 @@ void check_channels_carried(const Parameters& parameters, const Symbols& symbols
     for (const Symbol& symbol : symbols.all()) {
         if (symbol.kind != Kind::container) continue;
         all_sound = all_sound && layouts.of(symbol).sound;
-        for (const Placed& placed : layouts.of(symbol).entries)
-            carried.insert(placed.parameter);
+        for (const Placed& placed : layouts.of(symbol).entries) carried.insert(placed.parameter);
     }
     if (!all_sound) return;
     for (const auto& [path, parameter] : parameters.by_path)
@@ -23,7 +22,7 @@ void check_channels_carried(const Parameters& parameters, const Symbols& symbols
             report.fault(parameter.element, "channel " + in_quotes(parameter.name) + " is in no packet");
 }
 
-} // namespace
+}  // namespace
 
 std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& findings) {
     const auto document = Document::parse(text, findings);
@@ -48,4 +47,4 @@ std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& 
     return system;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

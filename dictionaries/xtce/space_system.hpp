@@ -20,10 +20,10 @@ struct SpaceSystem {
     std::vector<Packet> packets;
     std::vector<Event> events;
     std::vector<Command> commands;
-    std::vector<DeclaredEvent> declared_events; ///< also those with findings
+    std::vector<DeclaredEvent> declared_events;  ///< also those with findings
 };
 
 /// None, with a finding, when the text is no XTCE at all. [xtce-1.2], the part of it that docs/decisions/0002 names.
 std::optional<SpaceSystem> read_space_system(const std::string& text, Findings& findings);
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

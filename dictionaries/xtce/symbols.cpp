@@ -3,9 +3,10 @@
 namespace aeolis::dictionary::xtce {
 namespace {
 
-constexpr unsigned system_depth_max = 8; // of nested SpaceSystems: ours, so that a hostile file cannot exhaust the stack
+constexpr unsigned system_depth_max =
+    8;  // of nested SpaceSystems: ours, so that a hostile file cannot exhaust the stack
 
-} // namespace
+}  // namespace
 
 Symbols::Symbols(const Document& document, Reporter& report) {
     read_space_system(document.space_system(), "", 0, report);
@@ -16,8 +17,10 @@ void Symbols::read_space_system(pugi::xml_node system, const std::string& outer,
         report.fault(system, "SpaceSystems are nested deeper than " + std::to_string(system_depth_max));
         return;
     }
-    report.expect(system, {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
-                  {"name", "shortDescription", "xmlns", "xmlns:xtce", "xmlns:xsi", "xsi:schemaLocation"});
+    report.expect(
+        system,
+        {"LongDescription", "AncillaryDataSet", "Header", "TelemetryMetaData", "CommandMetaData", "SpaceSystem"},
+        {"name", "shortDescription", "xmlns", "xmlns:xtce", "xmlns:xsi", "xsi:schemaLocation"});
     const std::string scope = outer + "/" + name_of(system);
 
     const pugi::xml_node telemetry = system.child("TelemetryMetaData");
@@ -70,4 +73,4 @@ const Symbol* Symbols::find(Kind kind, const std::string& scope, std::string_vie
     return nullptr;
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -14,8 +14,8 @@ enum class Kind { parameter_type, argument_type, parameter, container, command, 
 /// Something with a name in a SpaceSystem, where it stands, and its element.
 struct Symbol {
     Kind kind{};
-    std::string path;  ///< "/MSL/Events/COMMAND_ACCEPTED"
-    std::string scope; ///< path of its SpaceSystem
+    std::string path;   ///< "/MSL/Events/COMMAND_ACCEPTED"
+    std::string scope;  ///< path of its SpaceSystem
     pugi::xml_node element;
 };
 
@@ -39,4 +39,4 @@ class Symbols {
     std::map<std::pair<Kind, std::string>, std::size_t> by_path_;
 };
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

@@ -23,13 +23,11 @@ std::optional<ValueKind> kind_of(std::string_view element) {
 /// Smallest and largest number that the encoding can hold.
 std::pair<double, double> encodable(const Type& type) {
     switch (type.encoding) {
-    case Encoding::unsigned_integer:
-        return {0.0, std::ldexp(1.0, static_cast<int>(type.bits)) - 1.0};
+    case Encoding::unsigned_integer: return {0.0, std::ldexp(1.0, static_cast<int>(type.bits)) - 1.0};
     case Encoding::twos_complement:
         return {-std::ldexp(1.0, static_cast<int>(type.bits) - 1),
                 std::ldexp(1.0, static_cast<int>(type.bits) - 1) - 1.0};
-    case Encoding::ieee754:
-        break;
+    case Encoding::ieee754: break;
     }
     const double largest =
         type.bits == 32 ? double{std::numeric_limits<float>::max()} : std::numeric_limits<double>::max();
@@ -192,7 +190,7 @@ class TypeReader {
         const auto [least, most] = encodable(type_);
         if (type_.valid_min && type_.valid_max && *type_.valid_min > *type_.valid_max) {
             fault(range, "minInclusive is above maxInclusive");
-            type_.valid_min = type_.valid_max = std::nullopt; // so that no default is said to be outside
+            type_.valid_min = type_.valid_max = std::nullopt;  // so that no default is said to be outside
         } else if (type_.calibrator.empty() &&
                    (type_.valid_min.value_or(least) < least || type_.valid_max.value_or(most) > most))
             fault(range, "the valid range does not fit " + std::to_string(type_.bits) + " bits");
@@ -203,7 +201,7 @@ class TypeReader {
     Type type_;
 };
 
-} // namespace
+}  // namespace
 
 Types::Types(const Symbols& symbols, Reporter& report) : symbols_(symbols) {
     std::map<std::string, unsigned> enumerations;
@@ -235,4 +233,4 @@ std::optional<Type> Types::of(Kind kind, const std::string& scope, pugi::xml_nod
     return types_.at(std::pair{kind, symbol->path});
 }
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

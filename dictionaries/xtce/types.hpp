@@ -22,4 +22,4 @@ class Types {
     std::map<std::pair<Kind, std::string>, std::optional<Type>> types_;
 };
 
-} // namespace aeolis::dictionary::xtce
+}  // namespace aeolis::dictionary::xtce

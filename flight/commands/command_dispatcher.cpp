@@ -54,7 +54,8 @@ void CommandDispatcher::on(const UplinkReceived& uplink, Outbox& out) {
 void CommandDispatcher::take_frame(const TcFrame& frame, Outbox& out) {
     const auto refused = [&](FrameRefusal why) {
         if (!is_deaf())
-            out.event(evr::UPLINK_FRAME_REFUSED{.frame = frame.header.sequence, .frame_refusal = why, .expected_frame = farm_.clcw().expected});
+            out.event(evr::UPLINK_FRAME_REFUSED{
+                .frame = frame.header.sequence, .frame_refusal = why, .expected_frame = farm_.clcw().expected});
     };
     switch (farm_.take(frame)) {
     case Farm::Verdict::accepted: return take_packet(frame.data, out);

@@ -13,11 +13,12 @@ namespace aeolis::flight {
 /// Takes uplinked units apart, CLTU, frame and packet, and sends each command to the one module that owns it.
 ///
 /// In      UplinkReceived (any octets), CommandOutcome from the owner, Resume when Second Chance takes over
-/// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason; UplinkStatus,
+/// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason;
+/// UplinkStatus,
 ///         by which ground learns what to send again
 /// Faults  whatever cannot be read is refused with its reason; nothing is acted on before it is read whole. R3, R23
-///         After a restart of the computer nothing in sequence is taken until ground unlocks the channel: it sees that by the
-///         status. So no command is carried out twice because its frame was sent again
+///         After a restart of the computer nothing in sequence is taken until ground unlocks the channel: it sees that
+///         by the status. So no command is carried out twice because its frame was sent again
 class CommandDispatcher {
   public:
     explicit CommandDispatcher(const Load& load) : role_(load.role) {}
@@ -34,7 +35,8 @@ class CommandDispatcher {
     bool is_for_this_computer(Opcode opcode) const;
 
     Role role_;
-    Farm farm_{{.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true}};
+    Farm farm_{
+        {.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true}};
     bool in_control_ = false;  ///< as Second Chance
     std::uint16_t refused_ = 0;
 };

@@ -9,7 +9,8 @@ namespace aeolis::flight {
 /// FARM-1: which telecommand frames of one virtual channel are taken, and what ground is told of it. [ccsds-232.1-b-2]
 ///
 /// In      frames whose CRC is right                          Out   a verdict each; the CLCW at any time
-/// Rule    A frames in sequence only, none twice; B frames always; a sequence far from the expected one locks the channel
+/// Rule    A frames in sequence only, none twice; B frames always; a sequence far from the expected one locks the
+/// channel
 ///         until ground unlocks it
 /// Memory  this object. What is accepted is handed on at once, so that the wait flag is never raised
 /// Faults  a frame of another spacecraft or channel, or a control command that is none, is refused and changes nothing
@@ -20,17 +21,17 @@ class Farm {
         std::uint16_t spacecraft = 0;
         std::uint8_t virtual_channel = 0;
         std::uint8_t window = 128;
-        /// Nothing in sequence is taken before ground has unlocked the channel: who has forgotten the sequence must not take for
-        /// new what it took before.
+        /// Nothing in sequence is taken before ground has unlocked the channel: who has forgotten the sequence must not
+        /// take for new what it took before.
         bool locked_at_start = false;
     };
 
     enum class Verdict : std::uint8_t {
-        accepted,          ///< its data are to be acted on
-        executed,          ///< a control command: this object did it
-        repeated,          ///< taken already
-        out_of_sequence,   ///< one before it is missing: ground is asked to send again from there
-        locked_out,        ///< so far from the sequence that the channel is locked, or was locked already
+        accepted,         ///< its data are to be acted on
+        executed,         ///< a control command: this object did it
+        repeated,         ///< taken already
+        out_of_sequence,  ///< one before it is missing: ground is asked to send again from there
+        locked_out,       ///< so far from the sequence that the channel is locked, or was locked already
         not_for_this_channel,
         no_such_control,
     };
@@ -40,7 +41,8 @@ class Farm {
     }
 
     constexpr Verdict take(const TcFrame& frame) {
-        if (frame.header.spacecraft != settings_.spacecraft || frame.header.virtual_channel != settings_.virtual_channel)
+        if (frame.header.spacecraft != settings_.spacecraft ||
+            frame.header.virtual_channel != settings_.virtual_channel)
             return Verdict::not_for_this_channel;
         if (frame.header.control) return frame.header.bypass ? execute(frame.data) : Verdict::no_such_control;
         if (frame.header.bypass) {

@@ -3,7 +3,7 @@
 namespace aeolis::flight {
 namespace {
 
-constexpr double answer_first_s = 2.0;  // ours: that ground hears of it before both computers start anew
+constexpr double answer_first_s = 2.0;      // ours: that ground hears of it before both computers start anew
 constexpr std::int64_t status_every_s = 5;  // ours: the backup's own telemetry takes a hundredth of the link
 
 void resume(const StateFrame& state, ResumeReason reason, Outbox& out) {

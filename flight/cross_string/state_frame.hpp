@@ -17,7 +17,7 @@ struct StateHeader {
     bool begun = false;          ///< "do edl" was accepted
     bool pre_edl = true;
     bool touchdown = false;
-    UnitSelection units{};       ///< that are addressed
+    UnitSelection units{};  ///< that are addressed
 
     template <typename Exchange>
     void carry(Exchange& exchange) {

@@ -5,11 +5,12 @@
 
 namespace aeolis::flight {
 
-/// The descent engines and the bridle's brake, on the 64 Hz bus. In the rate group: it confirms every tick, idle or not.
-/// R5, R10, R22
+/// The descent engines and the bridle's brake, on the 64 Hz bus. In the rate group: it confirms every tick, idle or
+/// not. R5, R10, R22
 ///
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
-/// Out     engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when the engines start to run,
+/// Out     engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when the engines start to
+/// run,
 ///         and when the bridle is payed out; Confirm
 /// Faults  engines that do not run and a bridle that stops answer nobody: the timeline's time-out does
 class DescentEngines {

@@ -47,30 +47,41 @@ class UnitSelection {
 
 /// One reading of the IMU, 200 Hz: what it integrated since the reading before, in B.
 struct ImuSample {
-    std::uint32_t count = 0;             ///< 200 Hz count since the unit was started
-    std::array<double, 3> delta_v_mps{};  ///< specific force × time
+    std::uint32_t count = 0;                  ///< 200 Hz count since the unit was started
+    std::array<double, 3> delta_v_mps{};      ///< specific force × time
     std::array<double, 3> delta_angle_rad{};  ///< rate relative to inertial space × time
 };
 
 /// Attitude at start, from cruise attitude determination (star scanner): sent once a second until separation.
 struct CruiseAttitude {
     std::array<double, 4> q_MB{1, 0, 0, 0};
-    Sclk at{}; ///< the tick of which it is
+    Sclk at{};  ///< the tick of which it is
 };
 
 /// One velocity and slant-range measurement of the landing radar along one beam.
 struct RadarBeam {
-    std::uint8_t beam = 0;                    ///< 0 … 5
-    std::array<double, 3> direction_B{};      ///< unit, from the vehicle towards the ground
+    std::uint8_t beam = 0;                ///< 0 … 5
+    std::array<double, 3> direction_B{};  ///< unit, from the vehicle towards the ground
     bool valid = false;
     double range_m = 0.0;
-    double range_rate_mps = 0.0;              ///< positive: the range grows
+    double range_rate_mps = 0.0;  ///< positive: the range grows
 };
 
 enum class PyroId : std::uint8_t {
-    cruise_cable_cutter, cruise_stage_separation, cruise_balance_1, cruise_balance_2, entry_balance_1, entry_balance_2,
-    entry_balance_3, parachute_mortar, heatshield_separation, engine_valves, backshell_separation, rover_separation,
-    bridle_cutter, coolant_vent,
+    cruise_cable_cutter,
+    cruise_stage_separation,
+    cruise_balance_1,
+    cruise_balance_2,
+    entry_balance_1,
+    entry_balance_2,
+    entry_balance_3,
+    parachute_mortar,
+    heatshield_separation,
+    engine_valves,
+    backshell_separation,
+    rover_separation,
+    bridle_cutter,
+    coolant_vent,
 };
 inline constexpr std::size_t pyro_count = 14;
 
@@ -79,7 +90,7 @@ inline constexpr std::size_t pyro_count = 14;
 struct PyroReply {
     PyroId pyro{};
     bool fired = false;
-    Unit unit = Unit::a;              ///< that answered
+    Unit unit = Unit::a;  ///< that answered
 };
 enum class SwitchId : std::uint8_t { radar, uhf, descent_imu, entry_antenna, parachute_antenna, thruster_heaters };
 inline constexpr std::size_t switch_count = 6;
@@ -94,21 +105,21 @@ constexpr Device switched_by(SwitchId id) {
 }
 struct SwitchReply {
     SwitchId id{};
-    bool on = false;                  ///< as it is now
+    bool on = false;  ///< as it is now
     Unit unit = Unit::a;
     bool refused = false;
 };
 struct EngineReply {
     bool running = false;
-    double thrust_N = 0.0;            ///< sum of the engines, as their pressure sensors tell
+    double thrust_N = 0.0;  ///< sum of the engines, as their pressure sensors tell
 };
 struct ThrusterReply {
-    bool enabled = false;             ///< as it is now
+    bool enabled = false;  ///< as it is now
     Unit unit = Unit::a;
     bool refused = false;
 };
 struct BridleReply {
-    double payed_out_m = 0.0;         ///< 0 … 7.5
+    double payed_out_m = 0.0;  ///< 0 … 7.5
 };
 
 /// The spacecraft's own monitors, outside EDL: whether something is broken that must be put right first. R24
@@ -129,18 +140,18 @@ using StateOctets = FixedVector<std::uint8_t, state_octets_max>;
 
 /// Everything that reaches the computer with one tick of its clock.
 struct DeviceInputs {
-    Sclk now;                                     ///< the tick
-    bool prime_is_b = false;                      ///< the latch that designates the prime computer. R1
-    StateOctets cross_string;                     ///< what the other computer sent in the cycle before; empty: nothing
-    StateOctets restart_record;                   ///< once, in the first cycle after a restart, if there is one
-    FixedVector<ImuSample, 4> imu;                ///< 3 or 4 in a cycle
+    Sclk now;                       ///< the tick
+    bool prime_is_b = false;        ///< the latch that designates the prime computer. R1
+    StateOctets cross_string;       ///< what the other computer sent in the cycle before; empty: nothing
+    StateOctets restart_record;     ///< once, in the first cycle after a restart, if there is one
+    FixedVector<ImuSample, 4> imu;  ///< 3 or 4 in a cycle
     std::optional<CruiseAttitude> cruise_attitude;
-    FixedVector<RadarBeam, 6> radar;              ///< each beam at 20 Hz
+    FixedVector<RadarBeam, 6> radar;  ///< each beam at 20 Hz
     FixedVector<PyroReply, 8> pyro_replies;
     FixedVector<SwitchReply, 8> switch_replies;
-    std::optional<EngineReply> engines;           ///< each cycle once valves are open
-    std::optional<ThrusterReply> thrusters;       ///< on change
-    std::optional<BridleReply> bridle;            ///< each cycle after rover separation
+    std::optional<EngineReply> engines;             ///< each cycle once valves are open
+    std::optional<ThrusterReply> thrusters;         ///< on change
+    std::optional<BridleReply> bridle;              ///< each cycle after rover separation
     std::optional<SystemFaultReport> system_fault;  ///< each second while there is one, and once when it is over
     FixedVector<UplinkPacket, 2> uplink;
     std::uint32_t nvm_used_octets = 0;
@@ -149,10 +160,10 @@ struct DeviceInputs {
 
 // ---- from the computer -----------------------------------------------------------------------------------------
 
-/// How long each entry thruster burns in the cycle that begins when this arrives; a driver that is told nothing closes its
-/// valves. flight/devices/effectors.hpp says where they are.
+/// How long each entry thruster burns in the cycle that begins when this arrives; a driver that is told nothing closes
+/// its valves. flight/devices/effectors.hpp says where they are.
 struct ThrusterCommand {
-    std::array<double, 8> on_s{}; ///< 0 … 1/64 s
+    std::array<double, 8> on_s{};  ///< 0 … 1/64 s
     bool operator==(const ThrusterCommand&) const = default;
 };
 struct EngineCommand {
@@ -179,22 +190,22 @@ using SwitchCommands = FixedVector<SwitchCommand, 8>;
 
 /// Everything that leaves the computer in one cycle.
 struct DeviceOutputs {
-    UnitSelection units;                                       ///< to which the commands of this cycle are addressed
-    FixedVector<PyroId, 8> pyros;                              ///< fire
-    SwitchCommands switches;                                   ///< of power
-    SwitchCommands telecom;                                    ///< of the radio
+    UnitSelection units;           ///< to which the commands of this cycle are addressed
+    FixedVector<PyroId, 8> pyros;  ///< fire
+    SwitchCommands switches;       ///< of power
+    SwitchCommands telecom;        ///< of the radio
     std::optional<bool> thrusters_enabled;
     ThrusterCommand thrusters;
     EngineCommand engines;
     bool pay_out_bridle = false;
-    std::optional<ToneId> tone;                                ///< what X-band sends during this cycle; none: carrier only
-    OctetBuffer<65536> nvm;                                    ///< packets to append to the recording, in order
-    OctetBuffer<8192> uhf;                                     ///< PLTUs to radiate; their packets are a subset of what was recorded
-    StateOctets cross_string;                                  ///< to the other computer; empty: nothing in this cycle
-    StateOctets restart_record;                                ///< to be kept in place of the one before; empty: keep
-    std::optional<bool> designate_b_prime;                     ///< set the latch
-    bool in_command = false;                                   ///< the bus listens to this computer
-    bool wants_restart_record = false;                         ///< starting: with the next tick, please
+    std::optional<ToneId> tone;             ///< what X-band sends during this cycle; none: carrier only
+    OctetBuffer<65536> nvm;                 ///< packets to append to the recording, in order
+    OctetBuffer<8192> uhf;                  ///< PLTUs to radiate; their packets are a subset of what was recorded
+    StateOctets cross_string;               ///< to the other computer; empty: nothing in this cycle
+    StateOctets restart_record;             ///< to be kept in place of the one before; empty: keep
+    std::optional<bool> designate_b_prime;  ///< set the latch
+    bool in_command = false;                ///< the bus listens to this computer
+    bool wants_restart_record = false;      ///< starting: with the next tick, please
 
     /// Back to nothing commanded, for the next cycle; units and engines keep their last command.
     void begin_cycle() {

@@ -4,38 +4,37 @@
 #include <cstddef>
 #include <numbers>
 
-// Where the thrusters and the descent engines sit and which way they push: the one drawing that the software steers by and
-// the simulated vehicle is built from. Frame B, from the centre of mass [m]. Nothing of it is published: all of it is ours,
-// but for the numbers of effectors and their forces. [facts] Vehicle
+// Where the thrusters and the descent engines sit and which way they push: the one drawing that the software steers by
+// and the simulated vehicle is built from. Frame B, from the centre of mass [m]. Nothing of it is published: all of it
+// is ours, but for the numbers of effectors and their forces. [facts] Vehicle
 namespace aeolis::flight {
 
 struct Effector {
     std::array<double, 3> position_B_m{};
-    std::array<double, 3> direction_B{}; ///< of the force on the vehicle, unit
+    std::array<double, 3> direction_B{};  ///< of the force on the vehicle, unit
 };
 
 inline constexpr std::size_t thruster_count = 8;
 inline constexpr std::size_t engine_count = 8;
 inline constexpr double thruster_force_N = 302.0;
-inline constexpr double thruster_least_on_s = 0.004; ///< a valve cannot be quicker. Ours
+inline constexpr double thruster_least_on_s = 0.004;  ///< a valve cannot be quicker. Ours
 
 namespace effector_detail {
-
 
 /// Unit vectors at a mount, by its azimuth about z.
 struct Mount {
     double outward_x = 0.0, outward_y = 0.0;
 };
 constexpr Mount mount(std::size_t number) {
-    constexpr double half = std::numbers::sqrt2 / 2.0; // all mounts lie on diagonals
+    constexpr double half = std::numbers::sqrt2 / 2.0;  // all mounts lie on diagonals
     constexpr Mount mounts[] = {{half, half}, {-half, half}, {-half, -half}, {half, -half}};
     return mounts[number];
 }
 
-} // namespace effector_detail
+}  // namespace effector_detail
 
-/// Entry thrusters: at four mounts on the backshell two each, which push against each other along the rim. Even: towards
-/// growing azimuth (right-handed about z); odd: against it.
+/// Entry thrusters: at four mounts on the backshell two each, which push against each other along the rim. Even:
+/// towards growing azimuth (right-handed about z); odd: against it.
 constexpr std::array<Effector, thruster_count> entry_thrusters() {
     constexpr double radius_m = 1.6, behind_m = 1.5;
     std::array<Effector, thruster_count> all{};
@@ -51,7 +50,7 @@ constexpr std::array<Effector, thruster_count> entry_thrusters() {
 /// Descent engines: at four corners two each, canted a little along the rim, so that they turn the vehicle about z too.
 /// Numbered so that every other one, the four that fly the sky crane, are one of each corner and balance about z.
 constexpr std::array<Effector, engine_count> descent_engines() {
-    constexpr double radius_m = 1.5, sine = 0.087, cosine = 0.9962082; // 5°
+    constexpr double radius_m = 1.5, sine = 0.087, cosine = 0.9962082;  // 5°
     constexpr double senses[] = {1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0};
     std::array<Effector, engine_count> all{};
     for (std::size_t i = 0; i < engine_count; ++i) {
@@ -67,9 +66,9 @@ struct Gyration {
     double along_z_m = 0.0, across_m = 0.0;
 };
 inline constexpr Gyration gyration_with_cruise_stage{1.35, 1.35};
-inline constexpr Gyration gyration_of_entry_vehicle{1.26, 1.17}; // [facts] Vehicle: 4500 … 5500, 3800 … 4800 kg m²
+inline constexpr Gyration gyration_of_entry_vehicle{1.26, 1.17};  // [facts] Vehicle: 4500 … 5500, 3800 … 4800 kg m²
 inline constexpr Gyration gyration_without_heatshield{1.20, 1.15};
 inline constexpr Gyration gyration_of_stage_with_rover{1.05, 1.00};
 inline constexpr Gyration gyration_of_stage{0.95, 0.85};
 
-} // namespace aeolis::flight
+}  // namespace aeolis::flight

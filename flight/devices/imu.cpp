@@ -31,7 +31,8 @@ void ImuManager::watch_rate(Sclk now, Outbox& out) {
     samples_in_second_ = static_cast<std::uint16_t>(samples_in_second_ + latest_.samples.size());
     if (at_resolution(now, 1) != now) return;
     if (whole_second_ && samples_in_second_ < samples_per_second)
-        out.event(evr::IMU_SAMPLES_MISSING{.count = static_cast<std::uint16_t>(samples_per_second - samples_in_second_)});
+        out.event(
+            evr::IMU_SAMPLES_MISSING{.count = static_cast<std::uint16_t>(samples_per_second - samples_in_second_)});
     whole_second_ = true;
     samples_in_second_ = 0;
 }

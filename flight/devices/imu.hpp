@@ -25,7 +25,7 @@ class ImuManager {
 
     ImuReadings latest_;
     Unit unit_ = Unit::a;
-    bool whole_second_ = false;            // the second under way was counted from its start
+    bool whole_second_ = false;  // the second under way was counted from its start
     std::uint16_t samples_in_second_ = 0;
 };
 

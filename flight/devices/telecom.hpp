@@ -6,8 +6,8 @@
 namespace aeolis::flight {
 
 /// Telecom settings, on the 8 Hz bus: the UHF transmitter, and the antenna of UHF and X-band, which the X-band unit
-/// selects. An owner of its own, beside power: power decides whether a box has current, telecom what the radio does with
-/// it. Outside the rate group. R5, R10, R28
+/// selects. An owner of its own, beside power: power decides whether a box has current, telecom what the radio does
+/// with it. Outside the rate group. R5, R10, R28
 ///
 /// In      SetSwitch, SwitchReply (interrupt), UnitsSelected
 /// Out     switch commands; ActionReply to Edl when the radio is as commanded

@@ -22,9 +22,9 @@ class Thrusters {
     void on(const Tick& tick, Outbox& out);
 
   private:
-    ThrusterCommand thrusters_;      // of the next tick, then none
-    std::optional<bool> enable_;     // to be commanded at the next tick
-    std::optional<bool> awaited_;    // what the reply that is due should say
+    ThrusterCommand thrusters_;    // of the next tick, then none
+    std::optional<bool> enable_;   // to be commanded at the next tick
+    std::optional<bool> awaited_;  // what the reply that is due should say
     Unit unit_ = Unit::a;
 };
 

@@ -39,7 +39,8 @@ packet::UnitsHeld held(const UnitSelection& units) {
 }  // namespace
 
 void UnitSelector::on(const SelectUnitsCommand& command, Outbox& out) {
-    if (edl_begun_) return out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::wrong_phase});
+    if (edl_begun_)
+        return out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, CommandRefusal::wrong_phase});
     select(selection_of(command.arguments), out);
     out.event(evr::UNITS_SELECTED{});
     out.send(ModuleId::command_dispatcher, CommandOutcome{command.tag, std::nullopt});

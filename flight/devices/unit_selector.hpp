@@ -8,9 +8,11 @@ namespace aeolis::flight {
 /// The one owner of the choice between redundant units. Each device manager addresses the unit that it is told; none
 /// changes over by itself, and from "do edl" on the choice stands: EDL has no time to switch. R2, R5
 ///
-/// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (as prime held them, for a computer that
+/// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (as prime held them, for a
+/// computer that
 ///         takes over)
-/// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels of
+/// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels
+/// of
 ///         the choice, each 10 s and when it changes, but none from a computer that only follows or stands by
 /// Faults  a selection after "do edl" is refused (wrong_phase): nothing is changed
 class UnitSelector {

@@ -118,8 +118,7 @@ void announce_bank_reversal(const gnc::Output& gnc, Outbox& out) {
 }
 
 void explain(gnc::Trigger trigger, const gnc::Output& gnc, std::uint16_t suppressed, Outbox& out) {
-    out.record(
-        explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span(), suppressed));
+    out.record(explanation(decision_of(trigger), ExplanationVerdict::fired, 0, gnc.conditions.span(), suppressed));
 }
 
 void explain_held(const gnc::Output& gnc, HeldExplanations& held, Outbox& out) {
@@ -147,8 +146,8 @@ void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, Mayb
     conditions.push_back(is(Quantity::parameters_received, refused == CommandRefusal::no_parameters ? 0.0 : 1.0, 1.0));
     if (refused == CommandRefusal::inhibited) conditions.push_back(is(Quantity::fault_inhibit, 1.0, 0.0));
     if (entry.defined())
-        conditions.push_back(at_most(Quantity::time_to_entry_s, entry.get()->seconds - now_s,
-                                     parameters.late_cruise_before_entry_s));
+        conditions.push_back(
+            at_most(Quantity::time_to_entry_s, entry.get()->seconds - now_s, parameters.late_cruise_before_entry_s));
     if (first_desired.defined())
         conditions.push_back(
             below(Quantity::clock_sclk, now_s, first_desired.get()->seconds - parameters.do_edl_margin_s));

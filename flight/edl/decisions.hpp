@@ -45,7 +45,6 @@ class PeakDeceleration {
 };
 
 /// Why "do edl" was accepted or refused. R23
-void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired,
-                    Outbox& out);
+void explain_do_edl(std::optional<CommandRefusal> refused, MaybeTime entry, MaybeTime first_desired, Outbox& out);
 
 }  // namespace aeolis::flight

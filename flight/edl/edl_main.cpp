@@ -9,7 +9,6 @@
 namespace aeolis::flight {
 namespace {
 
-
 void answer(Outbox& out, const CommandTag& tag, std::optional<CommandRefusal> refused) {
     out.send(ModuleId::command_dispatcher, CommandOutcome{tag, refused});
 }
@@ -42,7 +41,8 @@ void EdlMain::on(const Tick& tick, Outbox& out) {
     explain_held(output_, held_, out);
     if (timeline_.begun() && !inhibited_) explain_held(timeline_, held_, out);
     update_phase(tick.now, out);
-    // After a restart it learns in its second cycle what it was about: until then it would speak of a vehicle that has not begun.
+    // After a restart it learns in its second cycle what it was about: until then it would speak of a vehicle that has
+    // not begun.
     if (!after_restart) record_channels(tick.now, out);
     constraint_monitor_.report(out);
     tell_state(tick.now, out);
@@ -104,9 +104,9 @@ void EdlMain::run_gnc(Sclk now, Outbox& out) {
     if (configuration_.radar_on) {
         const auto& p = output_.p_MoB_M_m;
         const double radius_m = std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-        out.send(ModuleId::edl_bg,
-                 NavigatedAttitude{output_.q_MB, {p[0] / radius_m, p[1] / radius_m, p[2] / radius_m},
-                                   output_.radar_locked});
+        out.send(
+            ModuleId::edl_bg,
+            NavigatedAttitude{output_.q_MB, {p[0] / radius_m, p[1] / radius_m, p[2] / radius_m}, output_.radar_locked});
     }
 }
 

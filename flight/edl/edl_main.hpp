@@ -61,8 +61,8 @@ class EdlMain {
     /// Not what is told again anyway (a fault that is present), nor what watches only (constraint_monitor.hpp).
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_, was_pre_edl_,
-                 was_late_cruise_);
+        exchange(parameters_, timeline_, configuration_, gnc_, peak_deceleration_, mode_, phase_, bridle_m_,
+                 was_pre_edl_, was_late_cruise_);
     }
 
     const Timeline& timeline() const { return timeline_; }
@@ -111,7 +111,7 @@ class EdlMain {
     std::uint32_t cycle_count_ = 0;
     bool inhibited_ = false;
     bool designation_pending_ = false;  // both computers are about to start anew: nothing begins before that
-    bool refused_to_hold_ = false;  // told once a fault, not once a report
+    bool refused_to_hold_ = false;      // told once a fault, not once a report
     // As of the cycle before: their ends are events.
     bool was_pre_edl_ = true;
     bool was_late_cruise_ = false;

@@ -29,14 +29,15 @@ inline gnc::Solution solution_of(const command::EDL_SET_PARAMETERS& p) {
     return solution;
 }
 
-/// Whether GNC can fly from there. Each argument of a command is inside its own range already; these are what only several
-/// together show, and what the moment does.
+/// Whether GNC can fly from there. Each argument of a command is inside its own range already; these are what only
+/// several together show, and what the moment does.
 inline bool possible(const command::EDL_SET_PARAMETERS& p, Sclk now) {
     const double radius_m = std::hypot(p.position_x_m, p.position_y_m, p.position_z_m);
     const double speed_mps = std::hypot(p.velocity_x_mps, p.velocity_y_mps, p.velocity_z_mps);
     return radius_m >= parameters.solution_radius_min_m && radius_m <= parameters.solution_radius_max_m &&
-           speed_mps <= parameters.solution_speed_max_mps && p.entry_sclk > now.seconds && p.entry_sclk <= std::numeric_limits<std::uint32_t>::max() &&
-           p.epoch_sclk <= p.entry_sclk && std::abs(p.epoch_sclk - now.seconds) <= parameters.solution_age_max_s;
+           speed_mps <= parameters.solution_speed_max_mps && p.entry_sclk > now.seconds &&
+           p.entry_sclk <= std::numeric_limits<std::uint32_t>::max() && p.epoch_sclk <= p.entry_sclk &&
+           std::abs(p.epoch_sclk - now.seconds) <= parameters.solution_age_max_s;
 }
 
 }  // namespace aeolis::flight

@@ -10,7 +10,8 @@
 #include <span>
 
 // Data products: tables too large for one packet. Each row is the data field of a packet of the dictionary, so that the
-// ground reads it by the same words. A product goes as parts of equal size, each with its number and the CRC of all. R30
+// ground reads it by the same words. A product goes as parts of equal size, each with its number and the CRC of all.
+// R30
 namespace aeolis::flight {
 
 /// Every firing of the timeline so far, as it was reported.

@@ -7,10 +7,12 @@
 namespace aeolis::flight {
 namespace {
 
-static_assert(packet::CommStatusB::octets == packet::CommStatus::octets && packet::SyncStatusB::octets == packet::SyncStatus::octets,
+static_assert(packet::CommStatusB::octets == packet::CommStatus::octets &&
+                  packet::SyncStatusB::octets == packet::SyncStatus::octets,
               "the same fields, under names of computer B");
 
-/// What both computers say of themselves at all times has names of its own for each; all else is the vehicle's, whoever flies it.
+/// What both computers say of themselves at all times has names of its own for each; all else is the vehicle's, whoever
+/// flies it.
 Apid apid_of(String string, Apid apid) {
     if (string == String::a) return apid;
     if (apid == packet::CommStatus::apid) return packet::CommStatusB::apid;
@@ -75,11 +77,14 @@ void EdlComm::offer_to_link(const TelemetryPlanRow& plan, Stream& stream, const 
 
 void EdlComm::radiate(Outbox& out) {
     // A link that was idle does not save up more than one frame.
-    constexpr std::size_t saved_octets = pltu_overhead_octets + std::max(frame_packets_octets, telemetry_packet_octets_max);
+    constexpr std::size_t saved_octets =
+        pltu_overhead_octets + std::max(frame_packets_octets, telemetry_packet_octets_max);
     credit_octets_ = std::min(credit_octets_, static_cast<double>(saved_octets)) + octets_per_cycle_;
     while (!queue_.empty()) {
         const std::size_t wanted_octets = pltu_overhead_octets + frame_wanted_octets();
-        if (static_cast<double>(wanted_octets) > credit_octets_ || out.bus().uhf.size() + wanted_octets > out.bus().uhf.capacity()) break;
+        if (static_cast<double>(wanted_octets) > credit_octets_ ||
+            out.bus().uhf.size() + wanted_octets > out.bus().uhf.capacity())
+            break;
         send_frame(out);
     }
     // The episode is over when half of the room is free again; ours, so that it is not said at every packet.
@@ -87,13 +92,15 @@ void EdlComm::radiate(Outbox& out) {
 }
 
 std::size_t EdlComm::frame_wanted_octets() const {
-    return std::max<std::size_t>(queue_.front().size, std::min<std::size_t>(queue_.waiting_octets(), frame_packets_octets));
+    return std::max<std::size_t>(queue_.front().size,
+                                 std::min<std::size_t>(queue_.waiting_octets(), frame_packets_octets));
 }
 
 void EdlComm::send_frame(Outbox& out) {
     auto& uhf = out.bus().uhf;
     const auto affordable = static_cast<std::size_t>(credit_octets_) - pltu_overhead_octets;
-    const std::size_t room = std::min({affordable, uhf.capacity() - uhf.size() - pltu_overhead_octets, proximity_data_octets_max});
+    const std::size_t room =
+        std::min({affordable, uhf.capacity() - uhf.size() - pltu_overhead_octets, proximity_data_octets_max});
     FixedVector<std::uint8_t, proximity_data_octets_max> packets;
     while (!queue_.empty() && packets.size() + queue_.front().size <= room) {
         packets.append(queue_.front().span());

@@ -15,16 +15,18 @@ namespace aeolis::flight {
 /// for bit, as fast as the link is. R29, R30
 ///
 /// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
-/// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1 Hz; data
+/// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
+/// Hz; data
 ///         products
 /// Memory  192 packets wait for the link; see RealtimeQueue for what gives way. Never the recording, never the cycle
 /// Faults  the queue for the link full: said once an episode (UHF_QUEUE_FULL), counted by priority in CommStatus
 ///         NVM nearly full: said once (NVM_FULL, and by tone); the last 64 KiB are kept for what goes first
 ///         A record that no packet can hold is refused as an unexpected message
-/// Whole packets go together in a Proximity-1 frame, expedited, of this computer's own physical channel. When more waits, a
-/// frame is not sent before it can hold 256 octets (ours: at 8 kb/s a quarter of a second, and 5 % for the frame itself).
-/// What computer B says of itself goes as CommStatusB and SyncStatusB, so that a channel is of one computer.
-/// Records are packets, each with a CRC-16 over all of it; NVM is outside the computer and outlives its resets.
+/// Whole packets go together in a Proximity-1 frame, expedited, of this computer's own physical channel. When more
+/// waits, a frame is not sent before it can hold 256 octets (ours: at 8 kb/s a quarter of a second, and 5 % for the
+/// frame itself). What computer B says of itself goes as CommStatusB and SyncStatusB, so that a channel is of one
+/// computer. Records are packets, each with a CRC-16 over all of it; NVM is outside the computer and outlives its
+/// resets.
 class EdlComm {
   public:
     explicit EdlComm(const Load& load);

@@ -24,7 +24,8 @@ struct TelemetryPacket {
 /// What was chosen for the link and waits for it. The most important go first, of equals the oldest. R30
 ///
 /// Memory   192 packets (ours: at 8 kb/s some 20 s of the link). When all are taken the least important gives way, of
-///          equals the oldest: old real time is worth least; a newcomer less important than all that wait does not enter.
+///          equals the oldest: old real time is worth least; a newcomer less important than all that wait does not
+///          enter.
 /// Nothing is lost by that but real time: what is here is in the recording already.
 class RealtimeQueue {
   public:

@@ -11,7 +11,8 @@ namespace aeolis::flight {
 ///
 /// In       a decision that is held in this cycle, with its conditions          Out   Explanation, verdict held
 /// Limit    once in 4 s for a decision (ours: the console shows one for 5 s), two a second over all decisions (ours: a
-///          quarter of the 8 kb/s link); what is not told is counted, and the decision's next explanation says how often
+///          quarter of the 8 kb/s link); what is not told is counted, and the decision's next explanation says how
+///          often
 /// Memory   fixed; a decision's count stands until it is told
 class HeldExplanations {
   public:

@@ -54,8 +54,8 @@ void CfdpSource::send_again(const cfdp::Range& asked) {
 }
 
 std::size_t CfdpSource::put(const cfdp::Content& content, std::span<std::uint8_t> into) const {
-    return cfdp::write({{.source = file_.source, .sequence = file_.sequence, .destination = file_.destination}, content},
-                       into);
+    return cfdp::write(
+        {{.source = file_.source, .sequence = file_.sequence, .destination = file_.destination}, content}, into);
 }
 
 std::size_t CfdpSource::next(std::span<const std::uint8_t> file, std::span<std::uint8_t> into) {

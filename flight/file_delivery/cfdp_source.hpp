@@ -22,14 +22,14 @@ namespace aeolis::flight {
 class CfdpSource {
   public:
     static constexpr std::size_t ranges_max = 512;
-    static constexpr std::size_t name_octets_max = 64; ///< ours
+    static constexpr std::size_t name_octets_max = 64;  ///< ours
 
     struct File {
-        std::uint16_t source = 0;      ///< entity ids
+        std::uint16_t source = 0;  ///< entity ids
         std::uint16_t destination = 0;
-        std::uint32_t sequence = 0;    ///< of the transaction
+        std::uint32_t sequence = 0;  ///< of the transaction
         std::uint32_t octets = 0;
-        std::uint16_t segment_octets = 900; ///< of file data in one PDU
+        std::uint16_t segment_octets = 900;  ///< of file data in one PDU
     };
     /// The name is the same at both ends.
     CfdpSource(const File& file, std::string_view name);
@@ -42,9 +42,9 @@ class CfdpSource {
     /// No answer has come in the time that it takes: the end of the file is announced again.
     void repeat();
 
-    bool done() const { return finished_ && !finished_ack_due_; } ///< the receiver has said how it ended
-    bool delivered() const { return delivered_; }                 ///< and it has the whole file
-    std::uint32_t sent_octets() const { return sent_octets_; }    ///< of the file, each counted once
+    bool done() const { return finished_ && !finished_ack_due_; }  ///< the receiver has said how it ended
+    bool delivered() const { return delivered_; }                  ///< and it has the whole file
+    std::uint32_t sent_octets() const { return sent_octets_; }     ///< of the file, each counted once
     std::uint32_t to_repeat_octets() const;
 
     /// Room that every PDU of this file finds.

@@ -40,14 +40,17 @@ void RecordingDelivery::on(std::span<const std::uint8_t> pltu) {
         open = true;
     }
     const bool ended = pdu->header.toward_sender && std::holds_alternative<cfdp::Finished>(pdu->content);
-    if (ended && !open) static_cast<void>(ends_to_acknowledge_.try_push_back(static_cast<std::uint32_t>(pdu->header.sequence)));
+    if (ended && !open)
+        static_cast<void>(ends_to_acknowledge_.try_push_back(static_cast<std::uint32_t>(pdu->header.sequence)));
 }
 
 bool RecordingDelivery::any_open() const {
     return std::any_of(open_.begin(), open_.end(), [](const auto& file) { return file.has_value(); });
 }
 
-bool RecordingDelivery::waits_for_answers() const { return any_open(); }
+bool RecordingDelivery::waits_for_answers() const {
+    return any_open();
+}
 
 void RecordingDelivery::repeat() {
     for (auto& file : open_)

@@ -19,7 +19,7 @@ namespace {
 constexpr double cycle_s = seconds_per_tick;
 constexpr double bank_before_guidance_rad = parameters.bank_before_guidance_deg * degree;
 
-} // namespace
+}  // namespace
 
 EdlGnc::EdlGnc(const Load& load)
     : load_(load), mass_kg_(load.powered_descent_mass_kg), steering_(load.engine_max_thrust_N) {
@@ -47,8 +47,8 @@ void EdlGnc::on(const CruiseAttitude& attitude) {
     take_cruise_attitude();
 }
 
-// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come there, and brought up to
-// them when it comes a little late.
+// It is as of its tick, and the vehicle still spins, 3 mrad a tick: taken when the increments have come there, and
+// brought up to them when it comes a little late.
 void EdlGnc::take_cruise_attitude() {
     if (!cruise_attitude_ || (navigating_ && cruise_attitude_->at > navigated_to_)) return;
     const CruiseAttitude attitude = *std::exchange(cruise_attitude_, std::nullopt);
@@ -56,7 +56,8 @@ void EdlGnc::take_cruise_attitude() {
     if (cruise_stage_gone_ || age_s > parameters.tick_apart_max_s) return;
     const Vector3 turned = strapdown_.rate_B_rps() * age_s;
     const double angle = turned.norm();
-    const Quaternion since = angle > 0.0 ? Quaternion{Eigen::AngleAxisd{angle, turned / angle}} : Quaternion::Identity();
+    const Quaternion since =
+        angle > 0.0 ? Quaternion{Eigen::AngleAxisd{angle, turned / angle}} : Quaternion::Identity();
     strapdown_.set_attitude((to_quaternion(attitude.q_MB) * since).normalized());
 }
 
@@ -72,14 +73,16 @@ void EdlGnc::on(const RadarSolution& solution) {
 void EdlGnc::navigate(std::span<const ImuSample> imu, Sclk now) {
     if (!navigating_) return;
     const double passed_s = now - navigated_to_;
-    if (passed_s <= 0.0) return; // a solution was just taken in, as of now: these increments lie before it
+    if (passed_s <= 0.0) return;  // a solution was just taken in, as of now: these increments lie before it
     navigated_to_ = now;
     if (imu.empty()) strapdown_.coast(passed_s);
     const bool pushed = measured_.altitude_m < parameters.air_altitude_max_m || now <= pulses_felt_until_;
     for (const ImuSample& sample : imu) {
         const Vector3 force_B = to_vector(sample.delta_v_mps) / imu_period_s;
-        smooth_force_B_mps2_ += imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
-        strapdown_.on(sample, pushed || smooth_force_B_mps2_.squaredNorm() > parameters.push_felt_mps2 * parameters.push_felt_mps2);
+        smooth_force_B_mps2_ +=
+            imu_period_s / (parameters.push_filter_time_s + imu_period_s) * (force_B - smooth_force_B_mps2_);
+        strapdown_.on(sample, pushed || smooth_force_B_mps2_.squaredNorm() >
+                                            parameters.push_felt_mps2 * parameters.push_felt_mps2);
     }
 }
 
@@ -166,7 +169,7 @@ void EdlGnc::follow_configuration(const Configuration& configuration, Sclk now) 
     if (configuration.sky_crane_started && take(Event::throttled_down, now)) rate_control_.start();
     if (configuration.touchdown_declared) take(Event::touchdown_declared, now);
     if (configuration.flyaway_started && take(Event::flyaway_started, now))
-        mass_kg_ -= load_.rover_mass_kg; // the bridle is cut before fly-away starts
+        mass_kg_ -= load_.rover_mass_kg;  // the bridle is cut before fly-away starts
 }
 
 // Entry and parachute: decisions by what is navigated.
@@ -209,8 +212,7 @@ void EdlGnc::decide_in_air(const Configuration& configuration, Sclk now, Output&
     const double needed_m = triggers::backshell_altitude_needed_m(backshell, m.descent_rate_mps);
     const auto held = low_for_backshell_.on(m.altitude_m <= needed_m);
     if (configuration.engines_primed)
-        fire(Trigger::backshell,
-             triggers::backshell(m.altitude_m, m.descent_rate_mps, backshell, held), out);
+        fire(Trigger::backshell, triggers::backshell(m.altitude_m, m.descent_rate_mps, backshell, held), out);
 }
 
 // Powered descent and sky crane.
@@ -239,8 +241,8 @@ void EdlGnc::decide_on_engines(const Configuration& configuration, Sclk now, Out
         take(GncModeEvent::low_enough, now);
         deceleration_.start(m.altitude_m, m.descent_rate_mps);
     } else if (mode() == Mode::constant_deceleration) {
-        conditions.push_back(
-            at_most(Quantity::descent_rate_mps, m.descent_rate_mps, sky_crane_mps + parameters.sky_crane_rate_tolerance_mps));
+        conditions.push_back(at_most(Quantity::descent_rate_mps, m.descent_rate_mps,
+                                     sky_crane_mps + parameters.sky_crane_rate_tolerance_mps));
         fire(Trigger::sky_crane, conditions, out);
     } else if (mode() == Mode::sky_crane) {
         conditions.push_back(at_least(Quantity::time_in_mode_s, since(mode_since_), triggers::sky_crane_settling_s));
@@ -275,7 +277,8 @@ void EdlGnc::guide_entry(Sclk now, const Configuration& configuration, Output& o
         predicted_range_m_ = wanted.predicted_range_m;
         lift_to_drag_command_ = wanted.vertical_lift_to_drag;
         // Near lift up the two sides are hardly apart: there a reversal need not have been flown out.
-        const bool settled = m.bank_rad * lateral_.sign() > 0.0 || wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
+        const bool settled = m.bank_rad * lateral_.sign() > 0.0 ||
+                             wanted.bank_magnitude_rad < parameters.reversal_settled_below_deg * degree;
         if (lateral_.on(now, m.target.crossrange_m, m.speed_mps, wanted.saturated, settled))
             out.bank_reversal = lateral_.reversals();
         bank_command_rad_ = lateral_.sign() * wanted.bank_magnitude_rad;
@@ -318,7 +321,7 @@ void EdlGnc::guide_descent(Sclk now, const Configuration& configuration, Output&
     // Once the divert is flown, what is left of drift is nulled.
     const Vector3 null_drift = -rate_gain_per_s * m.level_velocity_M;
     if (mode() == Mode::free_fall) {
-        out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N); // warm-up
+        out.engines.throttle.fill(load_.engine_min_thrust_N / load_.engine_max_thrust_N);  // warm-up
         thrust_command_N_ = 8.0 * load_.engine_min_thrust_N;
     } else if (mode() == Mode::powered_approach) {
         const Vector3 moved = strapdown_.state().p_MoB_M - divert_from_M_;
@@ -348,10 +351,10 @@ Steers steers(Mode mode, const Configuration& configuration, const EngineCommand
 }
 
 Inertia inertia_of(Mode mode, const Configuration& configuration, double rigid_kg) {
-    const Gyration& radii = mode < Mode::free_fall ? configuration.heatshield_gone ? gyration_without_heatshield
-                                                                                   : gyration_of_entry_vehicle
-                            : configuration.rover_separated ? gyration_of_stage
-                                                            : gyration_of_stage_with_rover;
+    const Gyration& radii =
+        mode < Mode::free_fall ? configuration.heatshield_gone ? gyration_without_heatshield : gyration_of_entry_vehicle
+        : configuration.rover_separated ? gyration_of_stage
+                                        : gyration_of_stage_with_rover;
     return {rigid_kg * radii.across_m * radii.across_m, rigid_kg * radii.along_z_m * radii.along_z_m};
 }
 
@@ -396,7 +399,8 @@ void EdlGnc::report(Output& out) const {
     out.bank_command_deg = bank_command_rad_ / degree;
     out.lift_to_drag_command = lift_to_drag_command_;
     if (mode() < Mode::free_fall) {
-        const double area_m2 = mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
+        const double area_m2 =
+            mode() == Mode::parachute_descent ? parameters.parachute_drag_area_m2 : parameters.entry_drag_area_m2;
         out.dynamic_pressure_Pa = std::max(load_.entry_mass_kg * force_filter_.drag_mps2() / area_m2, 0.0);
     }
     out.mach = m.speed_mps / speed_of_sound_mps(m.altitude_m);
@@ -412,4 +416,4 @@ void EdlGnc::report(Output& out) const {
     out.radar_beams = last_radar_beams_;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -36,14 +36,14 @@ struct Solution {
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
     Sclk entry;
-    double target_latitude_rad = 0.0;  ///< areocentric
-    double target_longitude_rad = 0.0; ///< east
+    double target_latitude_rad = 0.0;   ///< areocentric
+    double target_longitude_rad = 0.0;  ///< east
     double target_radius_m = 0.0;
     double parachute_speed_mps = 405.0;
-    double parachute_altitude_min_m = 6000.0; ///< down to here the parachute waits for its speed
+    double parachute_altitude_min_m = 6000.0;  ///< down to here the parachute waits for its speed
     double heatshield_speed_mps = 142.0;
     double backshell_altitude_m = 1660.0;
-    double backshell_descent_rate_mps = 79.1; ///< that the altitude belongs to
+    double backshell_descent_rate_mps = 79.1;  ///< that the altitude belongs to
 
     template <typename Exchange>
     void carry(Exchange& exchange) {
@@ -55,12 +55,12 @@ struct Solution {
 
 /// What the timeline has done, as GNC asks for it each cycle: the configuration that GNC must fly. R26
 struct Configuration {
-    bool enabled = false; ///< GNC enable has fired
+    bool enabled = false;  ///< GNC enable has fired
     bool cruise_stage_gone = false;
-    bool turning_to_entry = false; ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
-    bool guidance_armed = false;   ///< may start entry guidance when drag says so
+    bool turning_to_entry = false;  ///< start_turn_to_entry has fired: trim attitude, bank held until guidance
+    bool guidance_armed = false;    ///< may start entry guidance when drag says so
     bool sufr_allowed = false;
-    bool parachute_out = false; ///< mortar fired
+    bool parachute_out = false;  ///< mortar fired
     std::optional<Sclk> parachute_time;
     bool heatshield_gone = false;
     std::optional<Sclk> heatshield_time;
@@ -69,7 +69,7 @@ struct Configuration {
     bool backshell_gone = false;
     std::optional<Sclk> backshell_time;
     bool engines_ignited = false;
-    bool sky_crane_started = false; ///< throttle-down has fired: four engines
+    bool sky_crane_started = false;  ///< throttle-down has fired: four engines
     bool rover_separated = false;
     std::optional<Sclk> rover_separation_time;
     bool touchdown_logic_ready = false;
@@ -106,7 +106,7 @@ enum class Trigger : std::uint8_t {
 };
 inline constexpr std::size_t trigger_count = static_cast<std::size_t>(Trigger::touchdown) + 1;
 
-using Mode = GncMode; ///< in the order in which they come
+using Mode = GncMode;  ///< in the order in which they come
 
 /// A trigger that is near, and what it still waits for. R38
 struct HeldTrigger {
@@ -117,18 +117,18 @@ struct HeldTrigger {
 /// Everything that GNC tells the rest in one cycle.
 struct Output {
     Mode mode = Mode::off;
-    FixedVector<Trigger, 4> triggers; ///< fired in this cycle
-    Conditions conditions;            ///< of the last trigger in `triggers`
-    FixedVector<HeldTrigger, 4> held; ///< near, and not fired in this cycle
-    std::uint8_t bank_reversal = 0;   ///< number of the reversal that began in this cycle, 0: none
-    AttitudeCommand attitude;   ///< what guidance wants
-    ThrusterCommand thrusters;  ///< what attitude control makes of it
+    FixedVector<Trigger, 4> triggers;  ///< fired in this cycle
+    Conditions conditions;             ///< of the last trigger in `triggers`
+    FixedVector<HeldTrigger, 4> held;  ///< near, and not fired in this cycle
+    std::uint8_t bank_reversal = 0;    ///< number of the reversal that began in this cycle, 0: none
+    AttitudeCommand attitude;          ///< what guidance wants
+    ThrusterCommand thrusters;         ///< what attitude control makes of it
     EngineCommand engines;
     // Telemetry: the navigated state and what guidance wants. Frame M, SI, degrees where the name says so.
     std::array<double, 3> p_MoB_M_m{};
     std::array<double, 3> v_MB_M_mps{};
-    std::array<double, 4> q_MB{1, 0, 0, 0}; ///< navigated attitude, what EdlBg needs to use the radar's beams
-    double altitude_m = 0.0;                ///< above the target's radius, or above ground once the radar locked
+    std::array<double, 4> q_MB{1, 0, 0, 0};  ///< navigated attitude, what EdlBg needs to use the radar's beams
+    double altitude_m = 0.0;                 ///< above the target's radius, or above ground once the radar locked
     double speed_mps = 0.0;
     double descent_rate_mps = 0.0;
     double horizontal_speed_mps = 0.0;
@@ -150,7 +150,7 @@ struct Output {
     double mass_kg = 0.0;
     double propellant_kg = 0.0;
     bool radar_locked = false;
-    std::uint16_t radar_beams = 0; ///< of the last radar solution
+    std::uint16_t radar_beams = 0;  ///< of the last radar solution
 };
 
 /// What steers in a mode: the engines once guidance throttles them; before that, and without them, the thrusters.
@@ -184,11 +184,11 @@ class EdlGnc {
     /// What another computer must know to go on: all but our own past for the radar's filter.
     template <typename Exchange>
     void carry(Exchange& exchange) {
-        exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, smooth_force_B_mps2_, force_filter_,
-                 radar_filter_, measured_.altitude_m, mode_machine_, mode_since_, fired_, due_for_parachute_,
-                 low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_, predicted_range_m_,
-                 lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_, divert_from_M_, deceleration_,
-                 rate_control_, touchdown_logic_, last_radar_beams_);
+        exchange(solution_, target_M_, navigating_, navigated_to_, pulses_felt_until_, strapdown_, smooth_force_B_mps2_,
+                 force_filter_, radar_filter_, measured_.altitude_m, mode_machine_, mode_since_, fired_,
+                 due_for_parachute_, low_for_backshell_, radar_first_, lateral_, bank_command_rad_, bank_at_sufr_rad_,
+                 predicted_range_m_, lift_to_drag_command_, mass_kg_, thrust_command_N_, approach_, divert_,
+                 divert_from_M_, deceleration_, rate_control_, touchdown_logic_, last_radar_beams_);
     }
 
     Mode mode() const { return mode_machine_.state(); }
@@ -198,12 +198,12 @@ class EdlGnc {
     /// What the rest of the cycle works with, measured once from the navigated state.
     struct Measured {
         Vector3 up_M = Vector3::UnitX();
-        Vector3 free_M_mps2 = Vector3::Zero(); ///< acceleration without any force
+        Vector3 free_M_mps2 = Vector3::Zero();  ///< acceleration without any force
         Vector3 level_velocity_M = Vector3::Zero();
         double altitude_m = 0.0;
         double speed_mps = 0.0;
         double descent_rate_mps = 0.0;
-        double deceleration_mps2 = 0.0; ///< of the speed
+        double deceleration_mps2 = 0.0;  ///< of the speed
         double bank_rad = 0.0;
         TargetGeometry target;
     };
@@ -230,10 +230,10 @@ class EdlGnc {
     Solution solution_;
     Vector3 target_M_ = Vector3::UnitX();
     bool navigating_ = false;
-    std::optional<CruiseAttitude> cruise_attitude_; ///< to be taken when the increments have come to its tick
+    std::optional<CruiseAttitude> cruise_attitude_;  ///< to be taken when the increments have come to its tick
     bool cruise_stage_gone_ = false;
     Sclk navigated_to_;
-    Sclk pulses_felt_until_; ///< of thrusters, in vacuum
+    Sclk pulses_felt_until_;  ///< of thrusters, in vacuum
     Strapdown strapdown_;
     Vector3 smooth_force_B_mps2_ = Vector3::Zero();
     ForceFilter force_filter_;
@@ -245,7 +245,7 @@ class EdlGnc {
     Sclk mode_since_;
     std::array<bool, trigger_count> fired_{};
     triggers::Persistence due_for_parachute_, low_for_backshell_;
-    bool radar_first_ = false; ///< the first solution was accepted since the last cycle
+    bool radar_first_ = false;  ///< the first solution was accepted since the last cycle
 
     LateralLogic lateral_;
     double bank_command_rad_ = 0.0;
@@ -253,7 +253,7 @@ class EdlGnc {
     double predicted_range_m_ = 0.0;
     double lift_to_drag_command_ = 0.0;
 
-    double mass_kg_ = 0.0; ///< on engines
+    double mass_kg_ = 0.0;  ///< on engines
     double thrust_command_N_ = 0.0;
     Steering steering_;
     powered_descent::ApproachProfile approach_;
@@ -264,6 +264,6 @@ class EdlGnc {
     sky_crane::TouchdownLogic touchdown_logic_;
     std::uint16_t last_radar_beams_ = 0;
 };
-static_assert(std::is_trivially_destructible_v<EdlGnc>); // copying it is a snapshot
+static_assert(std::is_trivially_destructible_v<EdlGnc>);  // copying it is a snapshot
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

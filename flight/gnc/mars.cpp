@@ -54,4 +54,4 @@ double speed_of_sound_mps(double altitude_m) {
     return std::sqrt(1.3 * 188.9 * temperature_K);
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

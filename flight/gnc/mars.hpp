@@ -5,12 +5,12 @@
 // Mars as GNC knows it: gravity, spin, and how fast sound is in its air. Frame M turns with Mars, z along the spin.
 namespace aeolis::flight::gnc {
 
-inline constexpr double mars_gm_m3ps2 = 42828.3737e9;      ///< [facts] Mars
-inline constexpr double mars_j2 = 1.9566e-3;               ///< [facts] Mars
-inline constexpr double mars_equator_radius_m = 3396190.0; ///< [facts] Mars
-inline constexpr double mars_spin_rps = 7.088218e-5;       ///< [facts] Mars
-inline constexpr double standard_gravity_mps2 = 9.80665;   ///< defines specific impulse
-inline constexpr double mars_weight_mps2 = 3.71;           ///< g at Gale, [facts] Mars: only where a bound needs it
+inline constexpr double mars_gm_m3ps2 = 42828.3737e9;       ///< [facts] Mars
+inline constexpr double mars_j2 = 1.9566e-3;                ///< [facts] Mars
+inline constexpr double mars_equator_radius_m = 3396190.0;  ///< [facts] Mars
+inline constexpr double mars_spin_rps = 7.088218e-5;        ///< [facts] Mars
+inline constexpr double standard_gravity_mps2 = 9.80665;    ///< defines specific impulse
+inline constexpr double mars_weight_mps2 = 3.71;            ///< g at Gale, [facts] Mars: only where a bound needs it
 
 /// Gravitational acceleration at the vehicle: point mass and oblateness (J2).
 ///
@@ -31,4 +31,4 @@ Vector3 free_acceleration(const Vector3& p_MoB_M, const Vector3& v_MB_M);
 /// (ours).
 double speed_of_sound_mps(double altitude_m);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

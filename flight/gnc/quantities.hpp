@@ -37,4 +37,4 @@ inline bool all_hold(const Conditions& conditions) {
     return !conditions.empty();
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

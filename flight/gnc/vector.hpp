@@ -28,4 +28,4 @@ inline std::array<double, 4> to_array(const Quaternion& q) {
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double degree = pi / 180.0;
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

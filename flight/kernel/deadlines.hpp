@@ -9,13 +9,14 @@ namespace aeolis::flight {
 
 /// When a module must have handled what came with a tick, and how much processor time and stack that may take.
 struct TaskLimits {
-    double deadline_s = 0.0;   ///< after the tick
-    double budget_us = 0.0;    ///< of processor time in one cycle
+    double deadline_s = 0.0;       ///< after the tick
+    double budget_us = 0.0;        ///< of processor time in one cycle
     std::size_t stack_octets = 0;  ///< that it may have used, of all it has done so far
 };
 
 /// Ours. The rate group shares the cycle of 1/64 s, sync's order giving the deadlines within it; who only feeds it or
-/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower. A stack is about twice what a landing uses.
+/// follows it has until the next tick, EdlBg and MFSK work at 1 Hz and slower. A stack is about twice what a landing
+/// uses.
 constexpr TaskLimits limits_of(ModuleId id) {
     constexpr double tick_s = seconds_per_tick;
     constexpr std::size_t kilo = 1024;

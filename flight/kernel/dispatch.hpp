@@ -8,8 +8,8 @@ namespace aeolis::flight {
 
 /// What every module is, whatever it does: made from the load alone, copied as a snapshot, spoken to by messages. R9
 template <typename M>
-concept FlightModule = std::constructible_from<M, const Load&> && std::copy_constructible<M> &&
-                       std::is_trivially_destructible_v<M>;
+concept FlightModule =
+    std::constructible_from<M, const Load&> && std::copy_constructible<M> && std::is_trivially_destructible_v<M>;
 
 /// Whether a module has a handler of its own for a type of message.
 template <typename Module, typename Content>

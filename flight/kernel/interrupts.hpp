@@ -9,8 +9,8 @@
 namespace aeolis::flight {
 
 /// Who asked for the clock's tick itself; the rate group gets its turn from sync.
-inline constexpr std::array clock_subscribers{ModuleId::sync, ModuleId::units, ModuleId::cross_string, ModuleId::edl_bg, ModuleId::mfsk,
-                                              ModuleId::edl_comm};
+inline constexpr std::array clock_subscribers{ModuleId::sync,   ModuleId::units, ModuleId::cross_string,
+                                              ModuleId::edl_bg, ModuleId::mfsk,  ModuleId::edl_comm};
 
 /// Everything that came with one tick, as messages at once: each to the one module that manages its device. R10
 template <typename Deliver>

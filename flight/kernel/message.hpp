@@ -13,7 +13,8 @@
 #include <type_traits>
 #include <variant>
 
-// Every message that one module sends another. Plain data, no pointers: a static_assert on the variant holds them to it.
+// Every message that one module sends another. Plain data, no pointers: a static_assert on the variant holds them to
+// it.
 namespace aeolis::flight {
 
 /// Every module of the load, in order of priority. Up to `thrusters` they are the rate group, in sync's order. R8, R22
@@ -85,7 +86,8 @@ struct Resume {
     ResumeReason reason{};
 };
 
-inline constexpr std::size_t uplink_octets_max = 256;  ///< ours: the longest command of the dictionary makes a CLTU of 194
+inline constexpr std::size_t uplink_octets_max =
+    256;  ///< ours: the longest command of the dictionary makes a CLTU of 194
 struct UplinkReceived {
     std::array<std::uint8_t, uplink_octets_max> octets{};
     std::uint16_t size = 0;  ///< as received; more than fits means that the rest is lost and the unit is refused
@@ -127,7 +129,7 @@ struct PayOutBridle {};
 struct UnitsSelected {  ///< to the managers of devices: address these from now on. R2
     UnitSelection units;
 };
-struct EdlBegun {};  ///< "do edl" was accepted: what is chosen before EDL is chosen
+struct EdlBegun {};         ///< "do edl" was accepted: what is chosen before EDL is chosen
 struct NavigatedAttitude {  ///< what EdlBg needs to turn the radar's beams into Mars's frame
     std::array<double, 4> q_MB{1, 0, 0, 0};
     std::array<double, 3> up_M{};
@@ -200,19 +202,19 @@ struct PhaseChanged {
 };
 struct StandBy {};      ///< from Edl of a prime that was restarted too late: the other computer flies and speaks
 struct EdlFinished {};  ///< from Edl: the last timepoint has fired
-struct ToneStatus {  ///< from MFSK to EdlComm, for its status channels
+struct ToneStatus {     ///< from MFSK to EdlComm, for its status channels
     std::uint8_t tone = 0;
     std::uint8_t outstanding = 0;
 };
 
 using Message =
-    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume, UplinkReceived, NvmStatus, PyroReply, SwitchReply,
-                 EngineReply, ThrusterReply, BridleReply, CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro,
-                 SetSwitch, EnableThrusters, FireThrusters, RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport,
-                 InhibitEdl, SetParametersCommand,
-                 ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand, SetAnchorOffsetCommand, SelectUnitsCommand,
-                 EnableSecondChanceCommand, SelectPrimeCommand, CommandOutcome,
-                 Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus>;
+    std::variant<ClockTick, Tick, Confirm, ImuReadings, RadarReturns, StatePart, StoredStatePart, Resume,
+                 UplinkReceived, NvmStatus, PyroReply, SwitchReply, EngineReply, ThrusterReply, BridleReply,
+                 CruiseAttitude, gnc::RadarSolution, ActionReply, FirePyro, SetSwitch, EnableThrusters, FireThrusters,
+                 RunEngines, PayOutBridle, UnitsSelected, EdlBegun, NavigatedAttitude, SystemFaultReport, InhibitEdl,
+                 SetParametersCommand, ParametersUpdate, DoEdlCommand, SetTimepointOffsetCommand,
+                 SetAnchorOffsetCommand, SelectUnitsCommand, EnableSecondChanceCommand, SelectPrimeCommand,
+                 CommandOutcome, Record, ToneRequest, PhaseChanged, StandBy, EdlFinished, ToneStatus, UplinkStatus>;
 static_assert(std::is_trivially_copyable_v<Message>, "messages hold only data");
 
 /// Copies what a message holds, not the room that the largest one takes.

@@ -12,8 +12,8 @@ namespace aeolis::flight {
 ///
 /// In       ClockTick (64 Hz), Confirm           Out   Tick to each module in order; SyncStatus at 1 Hz
 /// Faults   a tick that comes before the last module confirmed is an overrun: counted and reported (CYCLE_OVERRUN),
-///          that cycle skipped; SCLK goes on, because the tick carries it. Messages that found no room in a mailbox in the
-///          cycle before are told by their number (MAILBOX_OVERFLOW)
+///          that cycle skipped; SCLK goes on, because the tick carries it. Messages that found no room in a mailbox in
+///          the cycle before are told by their number (MAILBOX_OVERFLOW)
 class Sync {
   public:
     explicit Sync(const Load&) {}
@@ -30,9 +30,8 @@ class Sync {
     }
 
   private:
-    static constexpr std::array<ModuleId, 6> order{ModuleId::radar, ModuleId::imu,
-                                                   ModuleId::edl,   ModuleId::pyro,
-                                                   ModuleId::descent_engines, ModuleId::thrusters};
+    static constexpr std::array<ModuleId, 6> order{
+        ModuleId::radar, ModuleId::imu, ModuleId::edl, ModuleId::pyro, ModuleId::descent_engines, ModuleId::thrusters};
     static constexpr std::size_t idle = order.size();
 
     std::size_t running_ = idle;  // index in `order` of the module whose confirmation is awaited

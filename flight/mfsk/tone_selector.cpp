@@ -107,13 +107,13 @@ void ToneSelector::explain_choice(const ToneRequest& chosen, Outbox& out) const 
     if (outstanding_.empty()) return;
     const ToneRequest& next = outstanding_[most_important()];
     const double age_s = out.now() - chosen.requested;
-    explain(out, chosen.tone, ExplanationVerdict::chosen,
-            {is_tone(Quantity::next_tone, next.tone),
-             at_least(Quantity::tone_priority, priority(chosen.tone), priority(next.tone)),
-             at_most(Quantity::request_age_s, age_s,
-                     // Of equals the newest goes first: then that is what decided.
-                     priority(chosen.tone) == priority(next.tone) ? out.now() - next.requested
-                                                                  : expires_s(chosen.tone))});
+    explain(
+        out, chosen.tone, ExplanationVerdict::chosen,
+        {is_tone(Quantity::next_tone, next.tone),
+         at_least(Quantity::tone_priority, priority(chosen.tone), priority(next.tone)),
+         at_most(Quantity::request_age_s, age_s,
+                 // Of equals the newest goes first: then that is what decided.
+                 priority(chosen.tone) == priority(next.tone) ? out.now() - next.requested : expires_s(chosen.tone))});
 }
 
 std::size_t ToneSelector::most_important() const {

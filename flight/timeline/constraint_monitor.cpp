@@ -6,7 +6,8 @@ namespace {
 constexpr std::size_t reports_per_cycle_max = 4;  // two records each, of the 48 messages that an outbox holds
 
 packet::Explanation explanation(std::uint16_t number, const ConstraintSpec& row, double elapsed_s) {
-    packet::Explanation e{.decision = Decision::sub_constraint, .verdict = ExplanationVerdict::violated, .subject = number};
+    packet::Explanation e{
+        .decision = Decision::sub_constraint, .verdict = ExplanationVerdict::violated, .subject = number};
     if (row.minimum_s) {
         e.condition_count = 1;
         e.condition_1 = Quantity::elapsed_s;
@@ -48,8 +49,7 @@ void ConstraintMonitor::watch(const Timeline& timeline, std::span<const Firing> 
         note(Moment::of_triggered(firing.timepoint), firing.triggered);
         note(Moment::of_fired(firing.timepoint), firing.fired);
     }
-    if (const auto waiting = timeline.waiting())
-        note(Moment::of_triggered(timeline.current()), waiting->triggered);
+    if (const auto waiting = timeline.waiting()) note(Moment::of_triggered(timeline.current()), waiting->triggered);
 }
 
 void ConstraintMonitor::note(const Moment& moment, MaybeTime time) {
@@ -90,7 +90,8 @@ void ConstraintMonitor::report(Outbox& out) {
 }
 
 void ConstraintMonitor::summarise(Outbox& out) const {
-    out.event(evr::SUB_CONSTRAINTS_JUDGED{.judged = static_cast<std::uint16_t>(judged_.count()), .violations = violations_});
+    out.event(
+        evr::SUB_CONSTRAINTS_JUDGED{.judged = static_cast<std::uint16_t>(judged_.count()), .violations = violations_});
 }
 
 MaybeTime& ConstraintMonitor::time_of(const Moment& moment) {

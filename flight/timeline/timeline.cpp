@@ -60,7 +60,8 @@ void Timeline::pass(Sclk now, ActionContext& context, Firings& firings) {
 }
 
 bool Timeline::current_may_fire(Sclk now) const {
-    return may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_], now);
+    return may_fire(desired_base(current_), desired_offset_s_[current_], previous_fired_, minimum_offset_s_[current_],
+                    now);
 }
 
 bool Timeline::limited(Sclk now) const {
@@ -118,7 +119,8 @@ MaybeTime Timeline::next_minimum() const {
 MaybeTime Timeline::first_desired() const {
     double before_s = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        if (rows_[i].anchor) return anchor_times_[rows_[i].anchor->value] + desired_offset_s_[i] + MaybeOffset{-before_s};
+        if (rows_[i].anchor)
+            return anchor_times_[rows_[i].anchor->value] + desired_offset_s_[i] + MaybeOffset{-before_s};
         before_s += desired_offset_s_[i].value_or(0.0) + rows_[i].reply_timeout_s.value_or(0.0);
     }
     return {};

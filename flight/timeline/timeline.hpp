@@ -37,7 +37,8 @@ using Firings = FixedVector<Firing, firings_per_cycle_max + 1>;
 /// Out      actions through ActionContext; Firing for each timepoint that completed
 /// Memory   fixed; the rows are read where the autocoder put them
 /// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`.
-/// Actions may be repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still awaited.
+/// Actions may be repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still
+/// awaited.
 class Timeline {
   public:
     /// `essential_only`: Second Chance, where the other rows' actions are no operation. R33
@@ -113,7 +114,7 @@ class Timeline {
     std::size_t current_ = 0;
     std::size_t fired_in_cycle_ = 0;
     bool begun_ = false;
-    bool waiting_ = false;   // for the reply of the current timepoint
+    bool waiting_ = false;  // for the reply of the current timepoint
     bool replied_ = false;
     ActionReply awaited_;
     Sclk triggered_;

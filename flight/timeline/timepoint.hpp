@@ -20,14 +20,14 @@ struct TimepointSpec {
     const char* name = "";
     std::optional<AnchorId> anchor;  ///< none: the desired offset is from the previous timepoint
     MaybeOffset desired_offset_s;
-    MaybeOffset minimum_offset_s;    ///< from the previous timepoint
-    Action action = nullptr;         ///< nullptr: none
+    MaybeOffset minimum_offset_s;  ///< from the previous timepoint
+    Action action = nullptr;       ///< nullptr: none
     std::optional<double> reply_timeout_s;
     std::optional<TimepointId> backtrack;
     bool essential = false;
     std::optional<ToneId> tone;
-    Action event = nullptr;          ///< announces the row's event; nullptr: none
-    std::optional<ModuleId> owner{}; ///< that the action may command; none: not said, as in tests. R5
+    Action event = nullptr;           ///< announces the row's event; nullptr: none
+    std::optional<ModuleId> owner{};  ///< that the action may command; none: not said, as in tests. R5
 };
 
 /// Parents stand before their children: one sweep computes all times.

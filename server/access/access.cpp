@@ -12,7 +12,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr unsigned token_days_max = 3'650; // ours
+constexpr unsigned token_days_max = 3'650;  // ours
 
 std::string iso_text(Access::Clock::time_point time) {
     return fmt::format("{:%Y-%m-%dT%H:%M:%S}Z", fmt::gmtime(std::chrono::floor<std::chrono::seconds>(time)));
@@ -26,7 +26,8 @@ std::string cookie_value(std::string_view field, std::string_view name) {
         field = end == std::string_view::npos ? std::string_view{} : field.substr(end + 1);
         while (pair.starts_with(' ')) pair.remove_prefix(1);
         const auto equals = pair.find('=');
-        if (equals != std::string_view::npos && pair.substr(0, equals) == name) return std::string{pair.substr(equals + 1)};
+        if (equals != std::string_view::npos && pair.substr(0, equals) == name)
+            return std::string{pair.substr(equals + 1)};
     }
     return {};
 }
@@ -64,7 +65,7 @@ Error no_role(const std::string& role) {
     return Error{fmt::format("role: '{}' is none of observer, controller, director, administrator", role)};
 }
 
-} // namespace
+}  // namespace
 
 Result<std::unique_ptr<Access>> Access::open(Settings settings) {
     std::unique_ptr<Access> access{new Access{std::move(settings)}};
@@ -154,7 +155,8 @@ Operator Access::identify(const Credentials& credentials) {
     if (credentials.authorization.starts_with(bearer)) {
         const auto hash = secret_hash(credentials.authorization.substr(bearer.size()));
         const auto token = std::ranges::find(file_.tokens(), hash, &v1::AccessToken::secret_hash);
-        if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now))) return nobody;
+        if (token == file_.tokens().end() || (!token->expires().empty() && token->expires() < iso_text(now)))
+            return nobody;
         nobody.user = "token " + token->name();
         nobody.role = role_of(token->role());
         nobody.expires = token->expires();
@@ -191,14 +193,15 @@ void Access::count_failure(const std::string& key, unsigned allowed) {
     if (failures_.size() >= failures_max && !failures_.contains(key))
         failures_.erase(std::ranges::min_element(failures_, {}, [](const auto& each) { return each.second.last; }));
     auto& failures = failures_[key];
-    if (now - failures.last > longest_lock_out) failures.count = 0; // long ago
+    if (now - failures.last > longest_lock_out) failures.count = 0;  // long ago
     failures.last = now;
     if (++failures.count < allowed) return;
     const auto doublings = std::min(failures.count - allowed, 5U);
     failures.locked_until = now + std::min<std::chrono::seconds>(first_lock_out * (1U << doublings), longest_lock_out);
 }
 
-Result<std::string> Access::check_log_in(const std::string& user, const std::string& password, const std::string& address) {
+Result<std::string> Access::check_log_in(const std::string& user, const std::string& password,
+                                         const std::string& address) {
     const std::string from = network_of(address);
     std::string hash;
     {
@@ -226,7 +229,7 @@ Result<Access::LoggedIn> Access::log_in(const v1::LogIn& asked, const std::strin
     const auto now = settings_.now();
     const std::scoped_lock lock{mutex_};
     const auto* account = find_account(file_, asked.user());
-    if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in}; // changed meanwhile
+    if (account == nullptr || account->password_hash() != *matched) return Error{wrong_log_in};  // changed meanwhile
     std::erase_if(sessions_, [&](const auto& each) { return each.second.expires < now; });
     const auto own = [&](const auto& each) { return each.second.user == asked.user(); };
     const auto older = [](const auto& one, const auto& other) { return one.second.expires < other.second.expires; };
@@ -259,8 +262,7 @@ v1::UserList Access::users() {
     const std::scoped_lock lock{mutex_};
     if (accounts()) refresh();
     v1::UserList list;
-    for (const auto& account : file_.accounts())
-        *list.add_users() = user_of(account);
+    for (const auto& account : file_.accounts()) *list.add_users() = user_of(account);
     return list;
 }
 
@@ -276,7 +278,8 @@ Result<v1::User> Access::add_user(const v1::NewUser& user) {
     account.set_choose_password(true);
     *account.mutable_commands() = user.commands();
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
-        if (find_account(file, user.user()) != nullptr) return Error{fmt::format("there is a user '{}' already", user.user())};
+        if (find_account(file, user.user()) != nullptr)
+            return Error{fmt::format("there is a user '{}' already", user.user())};
         *file.add_accounts() = account;
         return {};
     });
@@ -287,18 +290,21 @@ Result<v1::User> Access::add_user(const v1::NewUser& user) {
 Result<v1::User> Access::change_user(const Operator& who, const std::string& user, const v1::UserChange& change) {
     if (!accounts()) return no_accounts();
     const bool own = user == who.user;
-    if (!own && !may(who, Right::administer)) return Error{fmt::format("only an administrator changes user '{}'", user)};
+    if (!own && !may(who, Right::administer))
+        return Error{fmt::format("only an administrator changes user '{}'", user)};
     if (own && !change.role().empty()) return Error{"role: nobody changes their own; another administrator does"};
     if (!change.role().empty() && !role_of(change.role())) return no_role(change.role());
     const bool other_commands = change.all_commands() || !change.commands().empty();
     if (own && other_commands) return Error{"commands: nobody changes their own; another administrator does"};
-    if (change.all_commands() && !change.commands().empty()) return Error{"commands and all_commands: one of them, not both"};
+    if (change.all_commands() && !change.commands().empty())
+        return Error{"commands and all_commands: one of them, not both"};
     if (change.role().empty() && change.password().empty() && !other_commands)
         return Error{"the change says nothing: role, password, commands or all_commands is wanted"};
     std::string hash, hash_before;
     if (!change.password().empty()) {
         if (auto good = check_password(change.password()); !good) return good.error();
-        if (own && change.password() == change.current_password()) return Error{"password: it is the one of before, choose another"};
+        if (own && change.password() == change.current_password())
+            return Error{"password: it is the one of before, choose another"};
         if (own) {
             auto right = check_log_in(user, change.current_password(), who.from);
             if (!right) return Error{"current_password: " + right.error().message};
@@ -310,14 +316,16 @@ Result<v1::User> Access::change_user(const Operator& who, const std::string& use
     const auto done = change_file([&](v1::AccountFile& file) -> Result<void> {
         auto* account = find_account(file, user);
         if (account == nullptr) return no_user(user);
-        if (!hash_before.empty() && account->password_hash() != hash_before) return Error{"current_password: it was changed meanwhile"};
+        if (!hash_before.empty() && account->password_hash() != hash_before)
+            return Error{"current_password: it was changed meanwhile"};
         if (!change.role().empty()) account->set_role(change.role());
         if (other_commands) *account->mutable_commands() = change.commands();
         if (!hash.empty()) {
             account->set_password_hash(hash);
             account->set_choose_password(!own);
         }
-        if (std::ranges::none_of(file.accounts(), is_administrator)) return Error{"role: one administrator must remain"};
+        if (std::ranges::none_of(file.accounts(), is_administrator))
+            return Error{"role: one administrator must remain"};
         shown = user_of(*account);
         return {};
     });
@@ -344,8 +352,7 @@ v1::TokenList Access::tokens() {
     const std::scoped_lock lock{mutex_};
     if (accounts()) refresh();
     v1::TokenList list;
-    for (const auto& token : file_.tokens())
-        *list.add_tokens() = token_of(token);
+    for (const auto& token : file_.tokens()) *list.add_tokens() = token_of(token);
     return list;
 }
 
@@ -386,4 +393,4 @@ Result<void> Access::remove_token(const std::string& name) {
     });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

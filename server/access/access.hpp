@@ -16,8 +16,8 @@ namespace aeolis::server {
 
 /// What a request says of who asks.
 struct Credentials {
-    std::string cookie, authorization; ///< the header fields as they came
-    std::string from;                  ///< address of the peer
+    std::string cookie, authorization;  ///< the header fields as they came
+    std::string from;                   ///< address of the peer
 };
 
 /// Who may use the server: users and tokens of the file of accounts, and who has logged in.
@@ -33,14 +33,15 @@ class Access {
     static constexpr std::size_t sessions_max = 1'000;       ///< ours: the oldest ends
     static constexpr std::size_t sessions_of_user_max = 16;  ///< ours: the oldest of that user ends
     static constexpr const char* wrong_log_in = "user or password is wrong";
-    static constexpr std::size_t failures_max = 4'096;       ///< ours: the oldest is forgotten
-    static constexpr unsigned tries_of_user = 5;             ///< ours: then this user waits, from this address; of version 6, from its /64
-    static constexpr unsigned tries_of_address = 20;         ///< ours: then this address waits, whatever the user
-    static constexpr std::chrono::seconds first_lock_out{30}; ///< ours: doubled by each further failure
+    static constexpr std::size_t failures_max = 4'096;  ///< ours: the oldest is forgotten
+    static constexpr unsigned tries_of_user =
+        5;  ///< ours: then this user waits, from this address; of version 6, from its /64
+    static constexpr unsigned tries_of_address = 20;           ///< ours: then this address waits, whatever the user
+    static constexpr std::chrono::seconds first_lock_out{30};  ///< ours: doubled by each further failure
     static constexpr std::chrono::seconds longest_lock_out{900};
 
     struct Settings {
-        std::filesystem::path file; ///< empty: no accounts, everybody may do all but administer
+        std::filesystem::path file;  ///< empty: no accounts, everybody may do all but administer
         std::function<Clock::time_point()> now = Clock::now;
     };
     /// Makes the file when there is none, with an administrator whose first_password() is to be printed. Fails with a
@@ -58,7 +59,7 @@ class Access {
 
     struct LoggedIn {
         Operator who;
-        std::string secret; ///< of the cookie
+        std::string secret;  ///< of the cookie
     };
     /// Slow. Refused: wrong, or locked out, and then for how long.
     Result<LoggedIn> log_in(const v1::LogIn& asked, const std::string& from);
@@ -84,9 +85,10 @@ class Access {
         unsigned count = 0;
         Clock::time_point last, locked_until;
     };
-    /// Makes the change, writes the file, and counts from then on; the disk holds up nobody who only identifies. Without mutex_.
+    /// Makes the change, writes the file, and counts from then on; the disk holds up nobody who only identifies.
+    /// Without mutex_.
     Result<void> change_file(const std::function<Result<void>(v1::AccountFile&)>& change);
-    void end_sessions(const std::string& user, const std::string& but); ///< without mutex_, too
+    void end_sessions(const std::string& user, const std::string& but);  ///< without mutex_, too
     // With mutex_ held:
     void refresh();
     Result<void> refuse_locked_out(const std::string& user, const std::string& from);
@@ -98,15 +100,16 @@ class Access {
 
     Settings settings_;
     std::string first_password_;
-    std::mutex changing_; ///< taken before mutex_
+    std::mutex changing_;  ///< taken before mutex_
     std::mutex mutex_;
     v1::AccountFile file_;
     std::filesystem::file_time_type file_time_;
-    std::map<std::string, LiveSession> sessions_; ///< by the hash of their secret
-    std::map<std::string, Failures> failures_;    ///< by network_of() the address, and by that and user
+    std::map<std::string, LiveSession> sessions_;  ///< by the hash of their secret
+    std::map<std::string, Failures> failures_;     ///< by network_of() the address, and by that and user
 };
 
-/// The cookies' names: of a log-in; and, without accounts, of a browser, by which a second person is told from the first.
+/// The cookies' names: of a log-in; and, without accounts, of a browser, by which a second person is told from the
+/// first.
 inline constexpr std::string_view session_cookie = "aeolis_session", browser_cookie = "aeolis_browser";
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

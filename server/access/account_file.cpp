@@ -27,7 +27,8 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 
 Result<void> check_accounts(const v1::AccountFile& accounts) {
     std::set<std::string> users, tokens;
-    const auto check = [](auto& names, const char* what, const std::string& name, const std::string& role) -> Result<void> {
+    const auto check = [](auto& names, const char* what, const std::string& name,
+                          const std::string& role) -> Result<void> {
         if (auto named = check_name(name); !named) return named;
         if (!names.insert(name).second) return Error{fmt::format("{} '{}' is there twice", what, name)};
         if (!role_of(role)) return Error{fmt::format("{} '{}': there is no role '{}'", what, name, role)};
@@ -40,15 +41,17 @@ Result<void> check_accounts(const v1::AccountFile& accounts) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<void> check_name(const std::string& name) {
     const auto allowed = [](char letter) {
-        return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '-' || letter == '_' || letter == '.';
+        return (letter >= 'a' && letter <= 'z') || (letter >= '0' && letter <= '9') || letter == '-' || letter == '_' ||
+               letter == '.';
     };
     const bool begins = !name.empty() && name[0] >= 'a' && name[0] <= 'z';
     if (begins && name.size() <= name_octets_max && std::ranges::all_of(name, allowed)) return {};
-    return Error{fmt::format("a name has 1 to {} of a-z, 0-9, '-', '_' and '.', and begins with a letter", name_octets_max)};
+    return Error{
+        fmt::format("a name has 1 to {} of a-z, 0-9, '-', '_' and '.', and begins with a letter", name_octets_max)};
 }
 
 v1::Account* find_account(v1::AccountFile& accounts, const std::string& user) {
@@ -70,8 +73,9 @@ std::string reset_account(v1::AccountFile& accounts, const std::string& user) {
     return password;
 }
 
-AccountsLock::AccountsLock(const std::filesystem::path& file) : folder_(::open(folder_of(file).c_str(), O_RDONLY | O_CLOEXEC)) {
-    if (folder_ >= 0) ::flock(folder_, LOCK_EX); // where there are no locks it is as without
+AccountsLock::AccountsLock(const std::filesystem::path& file)
+    : folder_(::open(folder_of(file).c_str(), O_RDONLY | O_CLOEXEC)) {
+    if (folder_ >= 0) ::flock(folder_, LOCK_EX);  // where there are no locks it is as without
 }
 
 AccountsLock::~AccountsLock() {
@@ -98,11 +102,13 @@ Result<void> write_accounts(const std::filesystem::path& file, const v1::Account
     const int out = ::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (out < 0) return failed();
     // Whose it was it remains: a server under a user of its own must be able to read what root has changed.
-    struct stat owner {};
+    struct stat owner{};
     const auto folder = folder_of(file);
     const bool owned = (::stat(file.c_str(), &owner) == 0 || ::stat(folder.c_str(), &owner) == 0) &&
-                       ((owner.st_uid == ::geteuid() && owner.st_gid == ::getegid()) || ::fchown(out, owner.st_uid, owner.st_gid) == 0);
-    const bool written = owned && ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;
+                       ((owner.st_uid == ::geteuid() && owner.st_gid == ::getegid()) ||
+                        ::fchown(out, owner.st_uid, owner.st_gid) == 0);
+    const bool written =
+        owned && ::write(out, text.data(), text.size()) == static_cast<ssize_t>(text.size()) && ::fsync(out) == 0;
     const auto why = failed();
     ::close(out);
     if (!written) return why;
@@ -114,4 +120,4 @@ Result<void> write_accounts(const std::filesystem::path& file, const v1::Account
     return durable ? Result<void>{} : not_durable;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -23,7 +23,7 @@ class AccountsLock {
     AccountsLock& operator=(const AccountsLock&) = delete;
 
   private:
-    int folder_; ///< locked itself, for the file is another one after each change
+    int folder_;  ///< locked itself, for the file is another one after each change
 };
 
 /// A user's or token's name: 1 to 32 of a-z, 0-9, '-', '_', '.', beginning with a letter.
@@ -36,4 +36,4 @@ v1::Account* find_account(v1::AccountFile& accounts, const std::string& user);
 /// user is not there. @return the password
 std::string reset_account(v1::AccountFile& accounts, const std::string& user);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

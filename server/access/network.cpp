@@ -15,4 +15,4 @@ std::string network_of(const std::string& address) {
     return std::string{text.data()} + "/64";
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -10,7 +10,8 @@ std::string_view name_of(Role role) {
 }
 
 std::string_view name_of(Right right) {
-    constexpr std::array<std::string_view, rights.size()> names{"open", "watch", "command", "hazardous", "rehearse", "administer"};
+    constexpr std::array<std::string_view, rights.size()> names{"open",      "watch",    "command",
+                                                                "hazardous", "rehearse", "administer"};
     return names[static_cast<std::size_t>(right)];
 }
 
@@ -21,17 +22,12 @@ std::optional<Role> role_of(std::string_view name) {
 
 std::optional<Role> least_role(Right right) {
     switch (right) {
-    case Right::open:
-        return std::nullopt;
-    case Right::watch:
-        return Role::observer;
-    case Right::command:
-        return Role::controller;
+    case Right::open: return std::nullopt;
+    case Right::watch: return Role::observer;
+    case Right::command: return Role::controller;
     case Right::hazardous:
-    case Right::rehearse:
-        return Role::director;
-    case Right::administer:
-        break;
+    case Right::rehearse: return Role::director;
+    case Right::administer: break;
     }
     return Role::administrator;
 }
@@ -46,4 +42,4 @@ bool may(const Operator& who, Right right) {
     return who.role && !who.choose_password && may(*who.role, right);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -14,7 +14,7 @@ void make_ready() {
     AEOLIS_CHECK(ready);
 }
 
-} // namespace
+}  // namespace
 
 Result<void> check_password(const std::string& password) {
     if (password.size() < password_octets_min || password.size() > password_octets_max)
@@ -25,15 +25,17 @@ Result<void> check_password(const std::string& password) {
 std::string password_hash(const std::string& password) {
     make_ready();
     std::array<char, crypto_pwhash_STRBYTES> text{};
-    AEOLIS_CHECK(crypto_pwhash_str_alg(text.data(), password.data(), password.size(), crypto_pwhash_OPSLIMIT_INTERACTIVE,
-                                       crypto_pwhash_MEMLIMIT_INTERACTIVE, crypto_pwhash_ALG_ARGON2ID13) == 0);
+    AEOLIS_CHECK(crypto_pwhash_str_alg(text.data(), password.data(), password.size(),
+                                       crypto_pwhash_OPSLIMIT_INTERACTIVE, crypto_pwhash_MEMLIMIT_INTERACTIVE,
+                                       crypto_pwhash_ALG_ARGON2ID13) == 0);
     return text.data();
 }
 
 bool password_matches(const std::string& hash, const std::string& password) {
     make_ready();
     static const std::string nobody = password_hash(new_secret());
-    const bool right = crypto_pwhash_str_verify((hash.empty() ? nobody : hash).c_str(), password.data(), password.size()) == 0;
+    const bool right =
+        crypto_pwhash_str_verify((hash.empty() ? nobody : hash).c_str(), password.data(), password.size()) == 0;
     return right && !hash.empty();
 }
 
@@ -56,7 +58,7 @@ std::string secret_hash(const std::string& secret) {
 
 std::string new_password() {
     make_ready();
-    constexpr std::string_view letters = "abcdefghjkmnpqrstuvwxyz023456789"; // 32, none that is mistaken for another
+    constexpr std::string_view letters = "abcdefghjkmnpqrstuvwxyz023456789";  // 32, none that is mistaken for another
     std::string password;
     for (int i = 0; i < 20; ++i) {
         if (i > 0 && i % 5 == 0) password += '-';
@@ -65,4 +67,4 @@ std::string new_password() {
     return password;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -8,8 +8,9 @@
 // Passwords, and secrets that the server makes itself, by libsodium.
 namespace aeolis::server {
 
-inline constexpr std::size_t password_octets_min = 12;  ///< ours: length counts, composition rules do not (NIST SP 800-63B)
-inline constexpr std::size_t password_octets_max = 128; ///< ours
+inline constexpr std::size_t password_octets_min =
+    12;  ///< ours: length counts, composition rules do not (NIST SP 800-63B)
+inline constexpr std::size_t password_octets_max = 128;  ///< ours
 
 /// An Error says what is wrong with it.
 Result<void> check_password(const std::string& password);
@@ -25,4 +26,4 @@ std::string secret_hash(const std::string& secret);
 /// A password that another gives: 20 letters and figures, 100 random bits.
 std::string new_password();
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -10,8 +10,9 @@ std::string this_user() {
     passwd entry{};
     passwd* found = nullptr;
     std::array<char, 4096> text{};
-    if (::getpwuid_r(::geteuid(), &entry, text.data(), text.size(), &found) == 0 && found != nullptr) return found->pw_name;
+    if (::getpwuid_r(::geteuid(), &entry, text.data(), text.size(), &found) == 0 && found != nullptr)
+        return found->pw_name;
     return std::to_string(::geteuid());
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -10,4 +10,4 @@ inline constexpr const char* command_line = "command line";
 /// The system's name of the user that this program runs as; its number when it has none.
 std::string this_user();
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,7 +11,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t audit_page_max = 1'000; // ours: some 300 kB
+constexpr std::uint64_t audit_page_max = 1'000;  // ours: some 300 kB
 
 v1::Session session_of(const Operator& who) {
     v1::Session session;
@@ -25,10 +25,11 @@ v1::Session session_of(const Operator& who) {
     return session;
 }
 
-constexpr std::chrono::hours browser_length{24 * 365}; // ours: longer than a rehearsal is prepared
+constexpr std::chrono::hours browser_length{24 * 365};  // ours: longer than a rehearsal is prepared
 
 std::string cookie(std::string_view name, const std::string& value, std::chrono::seconds length, bool secure) {
-    return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", name, value, length.count(), secure ? "; Secure" : "");
+    return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict{}", name, value, length.count(),
+                       secure ? "; Secure" : "");
 }
 
 template <typename Message>
@@ -39,9 +40,11 @@ HttpResponse response_of(const Result<void>& done) {
     return done ? HttpResponse{204, "application/json", "no-store", ""} : error_response(409, done.error());
 }
 
-Result<void> check_commands(const dictionary::Dictionary& dictionary, const google::protobuf::RepeatedPtrField<std::string>& names) {
+Result<void> check_commands(const dictionary::Dictionary& dictionary,
+                            const google::protobuf::RepeatedPtrField<std::string>& names) {
     for (const auto& name : names)
-        if (dictionary.command(name) == nullptr) return Error{fmt::format("commands: '{}' is no command of the dictionary", name)};
+        if (dictionary.command(name) == nullptr)
+            return Error{fmt::format("commands: '{}' is no command of the dictionary", name)};
     return {};
 }
 
@@ -49,13 +52,14 @@ std::string outcome_of(bool done, const std::string& why) {
     return done ? "done" : "refused: " + why;
 }
 
-} // namespace
+}  // namespace
 
 void Api::session(const Asked& asked) {
     auto response = json_response(session_of(asked.who));
-    // Here, where only the console's own page asks: with a page it would be given anew to who follows a link from elsewhere,
-    // for such a visit brings no cookie that is SameSite=Strict.
-    if (asked.who.browser == no_browser) response.set_cookie = cookie(browser_cookie, new_secret(), browser_length, parts_.secure);
+    // Here, where only the console's own page asks: with a page it would be given anew to who follows a link from
+    // elsewhere, for such a visit brings no cookie that is SameSite=Strict.
+    if (asked.who.browser == no_browser)
+        response.set_cookie = cookie(browser_cookie, new_secret(), browser_length, parts_.secure);
     asked.respond(std::move(response));
 }
 
@@ -63,16 +67,20 @@ void Api::log_in(const Asked& asked) {
     v1::LogIn wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    aside(asked.respond, [this, wanted, who = asked.who](archive::Reader&) {
-        const auto done = parts_.access.log_in(wanted, who.from);
-        // Who waits, or asks for what can be no name, is not noted: nobody else may fill the audit.
-        if (done || (who.accounts && done.error().message == Access::wrong_log_in && check_name(wanted.user())))
-            note(done ? done->who : who, "log-in", wanted.user(), outcome_of(done.ok(), done ? "" : done.error().message));
-        if (!done) return error_response(who.accounts ? 401 : 409, done.error().message);
-        auto response = json_response(session_of(done->who), 201);
-        response.set_cookie = cookie(session_cookie, done->secret, Access::session_length, parts_.secure);
-        return response;
-    }, Haste::soon);
+    aside(
+        asked.respond,
+        [this, wanted, who = asked.who](archive::Reader&) {
+            const auto done = parts_.access.log_in(wanted, who.from);
+            // Who waits, or asks for what can be no name, is not noted: nobody else may fill the audit.
+            if (done || (who.accounts && done.error().message == Access::wrong_log_in && check_name(wanted.user())))
+                note(done ? done->who : who, "log-in", wanted.user(),
+                     outcome_of(done.ok(), done ? "" : done.error().message));
+            if (!done) return error_response(who.accounts ? 401 : 409, done.error().message);
+            auto response = json_response(session_of(done->who), 201);
+            response.set_cookie = cookie(session_cookie, done->secret, Access::session_length, parts_.secure);
+            return response;
+        },
+        Haste::soon);
 }
 
 void Api::log_out(const Asked& asked) {
@@ -91,13 +99,17 @@ void Api::add_user(const Asked& asked) {
     v1::NewUser wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known) return asked.respond(error_response(422, known.error()));
-    aside(asked.respond, [this, wanted, who = asked.who](archive::Reader&) {
-        const auto done = parts_.access.add_user(wanted);
-        note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
-             outcome_of(done.ok(), done ? "" : done.error().message));
-        return response_of(done, 201);
-    }, Haste::soon);
+    if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
+        return asked.respond(error_response(422, known.error()));
+    aside(
+        asked.respond,
+        [this, wanted, who = asked.who](archive::Reader&) {
+            const auto done = parts_.access.add_user(wanted);
+            note(who, "user", fmt::format("add '{}' as {}", wanted.user().substr(0, 64), wanted.role().substr(0, 64)),
+                 outcome_of(done.ok(), done ? "" : done.error().message));
+            return response_of(done, 201);
+        },
+        Haste::soon);
 }
 
 void Api::change_user(const Asked& asked) {
@@ -112,22 +124,31 @@ void Api::change_user(const Asked& asked) {
     v1::UserChange change;
     if (const auto parsed = from_json(asked.request.body, change); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    if (const auto known = check_commands(parts_.dictionary, change.commands()); !known) return asked.respond(error_response(422, known.error()));
-    aside(asked.respond, [this, change, user, who = asked.who](archive::Reader&) {
-        const auto done = parts_.access.change_user(who, user, change);
-        note(who, "user",
-             fmt::format("change '{}'{}{}{}", user.substr(0, 64), change.role().empty() ? "" : ", role " + change.role().substr(0, 64),
-                         change.password().empty() ? "" : ", password",
-                         change.all_commands()       ? ", all commands"
-                         : change.commands().empty() ? ""
-                                                     : fmt::format(", commands {}", fmt::join(change.commands(), " "))),
-             outcome_of(done.ok(), done ? "" : done.error().message));
-        return response_of(done, 200);
-    }, Haste::soon);
+    if (const auto known = check_commands(parts_.dictionary, change.commands()); !known)
+        return asked.respond(error_response(422, known.error()));
+    aside(
+        asked.respond,
+        [this, change, user, who = asked.who](archive::Reader&) {
+            const auto done = parts_.access.change_user(who, user, change);
+            note(who, "user",
+                 fmt::format("change '{}'{}{}{}", user.substr(0, 64),
+                             change.role().empty() ? "" : ", role " + change.role().substr(0, 64),
+                             change.password().empty() ? "" : ", password",
+                             change.all_commands() ? ", all commands"
+                             : change.commands().empty()
+                                 ? ""
+                                 : fmt::format(", commands {}", fmt::join(change.commands(), " "))),
+                 outcome_of(done.ok(), done ? "" : done.error().message));
+            return response_of(done, 200);
+        },
+        Haste::soon);
 }
 
 void Api::remove_user(const Asked& asked) {
-    aside(asked.respond, [this, user = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); }, Haste::soon);
+    aside(
+        asked.respond,
+        [this, user = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_user(user)); },
+        Haste::soon);
 }
 
 void Api::list_tokens(const Asked& asked) {
@@ -138,12 +159,18 @@ void Api::add_token(const Asked& asked) {
     v1::NewToken wanted;
     if (const auto parsed = from_json(asked.request.body, wanted); !parsed)
         return asked.respond(error_response(400, parsed.error()));
-    if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known) return asked.respond(error_response(422, known.error()));
-    aside(asked.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); }, Haste::soon);
+    if (const auto known = check_commands(parts_.dictionary, wanted.commands()); !known)
+        return asked.respond(error_response(422, known.error()));
+    aside(
+        asked.respond, [this, wanted](archive::Reader&) { return response_of(parts_.access.add_token(wanted), 201); },
+        Haste::soon);
 }
 
 void Api::remove_token(const Asked& asked) {
-    aside(asked.respond, [this, name = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); }, Haste::soon);
+    aside(
+        asked.respond,
+        [this, name = asked.parts[0]](archive::Reader&) { return response_of(parts_.access.remove_token(name)); },
+        Haste::soon);
 }
 
 void Api::audit(const Asked& asked) {
@@ -152,24 +179,25 @@ void Api::audit(const Asked& asked) {
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", audit_page_max);
     if (!after) return asked.respond(error_response(400, after.error()));
     if (!limit) return asked.respond(error_response(400, limit.error()));
-    aside(asked.respond, [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
-        const auto entries = reader.audit(after, limit);
-        if (!entries) return error_response(500, entries.error());
-        v1::AuditList list;
-        for (const auto& entry : *entries) {
-            auto& shown = *list.add_entries();
-            shown.set_entry(entry.entry);
-            shown.set_at(entry.at);
-            shown.set_who(entry.who);
-            shown.set_from(entry.from);
-            shown.set_action(entry.action);
-            shown.set_detail(entry.detail);
-            shown.set_outcome(entry.outcome);
-            shown.set_hash(entry.hash);
-        }
-        if (entries->size() == limit) list.set_next_after(entries->back().entry);
-        return json_response(list);
-    });
+    aside(asked.respond,
+          [after = after->value_or(0), limit = limit->value_or(audit_page_max)](archive::Reader& reader) {
+              const auto entries = reader.audit(after, limit);
+              if (!entries) return error_response(500, entries.error());
+              v1::AuditList list;
+              for (const auto& entry : *entries) {
+                  auto& shown = *list.add_entries();
+                  shown.set_entry(entry.entry);
+                  shown.set_at(entry.at);
+                  shown.set_who(entry.who);
+                  shown.set_from(entry.from);
+                  shown.set_action(entry.action);
+                  shown.set_detail(entry.detail);
+                  shown.set_outcome(entry.outcome);
+                  shown.set_hash(entry.hash);
+              }
+              if (entries->size() == limit) list.set_next_after(entries->back().entry);
+              return json_response(list);
+          });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,7 +11,8 @@ namespace {
 /// Answers with the item that something became, once it is durable.
 std::function<void(Result<archive::Annotation>)> added(const Respond& respond) {
     return [respond](const Result<archive::Annotation>& annotation) {
-        respond(annotation ? json_response(archive::to_item(*annotation), 201) : error_response(503, annotation.error()));
+        respond(annotation ? json_response(archive::to_item(*annotation), 201)
+                           : error_response(503, annotation.error()));
     };
 }
 
@@ -24,11 +25,12 @@ Result<Request> request_of(const Asked& asked) {
     return wanted;
 }
 
-} // namespace
+}  // namespace
 
 void Api::annotate(const Asked& asked, Annotating annotating) {
-    const auto question = [this, annotating = std::move(annotating), clock = clock(), respond = asked.respond](
-                              archive::Reader& reader, archive::RunId id, const QueryText&) -> std::optional<HttpResponse> {
+    const auto question = [this, annotating = std::move(annotating), clock = clock(),
+                           respond = asked.respond](archive::Reader& reader, archive::RunId id,
+                                                    const QueryText&) -> std::optional<HttpResponse> {
         const auto newest = reader.newest_ert(id);
         if (!newest) return error_response(500, newest.error());
         auto made = annotating(reader, id, clock(id).value_or(*newest));
@@ -58,9 +60,10 @@ void Api::post_alarm(const Asked& asked) {
         auto action = alarm_action_of(wanted, parts_.dictionary, *links, wanted.by(), now);
         if (!action) return error_response(422, action.error());
         const auto act = telemetry::alarm_act(action->action);
-        if (const auto may = reader.may(id, action->alarm, *act, action->at); !may) return error_response(409, may.error());
+        if (const auto may = reader.may(id, action->alarm, *act, action->at); !may)
+            return error_response(409, may.error());
         return std::move(*action);
     });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

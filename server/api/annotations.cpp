@@ -10,7 +10,8 @@ namespace aeolis::server {
 namespace {
 
 Result<void> check_text(const char* field, const std::string& text, std::size_t octets_max) {
-    if (text.size() > octets_max) return Error{fmt::format("{}: {} octets, at most {}", field, text.size(), octets_max)};
+    if (text.size() > octets_max)
+        return Error{fmt::format("{}: {} octets, at most {}", field, text.size(), octets_max)};
     if (text.find('\0') != std::string::npos) return Error{fmt::format("{}: a NUL character is no text", field)};
     return {};
 }
@@ -20,7 +21,7 @@ Result<void> check_author(const std::string& by) {
     return check_text("by", by, author_octets_max);
 }
 
-} // namespace
+}  // namespace
 
 Result<void> check_note(const std::string& text, const std::string& by) {
     if (auto author = check_author(by); !author) return author;
@@ -42,7 +43,8 @@ Result<archive::NoteRecord> note_of(const v1::NoteRequest& request, const std::s
     return note;
 }
 
-Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& request, const dictionary::Dictionary& dictionary,
+Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& request,
+                                                   const dictionary::Dictionary& dictionary,
                                                    std::span<const std::string> links, const std::string& by, Ert now) {
     if (auto author = check_author(by); !author) return author.error();
     if (auto text = check_text("note", request.note(), note_octets_max); !text) return text.error();
@@ -56,7 +58,8 @@ Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& reque
     else
         return Error{fmt::format("channel: there is no channel, packet or link '{}'", request.channel())};
     const auto act = telemetry::alarm_act(request.action());
-    if (!act) return Error{fmt::format("action: '{}' is none of acknowledge, shelve, unshelve, reset", request.action())};
+    if (!act)
+        return Error{fmt::format("action: '{}' is none of acknowledge, shelve, unshelve, reset", request.action())};
     if (*act == telemetry::AlarmAct::shelve) {
         const double seconds = request.shelve_s();
         if (!(seconds > 0.0 && seconds <= shelve_s_max))
@@ -72,4 +75,4 @@ Result<archive::AlarmActionRecord> alarm_action_of(const v1::AlarmRequest& reque
     return record;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -18,10 +18,11 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::string_view api_prefix = "/api/v1/";
-constexpr std::size_t body_of_nobody_octets_max = 4'096; ///< ours: a log-in is shorter
-constexpr std::size_t brief_body_octets_max = 32'768;    ///< ours: a note of its greatest length, every letter escaped; a user's list of a thousand commands
-constexpr std::size_t audit_detail_max = 2'000; ///< ours: of a request's body
-constexpr std::size_t audit_outcome_max = 500;  ///< ours: of an answer's
+constexpr std::size_t body_of_nobody_octets_max = 4'096;  ///< ours: a log-in is shorter
+constexpr std::size_t brief_body_octets_max =
+    32'768;  ///< ours: a note of its greatest length, every letter escaped; a user's list of a thousand commands
+constexpr std::size_t audit_detail_max = 2'000;  ///< ours: of a request's body
+constexpr std::size_t audit_outcome_max = 500;   ///< ours: of an answer's
 
 std::vector<std::string> split(std::string_view path) {
     std::vector<std::string> parts;
@@ -47,7 +48,7 @@ std::optional<std::vector<std::string>> parts_of(std::string_view pattern, std::
     return parts;
 }
 
-} // namespace
+}  // namespace
 
 std::optional<archive::RunId> run_id(std::string_view text) {
     std::uint32_t number = 0;
@@ -74,18 +75,21 @@ HttpResponse error_response(unsigned status, const Error& error) {
 }
 
 HttpResponse stopped_response(std::string_view instead) {
-    return error_response(503, fmt::format("the question was stopped after {} s: {}", QueryThreads::question_seconds_max.count(), instead));
+    return error_response(503, fmt::format("the question was stopped after {} s: {}",
+                                           QueryThreads::question_seconds_max.count(), instead));
 }
 
 HttpResponse refusal_of(const Operator& who, Right right) {
     if (may(who, right)) return {};
     if (!who.role)
         return error_response(401, "log in first: POST /api/v1/session, or send a token (Authorization: Bearer TOKEN)");
-    if (!who.accounts) return error_response(409, "this server has no accounts: it is started with --accounts FILE to have some");
+    if (!who.accounts)
+        return error_response(409, "this server has no accounts: it is started with --accounts FILE to have some");
     if (who.choose_password)
-        return error_response(403, fmt::format("choose a password of your own first: PATCH /api/v1/users/{}", who.user));
-    return error_response(403, fmt::format("{} is {}: this needs the right to {}, which begins with {}", who.user, name_of(*who.role),
-                                           name_of(right), name_of(*least_role(right))));
+        return error_response(403,
+                              fmt::format("choose a password of your own first: PATCH /api/v1/users/{}", who.user));
+    return error_response(403, fmt::format("{} is {}: this needs the right to {}, which begins with {}", who.user,
+                                           name_of(*who.role), name_of(right), name_of(*least_role(right))));
 }
 
 namespace {
@@ -101,10 +105,12 @@ HttpResponse answered(Answer answer) {
     }
 }
 
-} // namespace
+}  // namespace
 
-archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail, const std::string& outcome) {
-    if (detail.size() > audit_detail_max) detail = detail.substr(0, audit_detail_max) + fmt::format(" … ({} octets)", detail.size());
+archive::AuditRecord audit_record(const Operator& who, std::string_view action, std::string detail,
+                                  const std::string& outcome) {
+    if (detail.size() > audit_detail_max)
+        detail = detail.substr(0, audit_detail_max) + fmt::format(" … ({} octets)", detail.size());
     archive::AuditRecord record;
     record.at = wall_clock_text();
     record.who = who.user;
@@ -123,15 +129,17 @@ std::span<const Api::Route> Api::routes() {
         {"DELETE", "/api/v1/session", Right::open, &Api::log_out},
         {"GET", "/api/v1/users", Right::administer, &Api::list_users},
         {"POST", "/api/v1/users", Right::administer, &Api::add_user, Query::none, "user", Noted::refusals},
-        {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user}, // one's own needs no right
+        {"PATCH", "/api/v1/users/{user}", Right::open, &Api::change_user},  // one's own needs no right
         {"DELETE", "/api/v1/users/{user}", Right::administer, &Api::remove_user, Query::none, "user"},
         {"GET", "/api/v1/tokens", Right::administer, &Api::list_tokens},
         {"POST", "/api/v1/tokens", Right::administer, &Api::add_token, Query::none, "token"},
         {"DELETE", "/api/v1/tokens/{name}", Right::administer, &Api::remove_token, Query::none, "token"},
         {"GET", "/api/v1/audit", Right::administer, &Api::audit, Query::own},
         {"GET", "/api/v1/runs", Right::watch, &Api::list_runs, Query::own},
-        {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, Query::none, "command", Noted::refusals},
-        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, Query::none, "command", Noted::refusals, Body::whole},
+        {"POST", "/api/v1/runs/{run}/commands", Right::command, &Api::post_command, Query::none, "command",
+         Noted::refusals},
+        {"POST", "/api/v1/runs/{run}/sequences", Right::command, &Api::post_sequence, Query::none, "command",
+         Noted::refusals, Body::whole},
         {"POST", "/api/v1/runs/{run}/alarms", Right::command, &Api::post_alarm, Query::none, "alarm"},
         {"POST", "/api/v1/runs/{run}/notes", Right::command, &Api::post_note, Query::none, "note"},
         {"GET", "/api/v1/runs/{run}", Right::watch, &Api::run_question, Query::own},
@@ -141,15 +149,20 @@ std::span<const Api::Route> Api::routes() {
         {"GET", "/api/v1/dictionary", Right::watch, &Api::dictionary},
         {"GET", "/api/v1/openapi.yaml", Right::open, &Api::openapi},
         {"GET", "/api/v1/rehearsals", Right::watch, &Api::list_rehearsals},
-        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
+        {"POST", "/api/v1/rehearsals", Right::rehearse, &Api::start_rehearsal, Query::none, "rehearsal", Noted::all,
+         Body::whole},
         {"GET", "/api/v1/rehearsals/current", Right::watch, &Api::current_rehearsal},
-        {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
-        {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal", Noted::all, Body::whole},
+        {"POST", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal",
+         Noted::all, Body::whole},
+        {"PATCH", "/api/v1/rehearsals/current", Right::rehearse, &Api::control_rehearsal, Query::none, "rehearsal",
+         Noted::all, Body::whole},
         {"GET", "/api/v1/campaigns", Right::watch, &Api::list_campaigns},
-        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Noted::all, Body::whole},
+        {"POST", "/api/v1/campaigns", Right::rehearse, &Api::start_campaign, Query::none, "campaign", Noted::all,
+         Body::whole},
         {"GET", "/api/v1/campaigns/{campaign}", Right::watch, &Api::campaign_report},
         {"GET", "/api/v1/campaigns/{campaign}/touchdowns", Right::watch, &Api::campaign_touchdowns, Query::own},
-        {"POST", "/api/v1/campaigns/{campaign}/cancel", Right::rehearse, &Api::cancel_campaign, Query::none, "campaign"},
+        {"POST", "/api/v1/campaigns/{campaign}/cancel", Right::rehearse, &Api::cancel_campaign, Query::none,
+         "campaign"},
         {"GET", "/api/v1/stream", Right::watch, &Api::stream},
         {"GET", "/healthz", Right::open, &Api::health},
         {"GET", "/metrics", Right::watch, &Api::metrics},
@@ -170,18 +183,22 @@ void Api::handle(HttpRequest request, const Respond& respond) {
             auto who = parts_.access.identify(request.credentials);
             return answer(route, {std::move(request), std::move(who), std::move(*parts), respond});
         }
-        if (others.find(route.method) == std::string::npos) others += (others.empty() ? "" : " and ") + std::string{route.method};
+        if (others.find(route.method) == std::string::npos)
+            others += (others.empty() ? "" : " and ") + std::string{route.method};
     }
-    if (!others.empty()) return respond(error_response(405, fmt::format("{} {}: only {} here", request.method, path, others)));
+    if (!others.empty())
+        return respond(error_response(405, fmt::format("{} {}: only {} here", request.method, path, others)));
     if (path.starts_with(api_prefix))
-        return respond(error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
+        return respond(
+            error_response(404, fmt::format("{}: there is no such route; /api/v1/openapi.yaml lists them", path)));
     if (method != "GET") return respond(error_response(405, fmt::format("{} {}: only GET here", request.method, path)));
     aside(respond, [this, path](archive::Reader&) { return parts_.console.file(path); }, Haste::at_once);
 }
 
 std::size_t Api::body_octets(const Credentials& credentials, std::string_view method, std::string_view path) const {
     const auto who = parts_.access.identify(credentials);
-    const auto route = std::ranges::find_if(routes(), [&](const Route& each) { return each.method == method && parts_of(each.path, path); });
+    const auto route = std::ranges::find_if(
+        routes(), [&](const Route& each) { return each.method == method && parts_of(each.path, path); });
     if (route == routes().end() || !who.role || !may(who, route->right)) return body_of_nobody_octets_max;
     return route->body == Body::whole ? WebServer::body_octets_max : brief_body_octets_max;
 }
@@ -190,12 +207,15 @@ void Api::answer(const Route& route, Asked asked) {
     const bool changes = route.method != "GET";
     auto refused = refusal_of(asked.who, route.right);
     if (refused.status == 200 && !changes && route.query == Query::none && route.path.starts_with(api_prefix))
-        if (const auto none = QueryText::parse(asked.request.query, {}); !none) refused = error_response(400, none.error());
+        if (const auto none = QueryText::parse(asked.request.query, {}); !none)
+            refused = error_response(400, none.error());
     const bool of_run = route.path.starts_with("/api/v1/runs/{run}");
     if (refused.status == 200 && of_run && asked.parts[0] != "latest" && !run_id(asked.parts[0]))
-        refused = error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", asked.parts[0]));
+        refused =
+            error_response(404, fmt::format("run '{}': there is none; a number or 'latest' is wanted", asked.parts[0]));
     if (refused.status == 200 && changes && !parts_.pipeline.audit_has_room())
-        return asked.respond(error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
+        return asked.respond(
+            error_response(503, "nothing is done that the audit cannot take: " + parts_.pipeline.fault()));
     const bool refuses = refused.status != 200;
     if (of_run && asked.parts[0] == "latest") name_latest(asked);
     if (!route.audit.empty() && (refuses || route.noted == Noted::all)) asked.respond = noted(asked, route.audit);
@@ -208,16 +228,21 @@ void Api::name_latest(Asked& asked) const {
     if (run == 0) return;
     asked.parts[0] = std::to_string(run);
     const std::string_view latest = "latest";
-    asked.request.path.replace(asked.request.path.find(latest), latest.size(), asked.parts[0]); // the audit says it too
+    asked.request.path.replace(asked.request.path.find(latest), latest.size(),
+                               asked.parts[0]);  // the audit says it too
 }
 
 Respond Api::noted(const Asked& asked, std::string_view action) {
-    if (!asked.who.role) return asked.respond; // nobody: else anyone could fill the audit
+    if (!asked.who.role) return asked.respond;  // nobody: else anyone could fill the audit
     const bool has_password = asked.request.path.starts_with("/api/v1/users");
     return [this, who = asked.who, action,
-            detail = fmt::format("{} {} {}", asked.request.method, asked.request.path, has_password ? "" : asked.request.body), respond = asked.respond](HttpResponse response) {
-        const std::string outcome = response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body);
-        parts_.pipeline.audit(audit_record(who, action, detail, outcome), [respond, response = std::move(response)] { respond(response); });
+            detail = fmt::format("{} {} {}", asked.request.method, asked.request.path,
+                                 has_password ? "" : asked.request.body),
+            respond = asked.respond](HttpResponse response) {
+        const std::string outcome =
+            response.status < 400 ? "done" : fmt::format("refused ({}): {}", response.status, response.body);
+        parts_.pipeline.audit(audit_record(who, action, detail, outcome),
+                              [respond, response = std::move(response)] { respond(response); });
     };
 }
 
@@ -226,7 +251,9 @@ void Api::note(const Operator& who, std::string_view action, std::string detail,
 }
 
 void Api::aside(const Respond& respond, std::function<HttpResponse(archive::Reader&)> answer, Haste haste) {
-    const auto job = [answer = std::move(answer), respond](archive::Reader& reader) { respond(answered([&] { return answer(reader); })); };
+    const auto job = [answer = std::move(answer), respond](archive::Reader& reader) {
+        respond(answered([&] { return answer(reader); }));
+    };
     if (!parts_.queries.ask(job, {}, haste)) respond(error_response(503, QueryThreads::busy));
 }
 
@@ -236,34 +263,37 @@ void Api::run_question(const Asked& asked) {
     const auto& respond = asked.respond;
     const auto* question = server::run_question(what);
     if (question == nullptr)
-        return respond(error_response(404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
+        return respond(error_response(
+            404, fmt::format("'{}' cannot be asked of a run; these can: {}", what, run_question_names())));
     auto query = QueryText::parse(asked.request.query, question->parameters);
     if (!query) return respond(error_response(400, query.error()));
-    if (!question->formats.empty()) // before the archive is asked for what nobody could take
-        if (const auto format = query->one_of("format", question->formats); !format) return respond(error_response(400, format.error()));
+    if (!question->formats.empty())  // before the archive is asked for what nobody could take
+        if (const auto format = query->one_of("format", question->formats); !format)
+            return respond(error_response(400, format.error()));
     const auto& dictionary = parts_.dictionary;
     // What the archive cannot know of the run that goes on: its pace and its clocks.
     const auto current = current_run();
     if (const auto id = run_id(run); what.empty() && id && id->value == current.run())
         return respond(json_response(current));
-    ask(asked, std::move(*query),
-        [&dictionary, clock = clock(), instructor = may(asked.who, Right::rehearse), answer = question->answer](
-            archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
+    ask(
+        asked, std::move(*query),
+        [&dictionary, clock = clock(), instructor = may(asked.who, Right::rehearse),
+         answer = question->answer](archive::Reader& reader, archive::RunId id, const QueryText& asked_of) {
             return answer({dictionary, clock(id), instructor}, reader, id, asked_of);
         },
         what.empty() ? Haste::soon : Haste::in_turn);
 }
 
 std::function<std::optional<Ert>(archive::RunId)> Api::clock() const {
-    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](archive::RunId run) {
-        return run.value == current ? now : std::nullopt;
-    };
+    return [current = parts_.hub.current_run(), now = ert_from_day_of_year(parts_.hub.latest_clocks().ert())](
+               archive::RunId run) { return run.value == current ? now : std::nullopt; };
 }
 
 void Api::ask(const Asked& asked, QueryText query, RunQuestion question, Haste haste) {
-    const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question), respond = asked.respond](archive::Reader& reader) {
+    const auto job = [run = asked.parts[0], query = std::move(query), question = std::move(question),
+                      respond = asked.respond](archive::Reader& reader) {
         auto id = run_id(run);
-        if (!id) { // this server has flown none yet
+        if (!id) {  // this server has flown none yet
             const auto runs = reader.runs();
             if (!runs) return respond(error_response(500, runs.error()));
             if (runs->runs().empty()) return respond(error_response(404, "run 'latest': no run has been recorded yet"));
@@ -278,8 +308,7 @@ void Api::ask(const Asked& asked, QueryText query, RunQuestion question, Haste h
             return given.value_or(HttpResponse{});
         })};
         if (later) return;
-        if (reader.stopped())
-            response = stopped_response("ask for less, by from and to, points or limit");
+        if (reader.stopped()) response = stopped_response("ask for less, by from and to, points or limit");
         respond(std::move(*response));
     };
     if (!parts_.queries.ask(job, asked.request.gone, haste)) asked.respond(error_response(503, QueryThreads::busy));
@@ -290,13 +319,16 @@ void Api::list_runs(const Asked& asked) {
     if (!query) return asked.respond(error_response(400, query.error()));
     auto format = query->one_of("format", list_formats);
     if (!format) return asked.respond(error_response(400, format.error()));
-    aside(asked.respond, [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
-        auto runs = reader.runs();
-        if (!runs) return error_response(500, runs.error());
-        for (auto& run : *runs->mutable_runs())
-            if (run.run() == current.run()) run = current;
-        return list_response(format, *runs, {"runs"});
-    }, Haste::soon);
+    aside(
+        asked.respond,
+        [current = current_run(), format = std::move(*format)](archive::Reader& reader) {
+            auto runs = reader.runs();
+            if (!runs) return error_response(500, runs.error());
+            for (auto& run : *runs->mutable_runs())
+                if (run.run() == current.run()) run = current;
+            return list_response(format, *runs, {"runs"});
+        },
+        Haste::soon);
 }
 
 void Api::list_scenarios(const Asked& asked) {
@@ -319,7 +351,9 @@ void Api::stream(const Asked& asked) {
 void Api::health(const Asked& asked) {
     const std::string fault = parts_.pipeline.fault();
     // Whoever may not watch is not told the names of files.
-    const std::string text = fault.empty() ? "ok" : may(asked.who, Right::watch) ? fault : "the archive cannot be written";
+    const std::string text = fault.empty()                  ? "ok"
+                             : may(asked.who, Right::watch) ? fault
+                                                            : "the archive cannot be written";
     asked.respond({fault.empty() ? 200U : 503U, "text/plain; charset=utf-8", "no-store", text + "\n"});
 }
 
@@ -332,4 +366,4 @@ v1::RunState Api::current_run() const {
     return state;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

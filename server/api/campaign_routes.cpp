@@ -10,18 +10,24 @@ namespace {
 
 template <typename Message>
 HttpResponse response_or_conflict(const Result<Message>& done, unsigned status = 200) {
-    return done ? json_response(*done, status) : error_response(409, done.error().message); // a file that cannot be read, too: it is another's, or an old one
+    return done ? json_response(*done, status)
+                : error_response(
+                      409, done.error().message);  // a file that cannot be read, too: it is another's, or an old one
 }
 
-} // namespace
+}  // namespace
 
 void Api::ask_campaign(const Asked& asked, CampaignQuestion question) {
-    aside(asked.respond, [this, name = asked.parts[0], gone = asked.request.gone, question = std::move(question)](archive::Reader&) {
+    aside(asked.respond, [this, name = asked.parts[0], gone = asked.request.gone,
+                          question = std::move(question)](archive::Reader&) {
         const auto file = parts_.campaigns.file_of(name);
-        if (!file) return error_response(404, fmt::format("campaign '{}': there is none; GET /api/v1/campaigns lists them", name));
+        if (!file)
+            return error_response(404,
+                                  fmt::format("campaign '{}': there is none; GET /api/v1/campaigns lists them", name));
         const auto stop = parts_.queries.stop_of_question(gone);
         auto response = question(*file, stop);
-        return stop() ? stopped_response("ask for fewer touchdowns by limit; aeolis campaign reads a file of any size") : response;
+        return stop() ? stopped_response("ask for fewer touchdowns by limit; aeolis campaign reads a file of any size")
+                      : response;
     });
 }
 
@@ -53,7 +59,8 @@ void Api::campaign_touchdowns(const Asked& asked) {
     const auto after = query->count("after", UINT32_MAX), limit = query->amount("limit", most);
     if (!after) return asked.respond(error_response(400, after.error()));
     if (!limit) return asked.respond(error_response(400, limit.error()));
-    ask_campaign(asked, [this, place = after->value_or(0), limit = limit->value_or(most)](const std::filesystem::path& file, const std::function<bool()>& stop) {
+    ask_campaign(asked, [this, place = after->value_or(0), limit = limit->value_or(most)](
+                            const std::filesystem::path& file, const std::function<bool()>& stop) {
         return response_or_conflict(parts_.campaigns.touchdowns(file, place, limit, stop));
     });
 }
@@ -64,4 +71,4 @@ void Api::cancel_campaign(const Asked& asked) {
     });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -6,40 +6,48 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-// The routes of commands, and who may send which: here, by the stream (console_backend.cpp) and by a scenario's script alike.
+// The routes of commands, and who may send which: here, by the stream (console_backend.cpp) and by a scenario's script
+// alike.
 namespace aeolis::server {
 namespace {
 
-constexpr int sequence_max = 100; // ours: commands in one command file
+constexpr int sequence_max = 100;  // ours: commands in one command file
 
-Result<void> may_send_named(const Operator& who, const dictionary::Dictionary& dictionary, const std::string& name, bool dry_run) {
+Result<void> may_send_named(const Operator& who, const dictionary::Dictionary& dictionary, const std::string& name,
+                            bool dry_run) {
     const auto* command = dictionary.command(name);
     if (command == nullptr) return {};
     if (!who.commands.empty() && std::ranges::find(who.commands, command->name) == who.commands.end())
-        return Error{fmt::format("{} may not send {}: it is not among the commands of this account", who.user, command->name)};
+        return Error{
+            fmt::format("{} may not send {}: it is not among the commands of this account", who.user, command->name)};
     if (!commands::is_hazardous(*command) || dry_run || may(who, Right::hazardous)) return {};
-    return Error{fmt::format("{} is hazardous: it needs a {}, and {} is {}", command->name, name_of(*least_role(Right::hazardous)),
-                             who.user, name_of(*who.role))};
+    return Error{fmt::format("{} is hazardous: it needs a {}, and {} is {}", command->name,
+                             name_of(*least_role(Right::hazardous)), who.user, name_of(*who.role))};
 }
 
 /// When it is acted upon, a number that no command has yet may be any command's, a hazardous one's too.
 Result<void> may_act_on_any(const Operator& who, const std::string& action) {
-    if (!who.commands.empty()) return Error{fmt::format("{} may not {}: this account has a list of commands, and acts on no others", who.user, action)};
+    if (!who.commands.empty())
+        return Error{
+            fmt::format("{} may not {}: this account has a list of commands, and acts on no others", who.user, action)};
     if (!may(who, Right::hazardous))
-        return Error{fmt::format("{} may not {}: it needs a {}, and {} is {}", who.user, action, name_of(*least_role(Right::hazardous)), who.user,
-                                 name_of(*who.role))};
+        return Error{fmt::format("{} may not {}: it needs a {}, and {} is {}", who.user, action,
+                                 name_of(*least_role(Right::hazardous)), who.user, name_of(*who.role))};
     return {};
 }
 
 /// Who may send what waits may let it go, or stop it: to stop what must be in time is as grave as to send it.
-Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk, const v1::CommandRequest& request) {
+Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
+                     const v1::CommandRequest& request) {
     if (!who.accounts) return {};
     const std::string& action = request.action();
     const auto name = desk.name_of_command(request.number());
     const auto allowed = name ? may_send_named(who, dictionary, *name, false) : may_act_on_any(who, action);
-    if (!allowed && name) return Error{fmt::format("{} command {}: {}", action, request.number(), allowed.error().message)};
+    if (!allowed && name)
+        return Error{fmt::format("{} command {}: {}", action, request.number(), allowed.error().message)};
     if (!allowed) return allowed;
-    if (action == "approve" && who.session.empty()) return Error{"approve: a second person does it, and " + who.user + " is none"};
+    if (action == "approve" && who.session.empty())
+        return Error{"approve: a second person does it, and " + who.user + " is none"};
     return {};
 }
 
@@ -47,13 +55,14 @@ Result<void> may_act(const Operator& who, const dictionary::Dictionary& dictiona
 Result<void> complete(const Asked& asked, v1::CommandRequest& command) {
     const auto& run = asked.parts[0];
     const auto id = run_id(run);
-    if (id && command.run() != 0 && command.run() != id->value) return Error{fmt::format("run: the path says {}, the body {}", run, command.run())};
+    if (id && command.run() != 0 && command.run() != id->value)
+        return Error{fmt::format("run: the path says {}, the body {}", run, command.run())};
     if (id) command.set_run(id->value);
     name_asker(asked.who, command);
     return {};
 }
 
-} // namespace
+}  // namespace
 
 void name_asker(const Operator& who, v1::CommandRequest& request) {
     if (who.accounts) request.set_controller(who.user);
@@ -61,15 +70,18 @@ void name_asker(const Operator& who, v1::CommandRequest& request) {
     request.clear_analysis();
 }
 
-Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk, const v1::CommandRequest& request) {
+Result<void> may_send(const Operator& who, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk,
+                      const v1::CommandRequest& request) {
     if (!request.action().empty()) return may_act(who, dictionary, desk, request);
     return may_send_named(who, dictionary, request.command(), request.dry_run());
 }
 
-RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials, const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
+RehearsalDesk::May may_still_send(Access& access, const Credentials& credentials,
+                                  const dictionary::Dictionary& dictionary, const RehearsalDesk& desk) {
     return [&access, credentials, &dictionary, &desk](const v1::CommandRequest& request) -> Result<void> {
         const auto who = access.identify(credentials);
-        if (!may(who, Right::command)) return Error{"the right to send it was lost while it waited for a change of the timeline"};
+        if (!may(who, Right::command))
+            return Error{"the right to send it was lost while it waited for a change of the timeline"};
         return may_send(who, dictionary, desk, request);
     };
 }
@@ -104,29 +116,33 @@ void Api::post_sequence(const Asked& asked) {
         return asked.respond(error_response(400, parsed.error()));
     const auto respond = sequence.dry_run() ? asked.respond : noted(asked, "command");
     if (sequence.commands().empty() || sequence.commands_size() > sequence_max)
-        return respond(error_response(400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
+        return respond(error_response(
+            400, fmt::format("commands: 1 to {} are wanted, here are {}", sequence_max, sequence.commands_size())));
     for (int i = 0; i < sequence.commands_size(); ++i) {
         auto& command = *sequence.mutable_commands(i);
         const auto at = [i](const std::string& error) { return fmt::format("commands[{}]: {}", i, error); };
         if (command.dry_run() || !command.action().empty())
             return respond(error_response(400, at("dry_run and action are not for a command of a sequence")));
-        if (const auto right = complete(asked, command); !right) return respond(error_response(400, at(right.error().message)));
+        if (const auto right = complete(asked, command); !right)
+            return respond(error_response(400, at(right.error().message)));
         command.set_dry_run(sequence.dry_run());
         if (const auto allowed = may_send(asked.who, parts_.dictionary, parts_.desk, command); !allowed)
             return respond(error_response(403, at(allowed.error().message)));
     }
     const auto still = may_still_send(parts_.access, asked.request.credentials, parts_.dictionary, parts_.desk);
-    parts_.desk.sequence({sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), still, [respond](std::vector<v1::CommandReply> replies) {
-        v1::SequenceReply reply;
-        reply.set_accepted(true);
-        for (auto& each : replies) {
-            if (!each.reason().empty() && (reply.reason().empty() || (!each.accepted() && reply.accepted())))
-                reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
-            if (!each.accepted()) reply.set_accepted(false);
-            *reply.add_commands() = std::move(each);
-        }
-        respond(json_response(reply, reply.accepted() ? 202 : 409));
-    });
+    parts_.desk.sequence(
+        {sequence.commands().begin(), sequence.commands().end()}, sequence.dry_run(), still,
+        [respond](std::vector<v1::CommandReply> replies) {
+            v1::SequenceReply reply;
+            reply.set_accepted(true);
+            for (auto& each : replies) {
+                if (!each.reason().empty() && (reply.reason().empty() || (!each.accepted() && reply.accepted())))
+                    reply.set_reason(fmt::format("commands[{}]: {}", reply.commands_size(), each.reason()));
+                if (!each.accepted()) reply.set_accepted(false);
+                *reply.add_commands() = std::move(each);
+            }
+            respond(json_response(reply, reply.accepted() ? 202 : 409));
+        });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -14,15 +14,14 @@ inline bool is_formula(const std::string& text) {
     return error != std::errc{} || end != text.data() + text.size();
 }
 
-/// A field of a line, by RFC 4180. Words of people and of other missions may begin like a formula: these have an apostrophe in front, by
-/// which a spreadsheet takes them for the text that they are.
+/// A field of a line, by RFC 4180. Words of people and of other missions may begin like a formula: these have an
+/// apostrophe in front, by which a spreadsheet takes them for the text that they are.
 inline std::string csv_text(const std::string& text) {
     const std::string shown = is_formula(text) ? "'" + text : text;
     if (shown.find_first_of(",\"\r\n") == std::string::npos) return shown;
     std::string quoted = "\"";
-    for (const char c : shown)
-        quoted.append(c == '"' ? 2 : 1, c);
+    for (const char c : shown) quoted.append(c == '"' ? 2 : 1, c);
     return quoted + '"';
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

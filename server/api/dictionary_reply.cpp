@@ -19,30 +19,21 @@ void add_labels(const dictionary::Type& type, google::protobuf::RepeatedPtrField
 const char* name_of(dictionary::Significance significance) {
     using dictionary::Significance;
     switch (significance) {
-    case Significance::none:
-        return "none";
-    case Significance::watch:
-        return "watch";
-    case Significance::warning:
-        return "warning";
-    case Significance::distress:
-        return "distress";
-    case Significance::critical:
-        return "critical";
-    case Significance::severe:
-        return "severe";
+    case Significance::none: return "none";
+    case Significance::watch: return "watch";
+    case Significance::warning: return "warning";
+    case Significance::distress: return "distress";
+    case Significance::critical: return "critical";
+    case Significance::severe: return "severe";
     }
     return "none";
 }
 
 const char* name_of(dictionary::ToneSet set) {
     switch (set) {
-    case dictionary::ToneSet::prime:
-        return "prime";
-    case dictionary::ToneSet::second_chance:
-        return "second_chance";
-    case dictionary::ToneSet::spare:
-        return "spare";
+    case dictionary::ToneSet::prime: return "prime";
+    case dictionary::ToneSet::second_chance: return "second_chance";
+    case dictionary::ToneSet::spare: return "spare";
     }
     return "spare";
 }
@@ -57,8 +48,8 @@ void add_limits(const dictionary::Alarms& alarms, const std::string& context, v1
     }
 }
 
-void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Channel& channel, const dictionary::Packet* packet,
-                 v1::DictionaryReply& reply) {
+void add_channel(const dictionary::Dictionary& dictionary, const dictionary::Channel& channel,
+                 const dictionary::Packet* packet, v1::DictionaryReply& reply) {
     auto& added = *reply.add_channels();
     added.set_id(channel.id.value);
     added.set_name(channel.name);
@@ -105,7 +96,7 @@ void add_command(const dictionary::Dictionary& dictionary, const dictionary::Com
     }
 }
 
-} // namespace
+}  // namespace
 
 v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
     v1::DictionaryReply reply;
@@ -119,8 +110,7 @@ v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
         const auto carrier = carriers.find(channel.id);
         add_channel(dictionary, channel, carrier == carriers.end() ? nullptr : carrier->second, reply);
     }
-    for (const auto& command : dictionary.commands)
-        add_command(dictionary, command, reply);
+    for (const auto& command : dictionary.commands) add_command(dictionary, command, reply);
     for (const auto& tone : dictionary.tones) {
         auto& added = *reply.add_tones();
         added.set_id(tone.id.value);
@@ -131,4 +121,4 @@ v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary) {
     return reply;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -8,4 +8,4 @@ namespace aeolis::server {
 /// What the console is told of the mission's words.
 v1::DictionaryReply dictionary_reply(const dictionary::Dictionary& dictionary);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

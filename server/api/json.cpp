@@ -22,4 +22,4 @@ Result<void> from_json(std::string_view json, google::protobuf::Message& message
     return Error{"not a " + message.GetDescriptor()->name() + " in JSON: " + said.substr(0, said.find('\n'))};
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -14,4 +14,4 @@ std::string to_json(const google::protobuf::Message& message);
 /// Strict: an unknown field or a wrong type is an Error that names it.
 Result<void> from_json(std::string_view json, google::protobuf::Message& message);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

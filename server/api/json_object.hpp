@@ -46,9 +46,8 @@ class JsonObject {
 template <typename Rows, typename ToJson>
 std::string json_array(const Rows& rows, ToJson to_json) {
     std::string text;
-    for (const auto& row : rows)
-        text += (text.empty() ? "" : ",") + to_json(row);
+    for (const auto& row : rows) text += (text.empty() ? "" : ",") + to_json(row);
     return "[" + text + "]";
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

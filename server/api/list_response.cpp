@@ -19,12 +19,13 @@ using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 
-constexpr double dated_s_max = 1.0e9; // ours: an SCLK that is further from where the clocks meet, thirty years, is none
+constexpr double dated_s_max =
+    1.0e9;  // ours: an SCLK that is further from where the clocks meet, thirty years, is none
 
 struct Column {
     std::string name;
-    std::vector<const FieldDescriptor*> path; ///< messages, then what has the value
-    bool scet = false;                        ///< that SCLK as SCET
+    std::vector<const FieldDescriptor*> path;  ///< messages, then what has the value
+    bool scet = false;                         ///< that SCLK as SCET
 };
 
 bool is_message(const FieldDescriptor& field) {
@@ -33,13 +34,16 @@ bool is_message(const FieldDescriptor& field) {
 
 /// "sclk", "fired_sclk".
 bool is_sclk(const FieldDescriptor& field) {
-    return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && field.name().ends_with("sclk") && !field.is_repeated();
+    return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE && field.name().ends_with("sclk") &&
+           !field.is_repeated();
 }
 
-void add_columns(const Descriptor& row, const std::vector<std::string_view>& kinds, bool dated, const Column& above, std::vector<Column>& columns) {
+void add_columns(const Descriptor& row, const std::vector<std::string_view>& kinds, bool dated, const Column& above,
+                 std::vector<Column>& columns) {
     for (int i = 0; i < row.field_count(); ++i) {
         const auto* field = row.field(i);
-        if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end()) continue;
+        if (field->real_containing_oneof() != nullptr && std::ranges::find(kinds, field->name()) == kinds.end())
+            continue;
         Column column{above.name + (above.path.empty() ? "" : ".") + field->name(), above.path};
         column.path.push_back(field);
         if (is_message(*field) && !field->is_repeated())
@@ -53,14 +57,17 @@ void add_columns(const Descriptor& row, const std::vector<std::string_view>& kin
     }
 }
 
-/// As parameters of questions and the samples as CSV have it: SOURCE_REALTIME is "realtime", and what is not said nothing.
+/// As parameters of questions and the samples as CSV have it: SOURCE_REALTIME is "realtime", and what is not said
+/// nothing.
 std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) {
-    constexpr std::string_view unsaid = "UNSPECIFIED"; // how the name of the first of each ends, behind what all of them begin with
+    constexpr std::string_view unsaid =
+        "UNSPECIFIED";  // how the name of the first of each ends, behind what all of them begin with
     const auto* value = kind.FindValueByNumber(number);
     if (value == nullptr) return std::to_string(number);
     if (value->index() == 0) return {};
     std::string text = value->name().substr(kind.value(0)->name().size() - unsaid.size());
-    std::ranges::transform(text, text.begin(), [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    std::ranges::transform(text, text.begin(),
+                           [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
     return text;
 }
 
@@ -68,7 +75,8 @@ std::string enum_text(const google::protobuf::EnumDescriptor& kind, int number) 
 std::string value_text(const Message& message, const FieldDescriptor& field, int index) {
     const auto& reflection = *message.GetReflection();
     if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM)
-        return enum_text(*field.enum_type(), index < 0 ? reflection.GetEnumValue(message, &field) : reflection.GetRepeatedEnumValue(message, &field, index));
+        return enum_text(*field.enum_type(), index < 0 ? reflection.GetEnumValue(message, &field)
+                                                       : reflection.GetRepeatedEnumValue(message, &field, index));
     std::string text;
     if (field.cpp_type() != FieldDescriptor::CPPTYPE_STRING) {
         google::protobuf::TextFormat::PrintFieldValueToString(message, &field, index, &text);
@@ -111,14 +119,14 @@ std::string cell_text(const Message& row, const Column& column, const std::optio
 /// A line of the texts that `text_of` gives of each column.
 template <typename TextOf>
 void append_line(std::string& csv, const std::vector<Column>& columns, TextOf text_of) {
-    for (std::size_t i = 0; i < columns.size(); ++i)
-        csv += (i == 0 ? "" : ",") + csv_text(text_of(columns[i]));
+    for (std::size_t i = 0; i < columns.size(); ++i) csv += (i == 0 ? "" : ",") + csv_text(text_of(columns[i]));
     csv += '\n';
 }
 
-} // namespace
+}  // namespace
 
-HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows, const std::optional<ClockCorrelation>& clock) {
+HttpResponse list_response(std::string_view format, const Message& list, const Rows& rows,
+                           const std::optional<ClockCorrelation>& clock) {
     const auto& reflection = *list.GetReflection();
     const auto* field = list.GetDescriptor()->FindFieldByName(std::string{rows.field});
     const auto* next_after = list.GetDescriptor()->FindFieldByName("next_after");
@@ -141,4 +149,4 @@ HttpResponse list_response(std::string_view format, const Message& list, const R
     return response;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -21,7 +21,9 @@ double resident_octets() {
 double cpu_s() {
     rusage used{};
     ::getrusage(RUSAGE_SELF, &used);
-    const auto seconds = [](const timeval& time) { return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec); };
+    const auto seconds = [](const timeval& time) {
+        return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
     return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
@@ -50,7 +52,8 @@ class MetricsText {
 void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
     text.counter("archive_deliveries_total", "deliveries taken by the pipeline", pipeline.deliveries);
     text.gauge("archive_deliveries_waiting", "deliveries in the pipeline's queue", pipeline.waiting);
-    text.gauge("archive_pending_bytes", "packets and samples in memory until the disk takes them", pipeline.pending_octets);
+    text.gauge("archive_pending_bytes", "packets and samples in memory until the disk takes them",
+               pipeline.pending_octets);
     text.gauge("audit_waiting", "entries of the audit that are not durable yet", pipeline.audit_waiting);
     text.counter("archive_commits_published_total", "group commits published", pipeline.published_batches);
     text.counter("archive_failed_commits_total", "commits that failed and were tried again", pipeline.failed_commits);
@@ -70,7 +73,8 @@ void write(MetricsText& text, const PipelineThread::Figures& pipeline) {
 void write(MetricsText& text, const StreamHub& hub) {
     const auto& figures = hub.figures;
     text.gauge("stream_clients", "WebSocket clients", hub.sessions());
-    text.gauge("stream_clients_behind", "of them, those that have not been given all that is published for them", hub.sessions_behind());
+    text.gauge("stream_clients_behind", "of them, those that have not been given all that is published for them",
+               hub.sessions_behind());
     text.counter("stream_messages_total", "messages given to clients", figures.messages);
     text.counter("stream_octets_total", "octets of them", figures.octets);
     text.counter("stream_encodings_total", "batches encoded", figures.encodings);
@@ -79,7 +83,7 @@ void write(MetricsText& text, const StreamHub& hub) {
     text.counter("stream_refusals_total", "client messages that were refused", figures.refusals);
 }
 
-} // namespace
+}  // namespace
 
 void Api::metrics(const Asked& asked) {
     MetricsText text;
@@ -89,10 +93,14 @@ void Api::metrics(const Asked& asked) {
     text.counter("queries_total", "questions to the archive", parts_.queries.asked());
     text.gauge("queries_waiting", "questions that wait for a query thread", parts_.queries.waiting());
     const auto run = parts_.desk.current();
-    text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle", parts_.desk.commands_waiting());
-    text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided", parts_.desk.commands_put_off());
-    text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis", parts_.desk.commands_queued());
-    text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated", parts_.desk.commands_at_uplink());
+    text.gauge("commands_waiting", "commands and command files that wait for the run's next cycle",
+               parts_.desk.commands_waiting());
+    text.gauge("commands_put_off", "commands and command files that wait until a change of the timeline is decided",
+               parts_.desk.commands_put_off());
+    text.gauge("commands_queued", "commands that wait for their time, a controller, a pass or an analysis",
+               parts_.desk.commands_queued());
+    text.gauge("commands_at_uplink", "commands that have left the queue and are not radiated",
+               parts_.desk.commands_at_uplink());
     text.gauge("run", "number of the current run", run.run());
     text.gauge("run_attained_pace", "seconds of the vehicle a second", run.attained_pace());
     text.counter("process_cpu_seconds_total", "CPU time of the process", cpu_s());
@@ -100,4 +108,4 @@ void Api::metrics(const Asked& asked) {
     asked.respond({200, "text/plain; version=0.0.4; charset=utf-8", "no-store", std::move(text.text)});
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,7 +12,7 @@ namespace aeolis::server {
 
 Result<QueryText> QueryText::parse(std::string_view encoded, const std::vector<std::string_view>& known) {
     QueryText query;
-    const std::string text{encoded}; // Boost.URL 1.81 reads one octet behind an empty view
+    const std::string text{encoded};  // Boost.URL 1.81 reads one octet behind an empty view
     const auto parsed = boost::urls::parse_query(text);
     if (!parsed) return Error{fmt::format("the query '{}' is not well formed", encoded)};
     const boost::urls::encoding_opts plus_is_space{true};
@@ -21,8 +21,7 @@ Result<QueryText> QueryText::parse(std::string_view encoded, const std::vector<s
         if (name.empty() && !part.has_value) continue;
         if (std::ranges::find(known, name) == known.end()) {
             std::string names;
-            for (const auto each : known)
-                names += (names.empty() ? "" : ", ") + std::string{each};
+            for (const auto each : known) names += (names.empty() ? "" : ", ") + std::string{each};
             return Error{fmt::format("unknown parameter '{}'; known here: {}", name, names.empty() ? "none" : names)};
         }
         if (query.text(name)) return Error{fmt::format("parameter '{}' is given twice", name)};
@@ -86,4 +85,4 @@ std::vector<std::string> QueryText::list(std::string_view name) const {
     return values;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

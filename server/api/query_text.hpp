@@ -33,4 +33,4 @@ class QueryText {
     std::vector<std::pair<std::string, std::string>> values_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,10 +11,11 @@ constexpr std::array questions_first{Haste::in_turn, Haste::soon};
 
 std::function<bool()> gone_or_late(std::function<bool()> gone, std::chrono::milliseconds question_max) {
     const auto deadline = std::chrono::steady_clock::now() + question_max;
-    return [deadline, gone = std::move(gone)] { return (gone && gone()) || std::chrono::steady_clock::now() > deadline; };
+    return
+        [deadline, gone = std::move(gone)] { return (gone && gone()) || std::chrono::steady_clock::now() > deadline; };
 }
 
-} // namespace
+}  // namespace
 
 Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::path& archive,
                                                          const dictionary::Dictionary& dictionary,
@@ -30,15 +31,19 @@ Result<std::unique_ptr<QueryThreads>> QueryThreads::open(const std::filesystem::
     return std::unique_ptr<QueryThreads>{new QueryThreads{std::move(readers), open, question_max}};
 }
 
-QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open, std::chrono::milliseconds question_max)
+QueryThreads::QueryThreads(std::vector<archive::Reader> readers, const Open& open,
+                           std::chrono::milliseconds question_max)
     : readers_(std::move(readers)) {
     for (std::size_t i = 0; i < threads; ++i) {
-        const auto kinds = i < question_threads ? std::span<const Haste>{questions_first} : std::span<const Haste>{what_is_short};
-        threads_.emplace_back([this, &reader = readers_[i], kinds, open, question_max] { serve(reader, kinds, open, question_max); });
+        const auto kinds =
+            i < question_threads ? std::span<const Haste>{questions_first} : std::span<const Haste>{what_is_short};
+        threads_.emplace_back(
+            [this, &reader = readers_[i], kinds, open, question_max] { serve(reader, kinds, open, question_max); });
     }
 }
 
-void QueryThreads::serve(archive::Reader& reader, std::span<const Haste> kinds, const Open& open, std::chrono::milliseconds question_max) {
+void QueryThreads::serve(archive::Reader& reader, std::span<const Haste> kinds, const Open& open,
+                         std::chrono::milliseconds question_max) {
     while (const auto asked = next(kinds)) {
         if (reader.outdated())
             if (auto fresh = open()) reader = std::move(*fresh);
@@ -46,16 +51,19 @@ void QueryThreads::serve(archive::Reader& reader, std::span<const Haste> kinds, 
     }
 }
 
-std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone, std::chrono::milliseconds question_max) const {
+std::function<bool()> QueryThreads::stop_of_question(std::function<bool()> gone,
+                                                     std::chrono::milliseconds question_max) const {
     // Nobody is there to be answered once it is over.
     return [this, stop = gone_or_late(std::move(gone), question_max)] { return over_ || stop(); };
 }
 
 void QueryThreads::answer(const Asked& asked, archive::Reader& reader, std::chrono::milliseconds question_max) {
-    reader.stop_when(asked.haste == Haste::in_turn ? stop_of_question(asked.gone, question_max) : gone_or_late(asked.gone, question_max));
+    reader.stop_when(asked.haste == Haste::in_turn ? stop_of_question(asked.gone, question_max)
+                                                   : gone_or_late(asked.gone, question_max));
     try {
         asked.job(reader);
-    } catch (const std::exception& bug) { // costs that question only; who asked has had its answer, or sees the connection end
+    } catch (const std::exception&
+                 bug) {  // costs that question only; who asked has had its answer, or sees the connection end
         spdlog::error("a question could not be answered: {}", bug.what());
     }
     reader.stop_when({});
@@ -67,14 +75,14 @@ void QueryThreads::end() {
         over_ = true;
     }
     changed_.notify_all();
-    for (auto& thread : threads_)
-        thread.join();
+    for (auto& thread : threads_) thread.join();
     threads_.clear();
 }
 
 std::optional<QueryThreads::Asked> QueryThreads::next(std::span<const Haste> kinds) {
     const auto first = [&] {
-        return std::ranges::find_if(kinds, [&](Haste kind) { return !waiting_[static_cast<std::size_t>(kind)].empty(); });
+        return std::ranges::find_if(kinds,
+                                    [&](Haste kind) { return !waiting_[static_cast<std::size_t>(kind)].empty(); });
     };
     std::unique_lock lock{mutex_};
     changed_.wait(lock, [&] { return over_ || first() != kinds.end(); });
@@ -93,7 +101,7 @@ bool QueryThreads::ask(Job job, std::function<bool()> gone, Haste haste) {
         if (over_ || waiting_[kind].size() >= waiting_max[kind]) return false;
         waiting_[kind].push_back({std::move(job), std::move(gone), haste});
     }
-    changed_.notify_all(); // whoever takes this kind is among them
+    changed_.notify_all();  // whoever takes this kind is among them
     ++asked_;
     return true;
 }
@@ -101,9 +109,8 @@ bool QueryThreads::ask(Job job, std::function<bool()> gone, Haste haste) {
 std::size_t QueryThreads::waiting() const {
     const std::scoped_lock lock{mutex_};
     std::size_t all = 0;
-    for (const auto& each : waiting_)
-        all += each.size();
+    for (const auto& each : waiting_) all += each.size();
     return all;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,7 +12,7 @@ RehearsalDesk::Began tell_begun(const Respond& respond, bool going_on) {
     };
 }
 
-} // namespace
+}  // namespace
 
 void sign(const Operator& who, v1::RehearsalControl& control) {
     if (who.accounts && control.has_note()) control.mutable_note()->set_by(who.user);
@@ -26,7 +26,8 @@ void Api::list_rehearsals(const Asked& asked) {
 
 void Api::current_rehearsal(const Asked& asked) {
     const auto state = current_run();
-    asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up") : json_response(state));
+    asked.respond(state.run() == 0 ? error_response(404, "no rehearsal was started since the server came up")
+                                   : json_response(state));
 }
 
 void Api::start_rehearsal(const Asked& asked) {
@@ -52,4 +53,4 @@ void Api::control_rehearsal(const Asked& asked) {
     if (!starts) asked.respond(json_response(current_run(), 202));
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

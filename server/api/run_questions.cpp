@@ -19,10 +19,11 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t seq_max = UINT64_MAX >> 1; // SQLite's integers are signed
+constexpr std::uint64_t seq_max = UINT64_MAX >> 1;  // SQLite's integers are signed
 constexpr std::array<std::string_view, 3> series_formats{"json", "csv", "protobuf"};
 constexpr std::array<std::string_view, 2> report_formats{"json", "csv"};
-constexpr double scet_text_s = 1.0e-3;             // day-of-year texts are cut to it: the tick within it is the one that was read off
+constexpr double scet_text_s =
+    1.0e-3;  // day-of-year texts are cut to it: the tick within it is the one that was read off
 
 template <typename Message>
 HttpResponse answer(const Result<Message>& result) {
@@ -88,13 +89,14 @@ Result<v1::ChannelSeriesList> derived(archive::Reader& reader, archive::RunId ru
     return list;
 }
 
-HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run,
-                      const QueryText& query) {
+HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::SeriesQuery series;
     series.channels = query.list("names");
     const auto expression = query.text("expression");
-    if (expression && !series.channels.empty()) return error_response(400, "names and expression: one of them, not both");
-    if (!expression && series.channels.empty()) return error_response(400, "names: which channels? names=altitude_m,speed_mps");
+    if (expression && !series.channels.empty())
+        return error_response(400, "names and expression: one of them, not both");
+    if (!expression && series.channels.empty())
+        return error_response(400, "names: which channels? names=altitude_m,speed_mps");
     if (series.channels.size() > archive::channels_max)
         return error_response(
             400, fmt::format("names: {} channels, at most {} at once", series.channels.size(), archive::channels_max));
@@ -113,7 +115,8 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     }
     const auto provenance = flag_of(query, "provenance");
     if (!provenance) return error_response(400, provenance.error());
-    if (*provenance && (expression || format == "csv")) return error_response(400, "provenance: of named channels only, as json or protobuf");
+    if (*provenance && (expression || format == "csv"))
+        return error_response(400, "provenance: of named channels only, as json or protobuf");
     series.provenance = *provenance;
     const auto result = expression ? derived(reader, run, *expression, series) : reader.series(run, series);
     if (!result) return error_response(400, result.error());
@@ -122,8 +125,7 @@ HttpResponse channels(const Ground&, archive::Reader& reader, archive::RunId run
     return {200, "application/x-protobuf", "no-store", result->SerializeAsString()};
 }
 
-HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::RunId run,
-                     const QueryText& query) {
+HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::PacketQuery packets;
     packets.name = query.text("name");
     const auto apid = query.count("apid", 0x7FF);
@@ -144,7 +146,8 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     const auto page = page_of(query, 100, archive::packets_page_max);
     if (!page) return error_response(400, page.error());
     packets.verdict = query.text("verdict").value_or("");
-    if (!packets.verdict.empty() && std::ranges::none_of(archive::verdicts, [&](const char* name) { return packets.verdict == name; }))
+    if (!packets.verdict.empty() &&
+        std::ranges::none_of(archive::verdicts, [&](const char* name) { return packets.verdict == name; }))
         return error_response(400, fmt::format("verdict: there is no '{}'; verdicts are {}", packets.verdict,
                                                fmt::join(archive::verdicts, ", ")));
     packets.range = *range;
@@ -153,8 +156,7 @@ HttpResponse packets(const Ground& ground, archive::Reader& reader, archive::Run
     return answer_rows({reader, run, query}, reader.packets(run, packets), {"packets"});
 }
 
-HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run,
-                    const QueryText& query) {
+HttpResponse events(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::EventQuery events;
     events.levels = query.list("level");
     using dictionary::EventLevel;
@@ -186,8 +188,7 @@ bool is_decision(const dictionary::Dictionary& dictionary, std::string_view name
                                         [&](const dictionary::EnumValue& value) { return value.label == name; });
 }
 
-HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive::RunId run,
-                          const QueryText& query) {
+HttpResponse explanations(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     archive::ExplanationQuery explanations;
     explanations.decision = query.text("decision").value_or("");
     if (!explanations.decision.empty() && !is_decision(ground.dictionary, explanations.decision))
@@ -211,13 +212,16 @@ HttpResponse tones(const Ground&, archive::Reader& reader, archive::RunId run, c
     if (!range) return error_response(400, range.error());
     const auto page = page_of(query, archive::rows_page_max, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
-    return answer_rows({reader, run, query}, reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}), {"tones", {"tone"}});
+    return answer_rows({reader, run, query},
+                       reader.tones(run, {*range, query.text("text").value_or(""), page->after, page->limit}),
+                       {"tones", {"tone"}});
 }
 
 HttpResponse commands(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto range = range_of(query, reader, run);
     if (!range) return error_response(400, range.error());
-    return answer_rows({reader, run, query}, reader.commands(run, {*range, query.text("text").value_or("")}), {"commands"});
+    return answer_rows({reader, run, query}, reader.commands(run, {*range, query.text("text").value_or("")}),
+                       {"commands"});
 }
 
 /// What happened to alarms; or how they stand now.
@@ -226,24 +230,33 @@ HttpResponse alarms(const Ground& ground, archive::Reader& reader, archive::RunI
     if (!page) return error_response(400, page.error());
     const auto state = query.text("state");
     if (!state)
-        return answer_rows({reader, run, query}, reader.alarms(run, page->after, page->limit), {"changes", {"alarm", "staleness", "alarm_action", "link"}});
-    if (*state != "current") return error_response(400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
+        return answer_rows({reader, run, query}, reader.alarms(run, page->after, page->limit),
+                           {"changes", {"alarm", "staleness", "alarm_action", "link"}});
+    if (*state != "current")
+        return error_response(
+            400, fmt::format("state: '{}' is not known; state=current gives all that are not normal", *state));
     return answer_rows({reader, run, query}, reader.alarm_states(run, ground.now), {"alarms"});
 }
 
 HttpResponse notes(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     const auto page = page_of(query, 1'000, archive::rows_page_max);
     if (!page) return error_response(400, page.error());
-    return answer_rows({reader, run, query}, reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}), {"notes", {"note"}});
+    return answer_rows({reader, run, query},
+                       reader.notes(run, {query.text("text").value_or(""), page->after, page->limit}),
+                       {"notes", {"note"}});
 }
 
 HttpResponse interventions(const Ground& ground, archive::Reader& reader, archive::RunId run, const QueryText& query) {
     if (!ground.instructor) {
         const auto state = reader.run(run);
         if (!state) return error_response(400, state.error());
-        if (state->state() == "running") return error_response(403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
+        if (state->state() == "running")
+            return error_response(
+                403, "what an instructor does is told when the run is over; before, it needs the right to rehearse");
     }
-    return answer_rows({reader, run, query}, reader.interventions(run), {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
+    return answer_rows(
+        {reader, run, query}, reader.interventions(run),
+        {"interventions", {"fault", "device_fault", "system_fault", "computer_reset", "station_outage", "note"}});
 }
 
 HttpResponse timepoints(const Ground&, archive::Reader& reader, archive::RunId run, const QueryText& query) {
@@ -255,7 +268,8 @@ HttpResponse recording(const Ground&, archive::Reader& reader, archive::RunId ru
 }
 
 std::string csv_of(const v1::ProofReport& report) {
-    std::string csv = "of,name,realtime,identical,differs,missing_in_recording,recorded,never_seen_live,not_decoded,pending\n";
+    std::string csv =
+        "of,name,realtime,identical,differs,missing_in_recording,recorded,never_seen_live,not_decoded,pending\n";
     const auto add = [&](const char* of, const auto& rows) {
         for (const auto& row : rows)
             fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{}\n", of, row.name(), row.realtime(),
@@ -269,7 +283,8 @@ std::string csv_of(const v1::ProofReport& report) {
 
 /// As JSON, or where format=csv asks for it as a table.
 template <typename Report>
-HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make, std::string (*as_csv)(const Report&)) {
+HttpResponse answer_in_format(const QueryText& query, const std::function<Result<Report>()>& make,
+                              std::string (*as_csv)(const Report&)) {
     const auto report = make();
     if (format_of(query, report_formats) == "json" || !report) return answer(report);
     return {200, "text/csv; charset=utf-8", "no-store", as_csv(*report)};
@@ -292,39 +307,53 @@ HttpResponse state(const Ground& ground, archive::Reader& reader, archive::RunId
 
 const std::array questions{
     RunQuestionEntry{"", {}, {}, run_itself},
-    RunQuestionEntry{"channels", {"names", "expression", "from", "to", "points", "source", "provenance", "format"}, series_formats, channels},
-    RunQuestionEntry{"packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
+    RunQuestionEntry{"channels",
+                     {"names", "expression", "from", "to", "points", "source", "provenance", "format"},
+                     series_formats,
+                     channels},
+    RunQuestionEntry{
+        "packets", {"apid", "name", "from", "to", "verdict", "after", "limit", "format"}, list_formats, packets},
     RunQuestionEntry{"tones", {"text", "from", "to", "after", "limit", "format"}, list_formats, tones},
-    RunQuestionEntry{"events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
+    RunQuestionEntry{
+        "events", {"level", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, events},
     RunQuestionEntry{"commands", {"text", "from", "to", "format"}, list_formats, commands},
     RunQuestionEntry{"alarms", {"state", "after", "limit", "format"}, list_formats, alarms},
     RunQuestionEntry{"notes", {"text", "after", "limit", "format"}, list_formats, notes},
     RunQuestionEntry{"interventions", {"format"}, list_formats, interventions},
     RunQuestionEntry{"timepoints", {"format"}, list_formats, timepoints},
-    RunQuestionEntry{"explanations", {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"}, list_formats, explanations},
+    RunQuestionEntry{"explanations",
+                     {"decision", "text", "from", "to", "after", "limit", "duplicates", "format"},
+                     list_formats,
+                     explanations},
     RunQuestionEntry{"recording", {}, {}, recording},
     RunQuestionEntry{"proof", {"format"}, report_formats, proof},
     RunQuestionEntry{"report", {"format"}, report_formats, report},
     RunQuestionEntry{"state", {"at"}, {}, state},
 };
 
-} // namespace
+}  // namespace
 
 std::string as_flown_csv(const v1::AsFlownReport& report) {
-    std::string csv = "of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\n";
+    std::string csv =
+        "of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\n";
     const auto cell = [](bool known, double value) { return known ? fmt::format("{:.6f}", value) : std::string{}; };
     for (const auto& row : report.timepoints())
-        fmt::format_to(std::back_inserter(csv), "timepoint,{},{},{},{},{},{},{},{},{},\n", csv_text(row.name()), cell(row.has_planned_e_s(), row.planned_e_s()),
+        fmt::format_to(std::back_inserter(csv), "timepoint,{},{},{},{},{},{},{},{},{},\n", csv_text(row.name()),
+                       cell(row.has_planned_e_s(), row.planned_e_s()),
                        cell(row.has_predicted_e_s(), row.predicted_e_s()), cell(row.has_tone_e_s(), row.tone_e_s()),
-                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()),
-                       cell(row.has_margin_s(), row.margin_s()), row.tone(), row.verdict());
+                       cell(row.has_realtime_e_s(), row.realtime_e_s()),
+                       cell(row.has_recorded_e_s(), row.recorded_e_s()), cell(row.has_margin_s(), row.margin_s()),
+                       row.tone(), row.verdict());
     for (const auto& row : report.events())
-        fmt::format_to(std::back_inserter(csv), "event,{},,{},,{},{},,,,{}\n", csv_text(row.name()), cell(row.has_predicted_e_s(), row.predicted_e_s()),
-                       cell(row.has_realtime_e_s(), row.realtime_e_s()), cell(row.has_recorded_e_s(), row.recorded_e_s()), csv_text(row.text()));
+        fmt::format_to(std::back_inserter(csv), "event,{},,{},,{},{},,,,{}\n", csv_text(row.name()),
+                       cell(row.has_predicted_e_s(), row.predicted_e_s()),
+                       cell(row.has_realtime_e_s(), row.realtime_e_s()),
+                       cell(row.has_recorded_e_s(), row.recorded_e_s()), csv_text(row.text()));
     return csv;
 }
 
-Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader, archive::RunId run) {
+Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view name, archive::Reader& reader,
+                                       archive::RunId run) {
     const auto scet = scet_from_day_of_year(query.text(name).value_or(""));
     if (!scet) {
         const auto sclk_s = query.number(name);
@@ -334,7 +363,9 @@ Result<std::optional<Sclk>> instant_of(const QueryText& query, std::string_view 
     const auto state = reader.run(run);
     if (!state) return state.error();
     const auto clock = archive::correlation_of(*state);
-    if (clock.scet == Scet{}) return Error{fmt::format("{}: nobody knows which SCET run {} has: seconds of SCLK are wanted", name, run.value)};
+    if (clock.scet == Scet{})
+        return Error{
+            fmt::format("{}: nobody knows which SCET run {} has: seconds of SCLK are wanted", name, run.value)};
     const Sclk exact = clock.sclk_of(*scet), tick = Sclk::from_ticks(std::llround(exact.seconds / seconds_per_tick));
     return std::optional{std::abs(tick - exact) < scet_text_s ? tick : exact};
 }
@@ -345,7 +376,8 @@ Result<archive::SclkRange> range_of(const QueryText& query, archive::Reader& rea
     const auto to = instant_of(query, "to", reader, run);
     if (!to) return to.error();
     if (*from && *to && **from > **to)
-        return Error{fmt::format("from {} is after to {}: the range is upside down", query.text("from").value_or(""), query.text("to").value_or(""))};
+        return Error{fmt::format("from {} is after to {}: the range is upside down", query.text("from").value_or(""),
+                                 query.text("to").value_or(""))};
     const auto seconds = [](const std::optional<Sclk>& at) { return at ? std::optional{at->seconds} : std::nullopt; };
     return archive::SclkRange{seconds(*from), seconds(*to)};
 }
@@ -362,4 +394,4 @@ std::string run_question_names() {
     return names;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -43,38 +43,41 @@ struct SampleExport : std::enable_shared_from_this<SampleExport> {
                 tell(Error{fmt::format("this is a fault of the server: {}", bug.what())});
             }
         };
-        // A page takes milliseconds, and what has begun is not to break off because many ask: it waits with the pages of the stream.
+        // A page takes milliseconds, and what has begun is not to break off because many ask: it waits with the pages
+        // of the stream.
         if (!queries.ask(job, gone, Haste::soon)) tell(Error{"too many questions wait"});
     }
 };
 
-} // namespace
+}  // namespace
 
 void Api::export_samples(const Asked& asked) {
     auto query = QueryText::parse(asked.request.query, {"names", "from", "to", "format", "align"});
     if (!query) return asked.respond(error_response(400, query.error()));
     auto channels = query->list("names");
-    auto text = SampleText::make(parts_.dictionary, channels, {query->text("format").value_or("csv"), query->text("align").value_or("")});
+    auto text = SampleText::make(parts_.dictionary, channels,
+                                 {query->text("format").value_or("csv"), query->text("align").value_or("")});
     if (!text) return asked.respond(error_response(400, text.error()));
     auto wanted = std::make_shared<SampleExport>(parts_.queries, std::move(*text));
     wanted->channels = std::move(channels);
     wanted->gone = asked.request.gone;
-    ask(asked, std::move(*query), [wanted](archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
-        const auto range = range_of(of, reader, run);
-        if (!range) return error_response(400, range.error());
-        wanted->range = *range;
-        const auto state = reader.run(run);
-        if (!state) return error_response(500, state.error());
-        wanted->run = run;
-        wanted->text.set_entry(Sclk{state->entry_sclk()});
-        auto first = wanted->page(reader);
-        if (!first) return error_response(400, first.error());
-        HttpResponse response;
-        response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
-        response.body = wanted->text.head() + first->value_or("");
-        if (!wanted->done) response.more = [wanted](const auto& tell) { wanted->tell_next(tell); };
-        return response;
-    });
+    ask(asked, std::move(*query),
+        [wanted](archive::Reader& reader, archive::RunId run, const QueryText& of) -> std::optional<HttpResponse> {
+            const auto range = range_of(of, reader, run);
+            if (!range) return error_response(400, range.error());
+            wanted->range = *range;
+            const auto state = reader.run(run);
+            if (!state) return error_response(500, state.error());
+            wanted->run = run;
+            wanted->text.set_entry(Sclk{state->entry_sclk()});
+            auto first = wanted->page(reader);
+            if (!first) return error_response(400, first.error());
+            HttpResponse response;
+            response.content_type = wanted->text.is_csv() ? "text/csv; charset=utf-8" : "application/x-ndjson";
+            response.body = wanted->text.head() + first->value_or("");
+            if (!wanted->done) response.more = [wanted](const auto& tell) { wanted->tell_next(tell); };
+            return response;
+        });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -29,29 +29,34 @@ std::optional<double> seconds_of(const std::string& text) {
     return seconds;
 }
 
-/// The first whole multiple of `step_s` that is not before: of a tenth the nearest number to the tenth, so that two files have the same times.
+/// The first whole multiple of `step_s` that is not before: of a tenth the nearest number to the tenth, so that two
+/// files have the same times.
 double next_step(double sclk_s, double step_s) {
     const double count = std::ceil(sclk_s / step_s), per_s = std::round(1.0 / step_s);
     return std::abs(per_s * step_s - 1.0) < 1e-12 ? count / per_s : count * step_s;
 }
 
-} // namespace
+}  // namespace
 
 SampleText::SampleText(const dictionary::Dictionary& dictionary, bool csv) : csv_(csv) {
     words_.reserve(dictionary.channels.size());
     for (const auto& channel : dictionary.channels)
-        words_.push_back(csv ? Words{csv_text(channel.name), csv_text(channel.type.unit)} : Words{json_text(channel.name), json_text(channel.type.unit)});
+        words_.push_back(csv ? Words{csv_text(channel.name), csv_text(channel.type.unit)}
+                             : Words{json_text(channel.name), json_text(channel.type.unit)});
 }
 
-Result<SampleText> SampleText::make(const dictionary::Dictionary& dictionary, const std::vector<std::string>& channels, const Options& options) {
-    if (options.format != "csv" && options.format != "jsonl") return Error{fmt::format("format: '{}' is neither csv nor jsonl", options.format)};
+Result<SampleText> SampleText::make(const dictionary::Dictionary& dictionary, const std::vector<std::string>& channels,
+                                    const Options& options) {
+    if (options.format != "csv" && options.format != "jsonl")
+        return Error{fmt::format("format: '{}' is neither csv nor jsonl", options.format)};
     SampleText text(dictionary, options.format == "csv");
     if (options.align.empty()) return text;
     if (channels.empty()) return Error{"align: the columns are the channels that are named, and none is"};
     for (const auto& name : channels) {
         const auto* channel = dictionary.channel(name);
         if (channel == nullptr) return Error{fmt::format("no channel '{}'", name)};
-        if (std::ranges::find(text.columns_, channel) != text.columns_.end()) return Error{fmt::format("channel '{}' is named twice", name)};
+        if (std::ranges::find(text.columns_, channel) != text.columns_.end())
+            return Error{fmt::format("channel '{}' is named twice", name)};
         text.columns_.push_back(channel);
         if (name == options.align) text.leader_ = channel;
     }
@@ -69,14 +74,12 @@ std::string SampleText::head() const {
     if (!csv_) return {};
     if (columns_.empty()) return "sclk,e_s,channel,value,unit,source\n";
     std::string line = "sclk,e_s";
-    for (const auto* channel : columns_)
-        line += ',' + words_[channel->id.value].name;
+    for (const auto* channel : columns_) line += ',' + words_[channel->id.value].name;
     return line + '\n';
 }
 
 void SampleText::append(std::string& text, std::span<const archive::ChannelValue> samples) {
-    for (const auto& sample : samples)
-        columns_.empty() ? append_sample(text, sample) : append_aligned(text, sample);
+    for (const auto& sample : samples) columns_.empty() ? append_sample(text, sample) : append_aligned(text, sample);
 }
 
 void SampleText::finish(std::string& text) {
@@ -91,8 +94,9 @@ void SampleText::append_sample(std::string& text, const archive::ChannelValue& s
     if (csv_)
         fmt::format_to(into, "{},{},{},{},{},{}\n", sclk_s, e_s, channel, sample.value, unit, word_for(sample.source));
     else
-        fmt::format_to(into, R"({{"sclk":{},"e_s":{},"channel":{},"value":{},"unit":{},"source":"{}"}})"
-                             "\n",
+        fmt::format_to(into,
+                       R"({{"sclk":{},"e_s":{},"channel":{},"value":{},"unit":{},"source":"{}"}})"
+                       "\n",
                        sclk_s, e_s, channel, number_or_text(sample.value), unit, word_for(sample.source));
 }
 
@@ -100,7 +104,7 @@ void SampleText::append_aligned(std::string& text, const archive::ChannelValue& 
     const auto column = std::ranges::find(columns_, sample.channel, &dictionary::Channel::id);
     if (column == columns_.end()) return;
     const double sclk_s = sample.sclk.seconds;
-    if (line_s_ && sclk_s > *line_s_) finish(text); // all of that instant have come
+    if (line_s_ && sclk_s > *line_s_) finish(text);  // all of that instant have come
     values_[static_cast<std::size_t>(column - columns_.begin())] = sample.value;
     if (leader_ == nullptr)
         line_s_ = next_step(sclk_s, step_s_);
@@ -118,9 +122,10 @@ void SampleText::append_line(std::string& text, double sclk_s) const {
         if (csv_)
             text += values_[i] ? fmt::format(",{}", *values_[i]) : ",";
         else
-            fmt::format_to(into, ",{}:{}", words_[columns_[i]->id.value].name, values_[i] ? number_or_text(*values_[i]) : "null");
+            fmt::format_to(into, ",{}:{}", words_[columns_[i]->id.value].name,
+                           values_[i] ? number_or_text(*values_[i]) : "null");
     }
     text += csv_ ? "\n" : "}\n";
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,7 +12,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::size_t octets_a_sample = 56; // in JSON: an SCLK, a value and a source
+constexpr std::size_t octets_a_sample = 56;  // in JSON: an SCLK, a value and a source
 
 template <typename Column, typename Append>
 void append_column(std::string& json, const char* name, const Column& column, Append append) {
@@ -26,8 +26,8 @@ void append_column(std::string& json, const char* name, const Column& column, Ap
 }
 
 void append_json(std::string& json, const v1::ChannelSeries& series) {
-    fmt::format_to(std::back_inserter(json), R"({{"id":{},"name":{},"unit":{},"samples":"{}","thinned":{})", series.id(), json_text(series.name()),
-                   json_text(series.unit()), series.samples(), series.thinned());
+    fmt::format_to(std::back_inserter(json), R"({{"id":{},"name":{},"unit":{},"samples":"{}","thinned":{})",
+                   series.id(), json_text(series.name()), json_text(series.unit()), series.samples(), series.thinned());
     const auto number = [&](double value) {
         if (std::isfinite(value))
             fmt::format_to(std::back_inserter(json), "{}", value);
@@ -41,12 +41,11 @@ void append_json(std::string& json, const v1::ChannelSeries& series) {
     json += R"(,"gaps":)" + json_array(series.gaps(), to_json) + '}';
 }
 
-} // namespace
+}  // namespace
 
 std::string series_json(const v1::ChannelSeriesList& list) {
     std::size_t samples = 0;
-    for (const auto& series : list.channels())
-        samples += static_cast<std::size_t>(series.sclk_size());
+    for (const auto& series : list.channels()) samples += static_cast<std::size_t>(series.sclk_size());
     std::string json = R"({"channels":[)";
     json.reserve(json.size() + samples * octets_a_sample);
     for (int i = 0; i < list.channels_size(); ++i) {
@@ -60,7 +59,7 @@ std::string series_json(const v1::ChannelSeriesList& list) {
 std::string series_csv(const v1::ChannelSeriesList& list) {
     std::string csv = "channel,unit,sclk_s,value,source\n";
     for (const auto& series : list.channels()) {
-        const auto name = csv_text(series.name()), unit = csv_text(series.unit()); // a formula may have commas
+        const auto name = csv_text(series.name()), unit = csv_text(series.unit());  // a formula may have commas
         for (int i = 0; i < series.sclk_size(); ++i)
             fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", name, unit, series.sclk(i), series.value(i),
                            series.source(i) == v1::SOURCE_RECORDED ? "recorded" : "realtime");
@@ -68,4 +67,4 @@ std::string series_csv(const v1::ChannelSeriesList& list) {
     return csv;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -4,7 +4,8 @@
 
 #include <string>
 
-// Series as text. An exact answer has a million numbers: it is written straight from the columns, in the memory of the text itself.
+// Series as text. An exact answer has a million numbers: it is written straight from the columns, in the memory of the
+// text itself.
 namespace aeolis::server {
 
 /// As to_json() has it.
@@ -12,4 +13,4 @@ std::string series_json(const v1::ChannelSeriesList& list);
 /// A row a sample; the reader of a spreadsheet or of a script wants no JSON.
 std::string series_csv(const v1::ChannelSeriesList& list);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

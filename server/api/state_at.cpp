@@ -34,22 +34,24 @@ struct Stand {
             if (!cut.leaves_out(item.link().ert())) links.insert_or_assign(item.link().link(), item);
             return;
         case v1::Item::kCommandStage:
-            if (!cut.leaves_out(item.command_stage().at())) commands.insert_or_assign(item.command_stage().command(), item);
+            if (!cut.leaves_out(item.command_stage().at()))
+                commands.insert_or_assign(item.command_stage().command(), item);
             return;
         case v1::Item::kAlarm:
-            if (!cut.leaves_out(item.alarm().sclk())) alarms.insert_or_assign("channel " + std::to_string(item.alarm().channel()), item);
+            if (!cut.leaves_out(item.alarm().sclk()))
+                alarms.insert_or_assign("channel " + std::to_string(item.alarm().channel()), item);
             return;
         case v1::Item::kStaleness:
-            if (!cut.leaves_out(item.staleness().ert())) alarms.insert_or_assign("packet " + item.staleness().packet(), item);
+            if (!cut.leaves_out(item.staleness().ert()))
+                alarms.insert_or_assign("packet " + item.staleness().packet(), item);
             return;
-        case v1::Item::kTimepoint: // each fires once; the live report of it comes first
+        case v1::Item::kTimepoint:  // each fires once; the live report of it comes first
             if (!cut.leaves_out(item.timepoint().fired_sclk())) timepoints.try_emplace(item.timepoint().name(), item);
             return;
         case v1::Item::kTone:
             if (!cut.leaves_out(item.tone().ert_end())) tone = item;
             return;
-        default:
-            return;
+        default: return;
         }
     }
 };
@@ -58,9 +60,10 @@ bool stands(const v1::Item& alarm) {
     return alarm.has_staleness() ? alarm.staleness().stale() : alarm.alarm().severity() != "none";
 }
 
-} // namespace
+}  // namespace
 
-Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary, std::optional<Sclk> at) {
+Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary,
+                             std::optional<Sclk> at) {
     const auto values = reader.latest(run, at);
     if (!values) return values.error();
     const auto state = reader.run(run);
@@ -70,8 +73,7 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
     for (archive::Sequence after = 0;;) {
         auto page = reader.items(run, after, archive::items_page_max, {.samples = false, .units = false});
         if (!page) return page.error();
-        for (const auto& item : page->items)
-            stand.take(item, cut);
+        for (const auto& item : page->items) stand.take(item, cut);
         if (!page->more) break;
         after = page->complete_through;
     }
@@ -88,17 +90,15 @@ Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const 
         series.add_source(static_cast<v1::Source>(value.source));
     }
     for (auto& [name, item] : stand.links) {
-        if (item.link().lost()) *answer.add_alarms() = item; // under the link's name, as in the list of alarms
+        if (item.link().lost()) *answer.add_alarms() = item;  // under the link's name, as in the list of alarms
         *answer.add_links() = std::move(item);
     }
-    for (auto& [name, item] : stand.timepoints)
-        *answer.add_timepoints() = std::move(item);
-    for (auto& [name, item] : stand.commands)
-        *answer.add_commands() = std::move(item);
+    for (auto& [name, item] : stand.timepoints) *answer.add_timepoints() = std::move(item);
+    for (auto& [name, item] : stand.commands) *answer.add_commands() = std::move(item);
     for (auto& [name, item] : stand.alarms)
         if (stands(item)) *answer.add_alarms() = std::move(item);
     if (stand.tone) *answer.mutable_tone() = std::move(*stand.tone);
     return answer;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

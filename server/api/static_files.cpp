@@ -43,7 +43,7 @@ constexpr const char* not_built_page = "<!doctype html><html lang=\"en\"><meta c
                                        "<code>./run</code> in the checkout, or <code>npm ci &amp;&amp; npm run "
                                        "build</code> in <code>web/</code>, and load this page again.</p></body></html>";
 
-} // namespace
+}  // namespace
 
 HttpResponse StaticFiles::file(std::string_view path) const {
     HttpResponse response;
@@ -67,4 +67,4 @@ HttpResponse StaticFiles::file(std::string_view path) const {
     return response;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,7 +11,7 @@ namespace aeolis::server {
 /// dot) are index.html. Without a built console a page says how to build it.
 class StaticFiles {
   public:
-    static constexpr std::uintmax_t file_octets_max = 16 << 20; ///< ours: the console is below 1 MB
+    static constexpr std::uintmax_t file_octets_max = 16 << 20;  ///< ours: the console is below 1 MB
 
     explicit StaticFiles(std::filesystem::path directory) : directory_(std::move(directory)) {}
     HttpResponse file(std::string_view path) const;
@@ -20,4 +20,4 @@ class StaticFiles {
     std::filesystem::path directory_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -13,15 +13,17 @@ namespace aeolis::archive {
 
 namespace {
 
-// So much the log holds before it is folded into the file: fewer, longer writes than by SQLite's default; and it is cut back to
-// that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
+// So much the log holds before it is folded into the file: fewer, longer writes than by SQLite's default; and it is cut
+// back to that after a long reader let it grow. Ours, by measurement (bench/archive_bench.cpp).
 constexpr std::int64_t log_octets = 16'384'000;
 
 Result<void> set_up_writer(sqlite::Database& database) {
-    const auto page = database.integer_of("PRAGMA page_size"); // archives of before schema 7 have smaller ones
+    const auto page = database.integer_of("PRAGMA page_size");  // archives of before schema 7 have smaller ones
     if (!page) return page.error();
-    return database.execute(("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -16000; PRAGMA wal_autocheckpoint = " +
-                             std::to_string(log_octets / *page) + "; PRAGMA journal_size_limit = " + std::to_string(log_octets))
+    return database.execute(("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -16000; PRAGMA "
+                             "wal_autocheckpoint = " +
+                             std::to_string(log_octets / *page) +
+                             "; PRAGMA journal_size_limit = " + std::to_string(log_octets))
                                 .c_str());
 }
 
@@ -33,7 +35,7 @@ std::filesystem::path beside(std::filesystem::path file, const char* suffix) {
     return file += suffix;
 }
 
-} // namespace
+}  // namespace
 
 struct Archive::State {
     State(std::filesystem::path file_in, WriterLock lock_in) : file(std::move(file_in)), lock(std::move(lock_in)) {}
@@ -41,9 +43,11 @@ struct Archive::State {
     /// What a name stands for: device and inode. A file that is open lives on without its name; SQLite then goes on
     /// writing what nobody will find again.
     using Identity = std::optional<std::pair<dev_t, ino_t>>;
-    using Identities = std::array<Identity, 3>; ///< of the file, its WAL, its shared memory
+    using Identities = std::array<Identity, 3>;  ///< of the file, its WAL, its shared memory
     static Identity identity_of(const std::filesystem::path& file);
-    Identities identities() const { return {identity_of(file), identity_of(beside(file, "-wal")), identity_of(beside(file, "-shm"))}; }
+    Identities identities() const {
+        return {identity_of(file), identity_of(beside(file, "-wal")), identity_of(beside(file, "-shm"))};
+    }
 
     Result<void> connect();
     /// Before anything is written: that all three still have their names.
@@ -55,7 +59,7 @@ struct Archive::State {
     Result<void> end_run(RunId run, const RunEnd& end, Sequence last_seq);
 
     std::filesystem::path file;
-    WriterLock lock; // released last
+    WriterLock lock;  // released last
     sqlite::Database database;
     RowWriter rows;
     sqlite::Statement last_key;
@@ -88,7 +92,7 @@ Result<Archive> Archive::open(const std::filesystem::path& file) {
 }
 
 Archive::State::Identity Archive::State::identity_of(const std::filesystem::path& file) {
-    struct stat found {};
+    struct stat found{};
     if (::stat(file.c_str(), &found) != 0) return std::nullopt;
     return std::pair{found.st_dev, found.st_ino};
 }
@@ -116,7 +120,9 @@ Result<void> Archive::State::in_place() {
     const auto now = identities();
     if (now == opened) return {};
     if (now[0] && now[0] != opened[0])
-        return Error{file.string() + " was replaced by another file while it was being written: move that away, and the archive is put back"};
+        return Error{
+            file.string() +
+            " was replaced by another file while it was being written: move that away, and the archive is put back"};
     if (!std::exchange(told_removed, true))
         return Error{(now[0] ? beside(file, now[1] == opened[1] ? "-shm" : "-wal") : file).string() +
                      " was removed while it was being written: the archive is put back from what is open"};
@@ -130,11 +136,10 @@ Result<void> Archive::State::put_back() {
     if (auto done = copy_whole(database, copy); !done) return done;
     // A log that belongs to another file must not stand beside it.
     std::error_code why;
-    for (const char* suffix : {"-wal", "-shm"})
-        std::filesystem::remove(beside(file, suffix), why);
+    for (const char* suffix : {"-wal", "-shm"}) std::filesystem::remove(beside(file, suffix), why);
     std::filesystem::rename(copy, file, why);
     if (why) return Error{file.string() + ": " + why.message()};
-    opened = {identity_of(file), std::nullopt, std::nullopt}; // ours, also when what follows must be tried again
+    opened = {identity_of(file), std::nullopt, std::nullopt};  // ours, also when what follows must be tried again
     if (auto done = make_durable(file); !done) return done;
     return connect();
 }
@@ -180,7 +185,8 @@ Result<void> Archive::continue_run(RunId run) {
     if (auto done = state_->in_place(); !done) return done;
     auto transaction = sqlite::Transaction::begin_write(state_->database);
     if (!transaction) return transaction.error();
-    auto row = state_->database.prepare("UPDATE runs SET state = 'running', last_seq = NULL WHERE run = ? AND state = 'interrupted'");
+    auto row = state_->database.prepare(
+        "UPDATE runs SET state = 'running', last_seq = NULL WHERE run = ? AND state = 'interrupted'");
     if (!row) return row.error();
     row->bind(1, std::int64_t{run.value});
     if (auto done = row->run(); !done) return done;
@@ -252,14 +258,18 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
     if (auto done = row->run(); !done) return done.error();
     auto clock = database.prepare("INSERT INTO run_clocks VALUES (?,?,?,?)");
     if (!clock) return clock.error();
-    clock->bind(1, *next).bind(2, std::int64_t{start.correlation.version}).bind(3, start.correlation.rate).bind(4, std::int64_t{start.correlation.leap_seconds});
+    clock->bind(1, *next)
+        .bind(2, std::int64_t{start.correlation.version})
+        .bind(3, start.correlation.rate)
+        .bind(4, std::int64_t{start.correlation.leap_seconds});
     if (auto done = clock->run(); !done) return done.error();
     // A row an anchor, predicted or not: so a run that has none is known to be of an older schema.
     auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
     if (!anchor) return anchor.error();
     for (std::size_t i = 0; i < dictionary.anchors.size(); ++i) {
         anchor->bind(1, *next).bind(2, number(i)).bind(3, std::string_view(dictionary.anchors[i].name));
-        if (const auto predicted = i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt)
+        if (const auto predicted =
+                i < dictionary.predicted_anchor_e_s.size() ? dictionary.predicted_anchor_e_s[i] : std::nullopt)
             anchor->bind(4, *predicted);
         else
             anchor->bind_null(4);
@@ -309,7 +319,8 @@ Result<Annotation> Archive::annotate(RunId run, Annotation annotation) {
     batch.first_seq = batch.last_seq = seq;
     batch.add(annotation);
     if (auto done = state_->rows.write(run, batch); !done) return done.error();
-    auto row = state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING run");
+    auto row =
+        state_->database.prepare("UPDATE runs SET last_seq = ?2 WHERE run = ?1 AND state <> 'running' RETURNING run");
     if (!row) return row.error();
     row->bind(1, std::int64_t{run.value}).bind(2, number(seq));
     auto updated = row->step();
@@ -338,4 +349,4 @@ Result<void> Archive::State::end_run(RunId run, const RunEnd& end, Sequence last
     return row->run();
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

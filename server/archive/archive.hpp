@@ -11,8 +11,8 @@
 
 namespace aeolis::archive {
 
-inline constexpr std::int32_t application_id = 0x41454F4C; ///< "AEOL": what file(1) and we know the file by
-inline constexpr std::int32_t schema_version = 8;          ///< PRAGMA user_version
+inline constexpr std::int32_t application_id = 0x41454F4C;  ///< "AEOL": what file(1) and we know the file by
+inline constexpr std::int32_t schema_version = 8;           ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///
@@ -56,4 +56,4 @@ class Archive {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

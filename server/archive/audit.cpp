@@ -27,11 +27,12 @@ void add_part(std::string& text, const std::string& part) {
     text += std::to_string(part.size()) + ':' + part;
 }
 
-} // namespace
+}  // namespace
 
 std::string audit_hash(const std::string& before, const AuditEntry& entry) {
     std::string text;
-    for (const auto& part : {before, std::to_string(entry.entry), entry.at, entry.who, entry.from, entry.action, entry.detail, entry.outcome})
+    for (const auto& part : {before, std::to_string(entry.entry), entry.at, entry.who, entry.from, entry.action,
+                             entry.detail, entry.outcome})
         add_part(text, part);
     std::array<unsigned char, 32> hash{};
     AEOLIS_CHECK(EVP_Digest(text.data(), text.size(), hash.data(), nullptr, EVP_sha256(), nullptr) == 1);
@@ -62,7 +63,8 @@ Result<void> append_audit(sqlite::Database& database, std::span<const AuditRecor
         entry.hash = audit_hash(before, entry);
         row->bind(1, static_cast<std::int64_t>(entry.entry));
         int column = 2;
-        for (const auto* text : {&entry.at, &entry.who, &entry.from, &entry.action, &entry.detail, &entry.outcome, &entry.hash})
+        for (const auto* text :
+             {&entry.at, &entry.who, &entry.from, &entry.action, &entry.detail, &entry.outcome, &entry.hash})
             row->bind(column++, std::string_view{*text});
         if (auto done = row->run(); !done) return done;
     }
@@ -101,4 +103,4 @@ Result<AuditCheck> check_audit(sqlite::Database& database) {
     }
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

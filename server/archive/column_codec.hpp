@@ -25,8 +25,8 @@ class ColumnCodec {
     /// Valid until the next call.
     std::span<const std::uint8_t> pack(std::span<const double> column);
 
-    /// Fills `column`, whose size the caller knows. Fails with what is wrong with the octets: any octet that was changed
-    /// is found by the checksums.
+    /// Fills `column`, whose size the caller knows. Fails with what is wrong with the octets: any octet that was
+    /// changed is found by the checksums.
     Result<void> unpack(std::span<const std::uint8_t> packed, std::span<double> column);
 
   private:
@@ -34,4 +34,4 @@ class ColumnCodec {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

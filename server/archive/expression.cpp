@@ -20,7 +20,8 @@ struct Expression::State {
         const auto known = std::ranges::find(channels, channel);
         const auto index = static_cast<std::size_t>(known - channels.begin());
         if (known == channels.end()) {
-            if (index == expression_channels_max) throw mu::ParserError("more than " + std::to_string(expression_channels_max) + " channels");
+            if (index == expression_channels_max)
+                throw mu::ParserError("more than " + std::to_string(expression_channels_max) + " channels");
             channels.push_back(channel);
         }
         return &values[index];
@@ -35,12 +36,15 @@ Error error_at(std::size_t place, const std::string& what) {
 
 /// Whether the '=' at `at` is part of a comparison.
 bool compares(const std::string& text, std::size_t at) {
-    const auto is = [&](std::size_t i, const char* signs) { return i < text.size() && std::string_view(signs).find(text[i]) != std::string_view::npos; };
+    const auto is = [&](std::size_t i, const char* signs) {
+        return i < text.size() && std::string_view(signs).find(text[i]) != std::string_view::npos;
+    };
     return is(at + 1, "=") || (at > 0 && is(at - 1, "=<>!"));
 }
 
 /// Words in place of what stands in braces, which muParser does not know.
-Result<void> read_braces(const std::string& text, std::string& said, std::vector<std::size_t>& origin, std::vector<std::string>& quoted) {
+Result<void> read_braces(const std::string& text, std::string& said, std::vector<std::size_t>& origin,
+                         std::vector<std::string>& quoted) {
     for (std::size_t at = 0; at < text.size(); ++at) {
         if (text[at] == '"') return error_at(at, "there are no texts in a formula");
         if (text[at] == '=' && !compares(text, at)) return error_at(at, "nothing can be assigned; a comparison is ==");
@@ -63,7 +67,7 @@ Result<void> read_braces(const std::string& text, std::string& said, std::vector
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Expression::Expression(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Expression::Expression(Expression&&) noexcept = default;
@@ -72,7 +76,8 @@ Expression::~Expression() = default;
 
 Result<Expression> Expression::parse(const std::string& text) {
     if (text.size() > expression_octets_max)
-        return Error{"expression: " + std::to_string(text.size()) + " octets, at most " + std::to_string(expression_octets_max)};
+        return Error{"expression: " + std::to_string(text.size()) + " octets, at most " +
+                     std::to_string(expression_octets_max)};
     auto state = std::make_unique<State>();
     struct Names {
         State& state;
@@ -84,9 +89,10 @@ Result<Expression> Expression::parse(const std::string& text) {
             auto& [of, quoted] = *static_cast<Names*>(given);
             const std::string name = word;
             if (name.starts_with("__")) {
-                const std::size_t number = name.find_first_not_of("0123456789", 2) == std::string::npos && name.size() > 2 && name.size() < 6
-                                               ? std::stoul(name.substr(2))
-                                               : quoted.size();
+                const std::size_t number =
+                    name.find_first_not_of("0123456789", 2) == std::string::npos && name.size() > 2 && name.size() < 6
+                        ? std::stoul(name.substr(2))
+                        : quoted.size();
                 if (number < quoted.size()) return of.variable(quoted[number]);
             }
             return of.variable(name);
@@ -96,7 +102,9 @@ Result<Expression> Expression::parse(const std::string& text) {
         int results = 0;
         state->parser.Eval(results);
         state->parser.SetVarFactory(nullptr, nullptr);
-        if (results != 1) return Error{"expression: " + std::to_string(results) + " values are given, one is wanted: ',' stands between arguments only"};
+        if (results != 1)
+            return Error{"expression: " + std::to_string(results) +
+                         " values are given, one is wanted: ',' stands between arguments only"};
     } catch (const mu::ParserError& error) {
         const auto place = std::min(static_cast<std::size_t>(std::max(0, error.GetPos())), state->origin.size() - 1);
         return error_at(state->origin[place], error.GetMsg());
@@ -115,4 +123,4 @@ double Expression::value(std::span<const double> values) {
     return state_->parser.Eval();
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

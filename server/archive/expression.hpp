@@ -12,8 +12,9 @@ namespace aeolis::archive {
 inline constexpr std::size_t expression_octets_max = 1'000;
 inline constexpr std::size_t expression_channels_max = 16;
 
-/// A formula of channels: "sqrt(nav_velocity_x_mps^2 + {GNC-0102}^2)". A word is a channel's name; braces hold a name or an
-/// alias of any letters. Operators, functions and the constants _pi and _e are those of muParser; assignment is not.
+/// A formula of channels: "sqrt(nav_velocity_x_mps^2 + {GNC-0102}^2)". A word is a channel's name; braces hold a name
+/// or an alias of any letters. Operators, functions and the constants _pi and _e are those of muParser; assignment is
+/// not.
 class Expression {
   public:
     /// An Error says at which character of `text`, from 1, and what is wrong there.
@@ -31,7 +32,7 @@ class Expression {
   private:
     struct State;
     explicit Expression(std::unique_ptr<State> state);
-    std::unique_ptr<State> state_; ///< muParser holds addresses in it
+    std::unique_ptr<State> state_;  ///< muParser holds addresses in it
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -13,8 +13,8 @@ static_assert(static_cast<int>(Source::realtime) == v1::SOURCE_REALTIME);
 static_assert(static_cast<int>(Source::recorded) == v1::SOURCE_RECORDED);
 static_assert(static_cast<int>(Source::ground) == v1::SOURCE_GROUND);
 
-constexpr double heard_span_s = 8.0e12; ///< ours: 250 000 years; as microseconds, with any day of year, still an int64
-} // namespace
+constexpr double heard_span_s = 8.0e12;  ///< ours: 250 000 years; as microseconds, with any day of year, still an int64
+}  // namespace
 
 v1::Item to_item(const UnitRecord& record, const dictionary::Dictionary* dictionary) {
     v1::Item item;
@@ -228,7 +228,8 @@ v1::ClockReply to_reply(const ClockCorrelation& clock) {
 
 ClockCorrelation correlation_of(const v1::RunState& run) {
     const auto& clock = run.clock();
-    return {Sclk{clock.sclk()}, scet_from_day_of_year(clock.scet()).value_or(Scet{}), clock.rate(), clock.leap_seconds(), clock.version()};
+    return {Sclk{clock.sclk()}, scet_from_day_of_year(clock.scet()).value_or(Scet{}), clock.rate(),
+            clock.leap_seconds(), clock.version()};
 }
 
 Ert heard_at(const v1::RunState& run, Sclk at) {
@@ -239,4 +240,4 @@ Ert heard_at(const v1::RunState& run, Sclk at) {
     return {clock.scet_of(at).microseconds + static_cast<std::int64_t>(run.light_time_s() * 1.0e6)};
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

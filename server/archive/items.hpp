@@ -35,12 +35,12 @@ std::vector<std::uint8_t> octets_of_hex(std::string_view hex);
 
 v1::ClockReply to_reply(const ClockCorrelation& clock);
 ClockCorrelation correlation_of(const v1::RunState& run);
-/// When what happens on board then is heard on Earth, by the run's own clock and light time. A time too far away for a date is
-/// before or after everything.
+/// When what happens on board then is heard on Earth, by the run's own clock and light time. A time too far away for a
+/// date is before or after everything.
 Ert heard_at(const v1::RunState& run, Sclk at);
 
 inline v1::Item to_item(const Annotation& annotation) {
     return std::visit([](const auto& record) { return to_item(record); }, annotation);
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -8,7 +8,7 @@ namespace {
 
 class NoWords : public google::protobuf::io::ErrorCollector {
   public:
-    void AddError(int, int, const std::string&) override {} // what is no command is an intervention
+    void AddError(int, int, const std::string&) override {}  // what is no command is an intervention
 };
 
 bool read_text(const std::string& text, google::protobuf::Message& into) {
@@ -18,7 +18,7 @@ bool read_text(const std::string& text, google::protobuf::Message& into) {
     return parser.ParseFromString(text, &into);
 }
 
-} // namespace
+}  // namespace
 
 std::string kept_text(const google::protobuf::Message& request) {
     std::string text;
@@ -34,4 +34,4 @@ KeptRequest kept_request(const std::string& text) {
     return {};
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -10,8 +10,9 @@ namespace aeolis::archive {
 
 std::string kept_text(const google::protobuf::Message& request);
 
-/// None: it is neither of the two. A fault of an archive of before, which stands there bare, is an intervention like all others.
+/// None: it is neither of the two. A fault of an archive of before, which stands there bare, is an intervention like
+/// all others.
 using KeptRequest = std::variant<std::monostate, v1::CommandRequest, v1::Intervention>;
 KeptRequest kept_request(const std::string& text);
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -19,4 +19,4 @@ inline constexpr char on_other_path_sql[] =
     " AND o.sclk = u.sclk AND o.packet IS NOT NULL AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2)"
     " ORDER BY 1 LIMIT 1), 2) END";
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

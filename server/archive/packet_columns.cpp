@@ -30,4 +30,4 @@ double PacketColumns::value(const telemetry::Decoded& decoded, std::size_t colum
     return decoded.value[packets_[decoded.packet].fields[column]].value_or(undefined);
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

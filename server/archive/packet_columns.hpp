@@ -33,7 +33,7 @@ class PacketColumns {
         std::vector<std::size_t> fields;
     };
     std::vector<Columns> packets_;
-    std::vector<std::vector<Place>> places_; ///< by ChannelId
+    std::vector<std::vector<Place>> places_;  ///< by ChannelId
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

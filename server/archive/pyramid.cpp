@@ -9,9 +9,10 @@ namespace aeolis::archive::pyramid {
 
 namespace {
 using Number = double Extremes::*;
-constexpr std::array<Number, 4> numbers{&Extremes::least, &Extremes::least_sclk_s, &Extremes::largest, &Extremes::largest_sclk_s};
+constexpr std::array<Number, 4> numbers{&Extremes::least, &Extremes::least_sclk_s, &Extremes::largest,
+                                        &Extremes::largest_sclk_s};
 static_assert(std::endian::native == std::endian::little, "numbers are stored as they stand in memory");
-} // namespace
+}  // namespace
 
 std::vector<std::uint8_t> octets_of_nodes(std::span<const Extremes> nodes) {
     std::vector<std::uint8_t> octets(nodes.size() * node_octets);
@@ -52,7 +53,8 @@ void Builder::add(const SegmentRecord& segment, std::vector<PyramidRecord>& full
         for (std::size_t c = 0; c < segment.channels.size(); ++c) {
             auto& node = level.nodes.emplace_back();
             for (std::size_t i = from; i < to; ++i)
-                if (const double value = segment.values[c * samples + i]; !std::isnan(value)) node.add(value, segment.sclk_s[i]);
+                if (const double value = segment.values[c * samples + i]; !std::isnan(value))
+                    node.add(value, segment.sclk_s[i]);
         }
         if (level.first_sclk_s.size() == block_nodes) close(key, series, 1, full);
     }
@@ -75,8 +77,7 @@ void Builder::close(const Key& key, Series& series, unsigned level, std::vector<
     block.channels = series.channels;
     block.nodes.resize(nodes * channels);
     for (std::size_t node = 0; node < nodes; ++node)
-        for (std::size_t c = 0; c < channels; ++c)
-            block.nodes[c * nodes + node] = closed.nodes[node * channels + c];
+        for (std::size_t c = 0; c < channels; ++c) block.nodes[c * nodes + node] = closed.nodes[node * channels + c];
     block.first_sclk_s = std::move(closed.first_sclk_s);
     block.last_sclk_s = std::move(closed.last_sclk_s);
     closed.first_sclk_s.clear();
@@ -86,13 +87,14 @@ void Builder::close(const Key& key, Series& series, unsigned level, std::vector<
         auto& above = series.of[level];
         for (std::size_t from = 0; from < nodes; from += fan_out) {
             const std::size_t to = std::min<std::size_t>(nodes, from + fan_out);
-            const auto at = [&](const std::vector<double>& times, std::size_t i) { return times.begin() + static_cast<std::ptrdiff_t>(i); };
+            const auto at = [&](const std::vector<double>& times, std::size_t i) {
+                return times.begin() + static_cast<std::ptrdiff_t>(i);
+            };
             above.first_sclk_s.push_back(*std::min_element(at(block.first_sclk_s, from), at(block.first_sclk_s, to)));
             above.last_sclk_s.push_back(*std::max_element(at(block.last_sclk_s, from), at(block.last_sclk_s, to)));
             for (std::size_t c = 0; c < channels; ++c) {
                 auto& node = above.nodes.emplace_back();
-                for (std::size_t i = from; i < to; ++i)
-                    node.add(block.nodes[c * nodes + i]);
+                for (std::size_t i = from; i < to; ++i) node.add(block.nodes[c * nodes + i]);
             }
         }
     }
@@ -100,4 +102,4 @@ void Builder::close(const Key& key, Series& series, unsigned level, std::vector<
     if (level < levels && series.of[level].first_sclk_s.size() == block_nodes) close(key, series, level + 1, out);
 }
 
-} // namespace aeolis::archive::pyramid
+}  // namespace aeolis::archive::pyramid

@@ -48,7 +48,9 @@ bool Reader::stopped() const {
 }
 
 std::vector<std::string_view> words_in(std::string_view text) {
-    const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80; };
+    const auto in_word = [](char c) {
+        return std::isalnum(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 0x80;
+    };
     std::vector<std::string_view> words;
     for (auto at = text.begin(); at != text.end();) {
         const auto begin = std::find_if(at, text.end(), in_word);
@@ -60,8 +62,7 @@ std::vector<std::string_view> words_in(std::string_view text) {
 
 std::string search_words(std::string_view text) {
     std::string words;
-    for (const auto word : words_in(text))
-        words += (words.empty() ? "\"" : " \"") + std::string(word) + "\"*";
+    for (const auto word : words_in(text)) words += (words.empty() ? "\"" : " \"") + std::string(word) + "\"*";
     return words;
 }
 
@@ -127,14 +128,14 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
 
 namespace {
 
-/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns. Without a row in run_clocks it is of schema
-/// 5 or before: those clocks had no drift.
+/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns. Without a row in
+/// run_clocks it is of schema 5 or before: those clocks had no drift.
 ClockCorrelation clock_of(const sqlite::Statement& row, int column) {
     return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.is_null(column + 2) ? 1.0 : row.real(column + 2),
             static_cast<std::int32_t>(row.integer(column + 3)), static_cast<std::uint32_t>(row.integer(column + 4))};
 }
 
-} // namespace
+}  // namespace
 
 Result<std::vector<RequestRecord>> Reader::State::requests(RunId run) {
     auto rows = query("SELECT cycle, request FROM requests WHERE run = ? ORDER BY position");
@@ -160,7 +161,8 @@ Result<v1::InterventionList> Reader::interventions(RunId run) {
         auto kept = kept_request(request.request);
         auto* intervention = std::get_if<v1::Intervention>(&kept);
         if (intervention == nullptr) continue;
-        intervention->set_e_s(state->start_sclk() - state->entry_sclk() + static_cast<double>(request.cycle) * seconds_per_tick);
+        intervention->set_e_s(state->start_sclk() - state->entry_sclk() +
+                              static_cast<double>(request.cycle) * seconds_per_tick);
         *list.add_interventions() = std::move(*intervention);
     }
     return list;
@@ -169,8 +171,9 @@ Result<v1::InterventionList> Reader::interventions(RunId run) {
 Result<CutOffRun> Reader::cut_off(RunId run) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
-    static constexpr char run_sql[] = "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, rate,"
-                                      " leap_seconds, version FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?";
+    static constexpr char run_sql[] =
+        "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, rate,"
+        " leap_seconds, version FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?";
     auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -211,11 +214,12 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
 namespace {
 constexpr char runs_sql[] =
     "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
-    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, rate, leap_seconds, version"
+    " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, rate, "
+    "leap_seconds, version"
     " FROM runs r LEFT JOIN recordings c ON c.run = r.run LEFT JOIN run_clocks k ON k.run = r.run"
     " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
 constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
-} // namespace
+}  // namespace
 
 Result<v1::RunState> Reader::State::run_state(const sqlite::Statement& row) {
     v1::RunState state;
@@ -281,4 +285,4 @@ Result<v1::RunState> Reader::run(RunId run) {
     return state_->run_state(**rows);
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -20,13 +20,13 @@
 
 namespace aeolis::archive {
 
-inline constexpr std::size_t items_page_max = 10'000;     ///< items in one answer: some 2 MB encoded
-inline constexpr std::size_t packets_page_max = 1'000;    ///< packets with their fields in one answer: about 1 MB
-inline constexpr std::size_t rows_page_max = 10'000;      ///< events, explanations in one answer
-inline constexpr std::size_t channels_max = 64;           ///< channels in one series query
-inline constexpr std::size_t exact_samples_max = 200'000; ///< samples of one channel in one exact answer; more: thin
-inline constexpr std::size_t thinned_points_max = 20'000; ///< points asked for when thinning
-inline constexpr std::size_t rows_scanned_max = 200'000;  ///< rows looked at for one page of a filtered list
+inline constexpr std::size_t items_page_max = 10'000;      ///< items in one answer: some 2 MB encoded
+inline constexpr std::size_t packets_page_max = 1'000;     ///< packets with their fields in one answer: about 1 MB
+inline constexpr std::size_t rows_page_max = 10'000;       ///< events, explanations in one answer
+inline constexpr std::size_t channels_max = 64;            ///< channels in one series query
+inline constexpr std::size_t exact_samples_max = 200'000;  ///< samples of one channel in one exact answer; more: thin
+inline constexpr std::size_t thinned_points_max = 20'000;  ///< points asked for when thinning
+inline constexpr std::size_t rows_scanned_max = 200'000;   ///< rows looked at for one page of a filtered list
 
 /// From and to, both included; none: open. Upside down is an Error.
 struct SclkRange {
@@ -34,27 +34,27 @@ struct SclkRange {
 };
 
 struct ItemPage {
-    std::vector<v1::Item> items;   ///< in order of seq
-    Sequence complete_through = 0; ///< every item up to here has been given, or lies before `after`
+    std::vector<v1::Item> items;    ///< in order of seq
+    Sequence complete_through = 0;  ///< every item up to here has been given, or lies before `after`
     bool more = false;
 };
 
 struct SeriesQuery {
-    std::vector<std::string> channels; ///< names or aliases
+    std::vector<std::string> channels;  ///< names or aliases
     SclkRange range;
-    std::optional<std::size_t> points; ///< thin to at most so many; none: exact
-    std::optional<Source> source{};    ///< only what came so; none: both, each sample once
-    bool provenance = false;           ///< with the origin of every sample, and the gaps
+    std::optional<std::size_t> points;  ///< thin to at most so many; none: exact
+    std::optional<Source> source{};     ///< only what came so; none: both, each sample once
+    bool provenance = false;            ///< with the origin of every sample, and the gaps
 };
 
 /// Verdicts on a unit against the other path. Before the whole recording is down, nothing is missing in it: pending.
-inline constexpr std::array<const char*, 6> verdicts{"identical", "differs", "missing_in_recording",
+inline constexpr std::array<const char*, 6> verdicts{"identical",       "differs",     "missing_in_recording",
                                                      "never_seen_live", "not_decoded", "pending"};
 
 struct PacketQuery {
-    std::optional<std::string> name; ///< of the packet: "GncNavigation"
+    std::optional<std::string> name;  ///< of the packet: "GncNavigation"
     SclkRange range;
-    std::string verdict; ///< only units of this one, by name; empty: all
+    std::string verdict;  ///< only units of this one, by name; empty: all
     Sequence after = 0;
     std::size_t limit = 100;
     bool fields = true;
@@ -62,36 +62,36 @@ struct PacketQuery {
 
 struct EventQuery {
     SclkRange range;
-    std::vector<std::string> levels; ///< empty: all
-    std::string text;                ///< words of name or text, or their beginnings, in any order and case; empty: all
-    bool duplicates = false;         ///< also those of the recording that were seen in real time
+    std::vector<std::string> levels;  ///< empty: all
+    std::string text;                 ///< words of name or text, or their beginnings, in any order and case; empty: all
+    bool duplicates = false;          ///< also those of the recording that were seen in real time
     Sequence after = 0;
     std::size_t limit = 1'000;
 };
 
 struct ToneQuery {
     SclkRange range;
-    std::string text; ///< words of name or meaning, as in EventQuery
+    std::string text;  ///< words of name or meaning, as in EventQuery
     Sequence after = 0;
     std::size_t limit = rows_page_max;
 };
 
 struct CommandQuery {
-    SclkRange range;  ///< with a stage that is dated between when Earth heard of its beginning and when of its end
-    std::string text; ///< words of a stage, as in EventQuery
+    SclkRange range;   ///< with a stage that is dated between when Earth heard of its beginning and when of its end
+    std::string text;  ///< words of a stage, as in EventQuery
 };
 
 struct ExplanationQuery {
     SclkRange range;
-    std::string decision; ///< empty: all
-    std::string text;     ///< words, as in EventQuery
+    std::string decision;  ///< empty: all
+    std::string text;      ///< words, as in EventQuery
     bool duplicates = false;
     Sequence after = 0;
     std::size_t limit = 1'000;
 };
 
 struct NoteQuery {
-    std::string text; ///< words, as in EventQuery
+    std::string text;  ///< words, as in EventQuery
     Sequence after = 0;
     std::size_t limit = 1'000;
 };
@@ -109,7 +109,7 @@ struct SampleCursor {
 };
 struct SamplePage {
     std::vector<ChannelValue> samples;
-    std::optional<SampleCursor> next; ///< to ask on; none: that was all
+    std::optional<SampleCursor> next;  ///< to ask on; none: that was all
 };
 
 /// Questions to an archive, while its writer goes on or after.
@@ -155,15 +155,17 @@ class Reader {
     /// Live and recorded as one series in order of SCLK, each sample once. Undefined values are left out: gaps.
     Result<v1::ChannelSeriesList> series(RunId run, const SeriesQuery& query);
     /// A formula of channels as one series, at the times of the first channel in it; of each other channel the newest
-    /// value up to then counts. Exact, or thinned to the least and the largest of equal intervals; takes the same memory
-    /// however many samples there are. What is undefined (NaN) is left out.
-    Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range, std::optional<std::size_t> points);
+    /// value up to then counts. Exact, or thinned to the least and the largest of equal intervals; takes the same
+    /// memory however many samples there are. What is undefined (NaN) is left out.
+    Result<v1::ChannelSeries> derived(RunId run, const std::string& expression, const SclkRange& range,
+                                      std::optional<std::size_t> points);
     /// All samples of the channels in a range, in order of SCLK, some thousands at a time; takes the same memory for a
     /// minute as for a year. No channel named: all. Ends with the error that `take` gives.
     using TakeSamples = std::function<Result<void>(std::span<const ChannelValue> samples)>;
-    Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range, const TakeSamples& take);
-    /// The first of them, in order of SCLK, some ten thousand, and where the rest begins; or what follows a page. What came
-    /// after the first page was asked for belongs to none.
+    Result<void> each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
+                             const TakeSamples& take);
+    /// The first of them, in order of SCLK, some ten thousand, and where the rest begins; or what follows a page. What
+    /// came after the first page was asked for belongs to none.
     Result<SamplePage> sample_page(RunId run, const std::vector<std::string>& channels, const SclkRange& range,
                                    const std::optional<SampleCursor>& after = {});
     /// The newest value of every channel up to `at` (none: of all), undefined ones left out.
@@ -198,7 +200,7 @@ class Reader {
     /// In order, of those after `after`.
     Result<std::vector<AuditEntry>> audit(std::uint64_t after, std::size_t limit);
 
-    struct State; ///< reader_state.hpp: shared by the reader's parts
+    struct State;  ///< reader_state.hpp: shared by the reader's parts
 
   private:
     explicit Reader(std::unique_ptr<State> state);
@@ -208,4 +210,4 @@ class Reader {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

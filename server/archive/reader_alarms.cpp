@@ -27,7 +27,8 @@ void apply(const v1::Item& item, const dictionary::Dictionary& dictionary, telem
     const std::string& name = name_of_alarm(item, dictionary);
     if (item.has_alarm()) {
         const auto& alarms = dictionary.channels[item.alarm().channel()].type.alarms;
-        desk.change(name, telemetry::severity_of(item.alarm().severity()).value_or(Severity::none), telemetry::latches(alarms));
+        desk.change(name, telemetry::severity_of(item.alarm().severity()).value_or(Severity::none),
+                    telemetry::latches(alarms));
     } else if (item.has_staleness()) {
         desk.change(name, item.staleness().stale() ? telemetry::stale_severity : Severity::none, false);
     } else if (item.has_link()) {
@@ -58,7 +59,7 @@ void describe(const v1::Item& item, v1::AlarmState& state) {
     }
 }
 
-} // namespace
+}  // namespace
 
 /// All that happened to the run's alarms, and what it came to.
 Result<telemetry::AlarmDesk> Reader::alarm_desk(RunId run, std::vector<v1::Item>& changes) {
@@ -89,26 +90,28 @@ Result<v1::AlarmList> Reader::alarm_states(RunId run, std::optional<Ert> now) {
     const Ert at = now.value_or(*newest);
 
     std::map<std::string, v1::AlarmState> described;
-    for (const auto& item : changes)
-        describe(item, described[name_of_alarm(item, state_->dictionary)]);
+    for (const auto& item : changes) describe(item, described[name_of_alarm(item, state_->dictionary)]);
     std::vector<v1::AlarmState> states;
     for (const auto& [name, state] : desk->all()) {
         if (std::string_view(state.name(at)) == "normal") continue;
         auto& written = states.emplace_back(std::move(described[name]));
         written.set_name(name);
         if (written.kind().empty())
-            written.set_kind(state_->dictionary.channel(name) != nullptr ? "limit" : state_->dictionary.packet(name) != nullptr ? "staleness" : "link");
+            written.set_kind(state_->dictionary.channel(name) != nullptr  ? "limit"
+                             : state_->dictionary.packet(name) != nullptr ? "staleness"
+                                                                          : "link");
         written.set_state(state.name(at));
         written.set_severity(telemetry::name_of(state.severity));
         written.set_worst(telemetry::name_of(state.worst));
         written.set_acknowledged(state.acknowledged);
         written.set_latches(state.latches);
-        if (state.shelved_until && at < *state.shelved_until) written.set_shelved_until(day_of_year_text(*state.shelved_until));
+        if (state.shelved_until && at < *state.shelved_until)
+            written.set_shelved_until(day_of_year_text(*state.shelved_until));
     }
-    std::ranges::stable_sort(states, std::ranges::greater{}, [](const v1::AlarmState& state) { return telemetry::severity_of(state.severity()); });
+    std::ranges::stable_sort(states, std::ranges::greater{},
+                             [](const v1::AlarmState& state) { return telemetry::severity_of(state.severity()); });
     v1::AlarmList list;
-    for (auto& state : states)
-        *list.add_alarms() = std::move(state);
+    for (auto& state : states) *list.add_alarms() = std::move(state);
     return list;
 }
 
@@ -140,4 +143,4 @@ Result<Ert> Reader::newest_ert(RunId run) {
     return *found ? Ert{(*rows)->integer(0)} : Ert{};
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

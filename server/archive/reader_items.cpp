@@ -44,8 +44,7 @@ Result<void> collect(Reader::State& reader, const char* sql, Page& page, Read re
 /// In order, and no more than is complete.
 void finish(Page& page) {
     std::sort(page.items.begin(), page.items.end(), [](const auto& a, const auto& b) { return a.seq() < b.seq(); });
-    while (!page.items.empty() && page.items.back().seq() > page.through)
-        page.items.pop_back();
+    while (!page.items.empty() && page.items.back().seq() > page.through) page.items.pop_back();
     if (page.items.size() <= page.limit) return;
     page.items.resize(page.limit);
     page.through = page.items.back().seq();
@@ -73,7 +72,7 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
     (*rows)
         ->bind(1, item_key(page.run, page.after))
         .bind(2, item_key(page.run, page.through))
-        .bind(3, static_cast<std::int64_t>(page.limit + 1)); // the first may have nothing left to give
+        .bind(3, static_cast<std::int64_t>(page.limit + 1));  // the first may have nothing left to give
     const auto* words = reader.words_of(info);
     std::vector<double> values;
     std::size_t count = 0;
@@ -100,7 +99,7 @@ Result<void> collect_units(Reader::State& reader, const RunInfo& info, Page& pag
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<ItemPage> Reader::items(RunId run, Sequence after, std::size_t limit) {
     return items(run, after, limit, {});
@@ -142,8 +141,7 @@ Result<v1::AlarmList> Reader::alarms(RunId run, Sequence after, std::size_t limi
     if (!done) return done.error();
     finish(page);
     v1::AlarmList list;
-    for (auto& item : page.items)
-        *list.add_changes() = std::move(item);
+    for (auto& item : page.items) *list.add_changes() = std::move(item);
     list.set_next_after(page.through == sequence_max ? 0 : page.through);
     return list;
 }
@@ -174,4 +172,4 @@ Result<v1::Item> Reader::State::explanation_item(const sqlite::Statement& row) {
     }
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -36,15 +36,16 @@ constexpr char found_stages[] =
     "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
     " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key IN"
     " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
-constexpr char found_notes[] = "SELECT key, text, author, at_us, written, sclk FROM notes WHERE key IN"
-                               " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
+constexpr char found_notes[] =
+    "SELECT key, text, author, at_us, written, sclk FROM notes WHERE key IN"
+    " (SELECT rowid FROM search WHERE search MATCH ?4 AND rowid BETWEEN ?1 AND ?2) ORDER BY key LIMIT ?3";
 
 /// What is asked for in words, as FTS5 wants it.
 struct Wanted {
     explicit Wanted(const std::string& text) : asked(!text.empty()), words(search_words(text)) {}
     bool asked;
     std::string words;
-    bool nothing() const { return asked && words.empty(); } ///< only signs: no row has them
+    bool nothing() const { return asked && words.empty(); }  ///< only signs: no row has them
 };
 
 /// Whether each of `wanted` begins a word of the text, in any case. For rows of which FTS5 has no words: tones are few.
@@ -53,7 +54,8 @@ bool has_words(std::string_view text, std::span<const std::string_view> wanted) 
     const auto words = words_in(text);
     return std::ranges::all_of(wanted, [&](std::string_view beginning) {
         return std::ranges::any_of(words, [&](std::string_view word) {
-            return word.size() >= beginning.size() && std::ranges::equal(word.substr(0, beginning.size()), beginning, {}, lower, lower);
+            return word.size() >= beginning.size() &&
+                   std::ranges::equal(word.substr(0, beginning.size()), beginning, {}, lower, lower);
         });
     });
 }
@@ -61,7 +63,8 @@ bool has_words(std::string_view text, std::span<const std::string_view> wanted) 
 /// Rows of one table after `after`, until `take` says that the page is full. Gives the number to go on after; 0: no
 /// more.
 template <typename Take>
-Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take, const std::string& words = {}) {
+Result<Sequence> scan(Reader::State& reader, const char* sql, RunId run, Sequence after, Take take,
+                      const std::string& words = {}) {
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -117,7 +120,7 @@ void add_contents(v1::PacketRow& row, const telemetry::DecodedContents& contents
     }
 }
 
-} // namespace
+}  // namespace
 
 Result<v1::PacketList> Reader::packets(RunId run, const PacketQuery& query) {
     const auto range = closed(query.range);
@@ -169,15 +172,18 @@ Result<v1::EventList> Reader::events(RunId run, const EventQuery& query) {
     v1::EventList list;
     if (wanted.nothing()) return list;
     const char* sql = wanted.asked ? found_events : row::event_rows;
-    const auto next = scan(*state_, sql, run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto event = row::event(row);
-        if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
-        if (!query.levels.empty() &&
-            std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
-            return false;
-        *list.add_events() = to_item(event);
-        return static_cast<std::size_t>(list.events_size()) == query.limit;
-    }, wanted.words);
+    const auto next = scan(
+        *state_, sql, run, query.after,
+        [&](const auto& row) -> Result<bool> {
+            const auto event = row::event(row);
+            if ((event.duplicate && !query.duplicates) || !range->holds(event.sclk.seconds)) return false;
+            if (!query.levels.empty() &&
+                std::find(query.levels.begin(), query.levels.end(), event.level) == query.levels.end())
+                return false;
+            *list.add_events() = to_item(event);
+            return static_cast<std::size_t>(list.events_size()) == query.limit;
+        },
+        wanted.words);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
@@ -191,7 +197,7 @@ Result<v1::ToneList> Reader::tones(RunId run, const ToneQuery& query) {
     if (!instant) return instant.error();
     const auto wanted = words_in(query.text);
     v1::ToneList list;
-    if (wanted.empty() && !query.text.empty()) return list; // only signs: no tone has them
+    if (wanted.empty() && !query.text.empty()) return list;  // only signs: no tone has them
     const auto next = scan(*state_, row::tone_rows, run, query.after, [&](const auto& row) -> Result<bool> {
         const auto record = row::tone(row);
         if (!range->holds(record.sclk.seconds) || !has_words(record.name + " " + record.meaning, wanted)) return false;
@@ -214,15 +220,18 @@ Result<v1::ExplanationList> Reader::explanations(RunId run, const ExplanationQue
     const Wanted wanted(query.text);
     v1::ExplanationList list;
     if (wanted.nothing()) return list;
-    const auto next = scan(*state_, wanted.asked ? found_explanations : row::explanation_rows, run, query.after, [&](const auto& row) -> Result<bool> {
-        const auto record = row::explanation(row);
-        if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
-        if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
-        auto item = state_->explanation_item(row);
-        if (!item) return item.error();
-        *list.add_explanations() = std::move(item).value();
-        return static_cast<std::size_t>(list.explanations_size()) == query.limit;
-    }, wanted.words);
+    const auto next = scan(
+        *state_, wanted.asked ? found_explanations : row::explanation_rows, run, query.after,
+        [&](const auto& row) -> Result<bool> {
+            const auto record = row::explanation(row);
+            if ((record.duplicate && !query.duplicates) || !range->holds(record.sclk.seconds)) return false;
+            if (!query.decision.empty() && record.explanation.decision != query.decision) return false;
+            auto item = state_->explanation_item(row);
+            if (!item) return item.error();
+            *list.add_explanations() = std::move(item).value();
+            return static_cast<std::size_t>(list.explanations_size()) == query.limit;
+        },
+        wanted.words);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
@@ -235,10 +244,13 @@ Result<v1::NoteList> Reader::notes(RunId run, const NoteQuery& query) {
     const Wanted wanted(query.text);
     v1::NoteList list;
     if (wanted.nothing()) return list;
-    const auto next = scan(*state_, wanted.asked ? found_notes : row::note_rows, run, query.after, [&](const auto& row) -> Result<bool> {
-        *list.add_notes() = to_item(row::note(row));
-        return static_cast<std::size_t>(list.notes_size()) == query.limit;
-    }, wanted.words);
+    const auto next = scan(
+        *state_, wanted.asked ? found_notes : row::note_rows, run, query.after,
+        [&](const auto& row) -> Result<bool> {
+            *list.add_notes() = to_item(row::note(row));
+            return static_cast<std::size_t>(list.notes_size()) == query.limit;
+        },
+        wanted.words);
     if (!next) return next.error();
     list.set_next_after(*next);
     return list;
@@ -259,7 +271,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history.set_name(stage.name);
             history.set_arguments(stage.arguments);
         }
-        if (stage.stage == "released") { // its last word
+        if (stage.stage == "released") {  // its last word
             history.set_held(stage.held);
             history.set_needs_approval(stage.needs_approval);
         }
@@ -272,10 +284,13 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
     if (const Wanted wanted(query.text); wanted.asked) {
         std::set<std::uint64_t> found;
         if (!wanted.nothing()) {
-            const auto looked = scan(*state_, found_stages, run, 0, [&](const auto& row) -> Result<bool> {
-                found.insert(row::stage(row).command);
-                return false;
-            }, wanted.words);
+            const auto looked = scan(
+                *state_, found_stages, run, 0,
+                [&](const auto& row) -> Result<bool> {
+                    found.insert(row::stage(row).command);
+                    return false;
+                },
+                wanted.words);
             if (!looked) return looked.error();
         }
         std::erase_if(histories, [&](const auto& history) { return !found.contains(history.first); });
@@ -293,8 +308,7 @@ Result<v1::CommandList> Reader::commands(RunId run, const CommandQuery& query) {
             history->second.set_octets(hex(row.octets(1)));
     }
     v1::CommandList list;
-    for (auto& [number, history] : histories)
-        *list.add_commands() = std::move(history);
+    for (auto& [number, history] : histories) *list.add_commands() = std::move(history);
     return list;
 }
 
@@ -310,13 +324,16 @@ Result<void> Reader::State::add_predicted_anchors(RunId run, v1::TimepointList& 
         if (!*found) break;
         kept = true;
         const auto anchor = row.integer(0);
-        if (anchor < list.anchors_size() && !row.is_null(1)) list.mutable_anchors(static_cast<int>(anchor))->set_predicted_e_s(row.real(1));
+        if (anchor < list.anchors_size() && !row.is_null(1))
+            list.mutable_anchors(static_cast<int>(anchor))->set_predicted_e_s(row.real(1));
     }
     if (kept) return {};
     for (std::size_t i = 0; i < dictionary.predicted_anchor_e_s.size(); ++i)
-        if (const auto& predicted = dictionary.predicted_anchor_e_s[i]) list.mutable_anchors(static_cast<int>(i))->set_predicted_e_s(*predicted);
+        if (const auto& predicted = dictionary.predicted_anchor_e_s[i])
+            list.mutable_anchors(static_cast<int>(i))->set_predicted_e_s(*predicted);
     if (list.anchors_size() > 0)
-        list.set_prediction_note("the archive has not kept what was predicted when this run began: it is predicted by today's predicted_anchors.csv");
+        list.set_prediction_note("the archive has not kept what was predicted when this run began: it is predicted by "
+                                 "today's predicted_anchors.csv");
     return {};
 }
 
@@ -390,4 +407,4 @@ Result<v1::RecordingSummary> Reader::recording(RunId run) {
     return summary;
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -14,14 +14,10 @@ namespace aeolis::archive {
 
 const char* name_of(OnOtherPath found, Source source, bool recording_complete) {
     switch (found) {
-    case OnOtherPath::identical:
-        return "identical";
-    case OnOtherPath::differs:
-        return "differs";
-    case OnOtherPath::not_decoded:
-        return "not_decoded";
-    case OnOtherPath::absent:
-        break;
+    case OnOtherPath::identical: return "identical";
+    case OnOtherPath::differs: return "differs";
+    case OnOtherPath::not_decoded: return "not_decoded";
+    case OnOtherPath::absent: break;
     }
     if (source == Source::recorded) return "never_seen_live";
     return recording_complete ? "missing_in_recording" : "pending";
@@ -34,17 +30,19 @@ constexpr char other_sql[] =
     " AND o.source = 3 - u.source AND o.sclk = u.sclk AND o.packet IS NOT NULL"
     " AND substr(o.octets, 3, 2) = substr(u.octets, 3, 2) WHERE u.key = ?1 ORDER BY 1 LIMIT 1";
 
-const std::string totals_sql =
-    std::string("SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), u.packet, u.apid, u.source, u.standing = 1, ") +
-    on_other_path_sql + ", count(*) FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
+const std::string totals_sql = std::string("SELECT (SELECT word FROM words WHERE kind = 'link' AND number = u.link), "
+                                           "u.packet, u.apid, u.source, u.standing = 1, ") +
+                               on_other_path_sql +
+                               ", count(*) FROM units u WHERE u.key BETWEEN ?1 AND ?2 GROUP BY 1, 2, 3, 4, 5, 6";
 
 constexpr char selections_sql[] =
     "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = 2 AND packet = ?3 ORDER BY sclk";
 
-constexpr char counters_sql[] = "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
-                                " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
+constexpr char counters_sql[] =
+    "SELECT link, octets, frames, bad_crc, bad_header, skipped_octets, gaps, missing_frames,"
+    " repeated_frames, octets_per_s FROM link_totals WHERE run = ?1 ORDER BY link";
 
-constexpr double half_a_symbol_s = 5.0; // a tone is sent for 10 s; no two begin in less than that
+constexpr double half_a_symbol_s = 5.0;  // a tone is sent for 10 s; no two begin in less than that
 
 void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_complete, std::uint64_t units) {
     if (found == OnOtherPath::not_decoded) {
@@ -56,7 +54,8 @@ void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_com
         row.set_realtime(row.realtime() + units);
         if (found == OnOtherPath::identical) row.set_identical(row.identical() + units);
         if (found == OnOtherPath::differs) row.set_differs(row.differs() + units);
-        if (found == OnOtherPath::absent && recording_complete) row.set_missing_in_recording(row.missing_in_recording() + units);
+        if (found == OnOtherPath::absent && recording_complete)
+            row.set_missing_in_recording(row.missing_in_recording() + units);
         if (found == OnOtherPath::absent && !recording_complete) row.set_pending(row.pending() + units);
     }
 }
@@ -64,7 +63,7 @@ void add(v1::ProofRow& row, Source source, OnOtherPath found, bool recording_com
 struct Selection {
     double started_s = 0.0;
     std::uint32_t tone = 0;
-    bool seen = false; ///< a decision of the receiver is about it, be it an erasure
+    bool seen = false;  ///< a decision of the receiver is about it, be it an erasure
 };
 
 /// Every tone that was sent, as the recording has it.
@@ -110,7 +109,7 @@ v1::ToneVerdict verdict_on(const ToneRecord& decided, std::vector<Selection>& se
     return verdict;
 }
 
-} // namespace
+}  // namespace
 
 Result<bool> Reader::State::recording_complete(RunId run) {
     auto rows = query("SELECT progress >= 1.0 FROM recordings WHERE run = ?1");
@@ -158,7 +157,8 @@ Result<v1::ProofReport> Reader::proof(RunId run) {
         add(links[std::string{row.text(0)}], source, on_other_path, *complete, units);
         const bool again = row.integer(4) != 0;
         if (!again)
-            add(streams[named ? words->packets[packet].name : "APID " + std::to_string(row.integer(2))], source, on_other_path, *complete, units);
+            add(streams[named ? words->packets[packet].name : "APID " + std::to_string(row.integer(2))], source,
+                on_other_path, *complete, units);
     }
     v1::ProofReport report;
     report.set_recording_complete(*complete);
@@ -221,4 +221,4 @@ Result<void> Reader::add_counters(RunId run, v1::ProofReport& report) {
     }
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

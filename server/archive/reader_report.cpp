@@ -14,14 +14,16 @@
 namespace aeolis::archive {
 namespace {
 
-constexpr double symbol_slack_s = 15.0; // ours: a symbol of 10 s begins within it of what it tells
+constexpr double symbol_slack_s = 15.0;  // ours: a symbol of 10 s begins within it of what it tells
 
 /// When the symbol began that told of a timepoint, in SCLK: the first with its tone, not long before it fired.
-std::optional<double> told_by_tone(const v1::ToneList& tones, const std::string& tone, std::optional<double> fired_sclk) {
+std::optional<double> told_by_tone(const v1::ToneList& tones, const std::string& tone,
+                                   std::optional<double> fired_sclk) {
     if (tone.empty()) return std::nullopt;
     for (const auto& item : tones.tones()) {
         const auto& decoded = item.tone();
-        if (decoded.has_tone() && decoded.name() == tone && (!fired_sclk || decoded.sclk() > *fired_sclk - symbol_slack_s))
+        if (decoded.has_tone() && decoded.name() == tone &&
+            (!fired_sclk || decoded.sclk() > *fired_sclk - symbol_slack_s))
             return decoded.sclk();
     }
     return std::nullopt;
@@ -42,10 +44,10 @@ bool executed_by(const v1::CommandHistory& command, Ert by) {
 }
 
 /// The prediction of entry interface: firings that UHF had told of by then, and changes of offsets that were executed.
-void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline, const v1::CommandList& commands,
-                     const v1::RunState& run, v1::AsFlownReport& report) {
+void add_predictions(const dictionary::Dictionary& dictionary, const v1::TimepointList& timeline,
+                     const v1::CommandList& commands, const v1::RunState& run, v1::AsFlownReport& report) {
     std::optional<dictionary::Dictionary> changed;
-    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()}); // when entry interface was due
+    const Ert at_entry = heard_at(run, Sclk{run.entry_sclk()});  // when entry interface was due
     for (const auto& command : commands.commands()) {
         const auto* known = dictionary.command(command.name());
         if (known == nullptr || !commands::changes_offsets(command.name()) || !executed_by(command, at_entry)) continue;
@@ -57,7 +59,8 @@ void add_predictions(const dictionary::Dictionary& dictionary, const v1::Timepoi
     std::vector<std::optional<double>> heard_e_s(dictionary.timeline.size());
     for (std::size_t i = 0; i < heard_e_s.size(); ++i) {
         const auto& row = timeline.timepoints(static_cast<int>(i));
-        if (row.has_realtime_sclk() && row.realtime_sclk() <= run.entry_sclk()) heard_e_s[i] = row.realtime_sclk() - run.entry_sclk();
+        if (row.has_realtime_sclk() && row.realtime_sclk() <= run.entry_sclk())
+            heard_e_s[i] = row.realtime_sclk() - run.entry_sclk();
     }
     std::vector<std::optional<double>> design_e_s;
     for (const auto& anchor : timeline.anchors())
@@ -68,7 +71,8 @@ void add_predictions(const dictionary::Dictionary& dictionary, const v1::Timepoi
         if (predicted[i]) report.mutable_timepoints(static_cast<int>(i))->set_predicted_e_s(*predicted[i]);
 }
 
-void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones, double entry_sclk, v1::AsFlownReport& report) {
+void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones, double entry_sclk,
+                    v1::AsFlownReport& report) {
     std::optional<double> previous_sclk;
     for (const auto& row : timeline.timepoints()) {
         auto& flown = *report.add_timepoints();
@@ -80,7 +84,8 @@ void add_timepoints(const v1::TimepointList& timeline, const v1::ToneList& tones
         if (row.has_realtime_sclk()) flown.set_realtime_e_s(row.realtime_sclk() - entry_sclk);
         if (row.has_recorded_sclk()) flown.set_recorded_e_s(row.recorded_sclk() - entry_sclk);
         if (const auto told = told_by_tone(tones, row.tone(), fired)) flown.set_tone_e_s(*told - entry_sclk);
-        if (fired && previous_sclk && row.has_minimum_offset_s()) flown.set_margin_s(*fired - *previous_sclk - row.minimum_offset_s());
+        if (fired && previous_sclk && row.has_minimum_offset_s())
+            flown.set_margin_s(*fired - *previous_sclk - row.minimum_offset_s());
         if (fired) previous_sclk = fired;
     }
 }
@@ -109,9 +114,10 @@ std::string in_small_letters(std::string name) {
     return name;
 }
 
-/// What the dictionary calls a high activity, and no timepoint of that name reports; whatever of it flight has reported, live or recorded.
-/// What comes several times is numbered.
-Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, double entry_sclk, v1::AsFlownReport& report) {
+/// What the dictionary calls a high activity, and no timepoint of that name reports; whatever of it flight has
+/// reported, live or recorded. What comes several times is numbered.
+Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& timeline, double entry_sclk,
+                        v1::AsFlownReport& report) {
     EventQuery query;
     query.levels = {telemetry::name_of(dictionary::EventLevel::activity_hi)};
     query.duplicates = true;
@@ -119,9 +125,12 @@ Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& time
     const auto told = all_of(reader, run, &Reader::events, query);
     if (!told) return told.error();
     const auto of_timepoint = [&](const v1::Event& event) {
-        return std::ranges::any_of(timeline.timepoints(), [&](const v1::TimepointRow& row) { return row.event() == event.name() && row.name() == in_small_letters(event.name()); });
+        return std::ranges::any_of(timeline.timepoints(), [&](const v1::TimepointRow& row) {
+            return row.event() == event.name() && row.name() == in_small_letters(event.name());
+        });
     };
-    std::map<std::tuple<double, std::string, std::string>, v1::AsFlownEvent> flown; // an event that is told twice is one
+    std::map<std::tuple<double, std::string, std::string>, v1::AsFlownEvent>
+        flown;  // an event that is told twice is one
     std::map<std::string, int> times, number;
     for (const auto& item : told->events()) {
         const auto& event = item.event();
@@ -140,14 +149,15 @@ Result<void> add_events(Reader& reader, RunId run, const v1::TimepointList& time
     }
     for (auto& [key, row] : flown) {
         const auto anchor = std::ranges::find(timeline.anchors(), row.name(), &v1::AnchorRow::name);
-        if (anchor != timeline.anchors().end() && anchor->has_predicted_e_s()) row.set_predicted_e_s(anchor->predicted_e_s());
+        if (anchor != timeline.anchors().end() && anchor->has_predicted_e_s())
+            row.set_predicted_e_s(anchor->predicted_e_s());
         if (times[row.name()] > 1) row.set_name(row.name() + '_' + std::to_string(++number[row.name()]));
         *report.add_events() = std::move(row);
     }
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     auto state = this->run(run);
@@ -162,9 +172,11 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
     if (!proven) return proven.error();
     v1::AsFlownReport report;
     add_timepoints(*timeline, *heard, state->entry_sclk(), report);
-    add_predictions(state_->dictionary, *timeline, *sent, *state, report); // timepoints() gave it for this dictionary only
+    add_predictions(state_->dictionary, *timeline, *sent, *state,
+                    report);  // timepoints() gave it for this dictionary only
     if (auto added = add_events(*this, run, *timeline, state->entry_sclk(), report); !added) return added.error();
-    const auto decoded = std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
+    const auto decoded =
+        std::ranges::count_if(heard->tones(), [](const v1::Item& item) { return item.tone().has_tone(); });
     report.set_tones_decoded(static_cast<std::uint64_t>(decoded));
     report.set_tones_erased(static_cast<std::uint64_t>(heard->tones_size() - decoded));
     auto silences = silences_of(*state_, run);
@@ -182,7 +194,8 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
 }
 
 Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
-    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
+    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + "
+                       "light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
     if (!times) return times.error();
     (*times)->bind(1, std::int64_t{run.value});
     auto found = (*times)->step();
@@ -194,7 +207,7 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
     if (!rows) return rows.error();
     (*rows)->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{-1});
     std::vector<v1::Silence> all;
-    std::map<std::string, std::size_t> silent; ///< a link, and its silence among them
+    std::map<std::string, std::size_t> silent;  ///< a link, and its silence among them
     for (;;) {
         auto next = (*rows)->step();
         if (!next) return next.error();
@@ -214,4 +227,4 @@ Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
     }
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -12,12 +12,14 @@ namespace aeolis::archive {
 
 namespace {
 
-constexpr std::size_t exact_samples_of_all_max = 1'000'000; ///< ours: some 55 MB as JSON; each origin and gap counts as one
-constexpr std::size_t window_samples = 100'000; ///< ours: that are in hand at once; at most four times as many
-constexpr std::size_t page_samples = 10'000;    ///< ours: the same for one page, a megabyte of text
+constexpr std::size_t exact_samples_of_all_max =
+    1'000'000;                                   ///< ours: some 55 MB as JSON; each origin and gap counts as one
+constexpr std::size_t window_samples = 100'000;  ///< ours: that are in hand at once; at most four times as many
+constexpr std::size_t page_samples = 10'000;     ///< ours: the same for one page, a megabyte of text
 
 constexpr char sealed_span_sql[] = "SELECT min(first_sclk), max(last_sclk), sum(samples) FROM segments WHERE run = ?1";
-constexpr char unit_span_sql[] = "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+constexpr char unit_span_sql[] =
+    "SELECT min(sclk), max(sclk), count(*) FROM units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
 constexpr char newest_sql[] = "SELECT octets FROM units WHERE run = ?1 AND apid = ?2 AND source = ?5 AND sclk <= ?3"
                               " AND packet = ?4 AND sampled = 1 ORDER BY sclk DESC LIMIT 1";
 // Of another mission's packets, whose container may come with any APID.
@@ -90,7 +92,8 @@ Result<v1::ChannelSeries> one_series(Reader::State& reader, const RunInfo& run, 
     return series;
 }
 
-Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range) {
+Result<std::span<const Sample>> samples_of(Reader::State& reader, const RunInfo& run, ChannelId channel,
+                                           const ClosedRange& range) {
     const auto coverage = cover(reader, run, channel, range);
     if (!coverage) return coverage.error();
     return exact_samples(reader, *coverage);
@@ -150,7 +153,7 @@ Result<void> note_newest(Reader::State& reader, RunId run, std::size_t packet, S
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query) {
     const auto range = closed(query.range);
@@ -168,12 +171,15 @@ Result<v1::ChannelSeriesList> Reader::series(RunId run, const SeriesQuery& query
         auto series = one_series(*state_, instant->run, *channel, *range, query);
         if (!series) return series.error();
         if (query.provenance)
-            if (auto done = add_origins(*state_, instant->run, channel->id, query.range, *range, query.source, *series); !done) return done.error();
+            if (auto done = add_origins(*state_, instant->run, channel->id, query.range, *range, query.source, *series);
+                !done)
+                return done.error();
         given += static_cast<std::size_t>(series->sclk_size()) + static_cast<std::size_t>(series->origins_size()) +
                  static_cast<std::size_t>(series->gaps_size());
         if (given > exact_samples_of_all_max)
             return Error{"the channels have more than " + std::to_string(exact_samples_of_all_max) +
-                         (query.provenance ? " samples, origins and gaps" : " samples") + " in the range: ask for points, or less; aeolis export gives any number"};
+                         (query.provenance ? " samples, origins and gaps" : " samples") +
+                         " in the range: ask for points, or less; aeolis export gives any number"};
         *list.add_channels() = std::move(series).value();
     }
     return list;
@@ -185,18 +191,21 @@ namespace {
 class Thinning {
   public:
     /// @param points  none: all values; an Error when there are more than an exact answer may have
-    Thinning(ClosedRange range, std::optional<std::size_t> points) : range_(range), intervals_(points ? *points / 2 : 0) {}
+    Thinning(ClosedRange range, std::optional<std::size_t> points)
+        : range_(range), intervals_(points ? *points / 2 : 0) {}
 
     Result<void> add(const Sample& sample) {
         ++count_;
         if (intervals_ == 0) {
             if (count_ > exact_samples_max)
-                return Error{"the range holds more than " + std::to_string(exact_samples_max) + " values: ask for points, or less"};
+                return Error{"the range holds more than " + std::to_string(exact_samples_max) +
+                             " values: ask for points, or less"};
             all_.push_back(sample);
             return {};
         }
         const double part = (sample.sclk_s - range_.from_s) / std::max(range_.to_s - range_.from_s, seconds_per_tick);
-        const auto interval = std::min(static_cast<std::size_t>(part * static_cast<double>(intervals_)), intervals_ - 1);
+        const auto interval =
+            std::min(static_cast<std::size_t>(part * static_cast<double>(intervals_)), intervals_ - 1);
         if (interval != interval_ || !least_) flush();
         interval_ = interval;
         if (!least_ || sample.value < least_->value) least_ = sample;
@@ -222,13 +231,14 @@ class Thinning {
     ClosedRange range_;
     std::size_t intervals_, interval_ = 0;
     std::uint64_t count_ = 0;
-    std::optional<Sample> least_, largest_; ///< of the interval
+    std::optional<Sample> least_, largest_;  ///< of the interval
     std::vector<Sample> all_;
 };
 
-} // namespace
+}  // namespace
 
-Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, const SclkRange& asked, std::optional<std::size_t> points) {
+Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, const SclkRange& asked,
+                                          std::optional<std::size_t> points) {
     auto expression = Expression::parse(text);
     if (!expression) return expression.error();
     if (points && (*points < 2 || *points > thinned_points_max))
@@ -254,7 +264,9 @@ Result<v1::ChannelSeries> Reader::derived(RunId run, const std::string& text, co
         for (const ChannelValue& sample : samples) {
             for (std::size_t i = 0; i < names.size(); ++i)
                 if ((*channels)[i]->id == sample.channel) values[i] = sample.value;
-            if (sample.channel != channels->front()->id || std::ranges::any_of(values, [](double value) { return std::isnan(value); })) continue;
+            if (sample.channel != channels->front()->id ||
+                std::ranges::any_of(values, [](double value) { return std::isnan(value); }))
+                continue;
             const double value = expression->value(values);
             if (std::isnan(value)) continue;
             if (auto done = thinning.add({sample.sclk.seconds, value, sample.source}); !done) return done;
@@ -276,26 +288,29 @@ namespace {
 /// The samples of a range of time, a window with about `wanted` of them at a time.
 class SampleWindows {
   public:
-    static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
-                                    std::size_t wanted, const std::optional<SampleCursor>& after = {});
+    static Result<SampleWindows> of(Reader::State& reader, RunId run, const std::vector<std::string>& channels,
+                                    const SclkRange& asked, std::size_t wanted,
+                                    const std::optional<SampleCursor>& after = {});
 
     bool at_end() const { return cursor_.from_s > cursor_.to_s; }
-    const SampleCursor& cursor() const { return cursor_; } ///< of the next window
+    const SampleCursor& cursor() const { return cursor_; }  ///< of the next window
     /// Of the next window, in order of SCLK; there may be none in it.
     Result<void> next(std::vector<ChannelValue>& samples);
 
   private:
-    SampleWindows(Reader::State& reader, const RunInfo& run, std::size_t wanted) : reader_(&reader), run_(run), wanted_(wanted) {}
+    SampleWindows(Reader::State& reader, const RunInfo& run, std::size_t wanted)
+        : reader_(&reader), run_(run), wanted_(wanted) {}
 
     Reader::State* reader_;
     RunInfo run_;
     std::size_t wanted_;
     std::vector<const dictionary::Channel*> channels_;
-    SampleCursor cursor_; ///< its width a first guess, then by what was found
+    SampleCursor cursor_;  ///< its width a first guess, then by what was found
 };
 
-Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
-                                        std::size_t wanted, const std::optional<SampleCursor>& after) {
+Result<SampleWindows> SampleWindows::of(Reader::State& reader, RunId run, const std::vector<std::string>& channels,
+                                        const SclkRange& asked, std::size_t wanted,
+                                        const std::optional<SampleCursor>& after) {
     const auto range = closed(asked);
     if (!range) return range.error();
     const auto info = reader.info(run);
@@ -348,9 +363,10 @@ Result<void> SampleWindows::next(std::vector<ChannelValue>& samples) {
     }
 }
 
-} // namespace
+}  // namespace
 
-Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked, const TakeSamples& take) {
+Result<void> Reader::each_sample(RunId run, const std::vector<std::string>& channels, const SclkRange& asked,
+                                 const TakeSamples& take) {
     auto snapshot = sqlite::Transaction::begin_read(state_->database);
     if (!snapshot) return snapshot.error();
     auto windows = SampleWindows::of(*state_, run, channels, asked, window_samples);
@@ -393,4 +409,4 @@ Result<std::vector<ChannelValue>> Reader::latest(RunId run, std::optional<Sclk> 
     return answer;
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

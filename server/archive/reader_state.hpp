@@ -30,7 +30,7 @@ class Query {
 
 struct RunInfo {
     RunId run;
-    bool finished = false; ///< every sample is in a segment
+    bool finished = false;  ///< every sample is in a segment
     std::uint16_t dictionary = 0;
     Sclk entry;
 };
@@ -57,7 +57,8 @@ struct Sample {
 };
 
 struct Reader::State {
-    State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
+    State(sqlite::Database database_in, const dictionary::Dictionary& dictionary_in,
+          const telemetry::OtherMission* other_in)
         : database(std::move(database_in)), dictionary(dictionary_in), columns(dictionary_in), other(other_in) {
         if (other == nullptr) decommutator.emplace(dictionary_in);
     }
@@ -77,9 +78,10 @@ struct Reader::State {
     };
     Result<Instant> instant(RunId run);
     Result<Sequence> last_seq(RunId run);
-    Result<std::vector<RequestRecord>> requests(RunId run); ///< as they were taken
+    Result<std::vector<RequestRecord>> requests(RunId run);  ///< as they were taken
     Result<v1::RunState> run_state(const sqlite::Statement& row);
-    /// When the design had each anchor, as kept with the run; of a run of schema 6 or before by today's sheet, with a note.
+    /// When the design had each anchor, as kept with the run; of a run of schema 6 or before by today's sheet, with a
+    /// note.
     Result<void> add_predicted_anchors(RunId run, v1::TimepointList& list);
     Result<v1::Item> explanation_item(const sqlite::Statement& row);
     Result<v1::Item> tone_item(const sqlite::Statement& row);
@@ -102,13 +104,13 @@ struct Reader::State {
     sqlite::Database database;
     const dictionary::Dictionary& dictionary;
     PacketColumns columns;
-    const telemetry::OtherMission* other; ///< none: our own
+    const telemetry::OtherMission* other;  ///< none: our own
     std::optional<telemetry::Decommutator> decommutator;
     telemetry::Decoded decoded;
     ColumnCodec codec;
-    std::vector<Sample> realtime, recorded, both; ///< samples of the last exact question
-    std::vector<double> segment_sclk_s, segment_values; ///< of the segment that is being read
+    std::vector<Sample> realtime, recorded, both;        ///< samples of the last exact question
+    std::vector<double> segment_sclk_s, segment_values;  ///< of the segment that is being read
     std::map<const char*, sqlite::Statement> statements;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -46,4 +46,4 @@ void Batch::clear() {
     end.reset();
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

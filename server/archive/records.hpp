@@ -35,15 +35,15 @@ struct Slice {
 struct UnitRecord {
     Sequence seq = 0;
     Apid apid;
-    std::optional<std::uint16_t> packet; ///< index in the dictionary's packets; none: not decoded
-    std::string refusal;                 ///< why not decoded
+    std::optional<std::uint16_t> packet;  ///< index in the dictionary's packets; none: not decoded
+    std::string refusal;                  ///< why not decoded
     Sclk sclk;
     Ert ert;
-    std::string link; ///< "uhf_live", "uhf_<orbiter>", "relay", …
+    std::string link;  ///< "uhf_live", "uhf_<orbiter>", "relay", …
     Source source{};
     telemetry::Standing standing{};
-    bool sampled = false; ///< its values are in the series
-    Slice octets;         ///< in Batch::octets
+    bool sampled = false;  ///< its values are in the series
+    Slice octets;          ///< in Batch::octets
 
     /// Seen before with the same octets.
     bool duplicate() const {
@@ -58,7 +58,7 @@ struct SampleRecord {
     std::uint16_t packet = 0;
     Sclk sclk;
     Source source{};
-    Slice values; ///< in Batch::values
+    Slice values;  ///< in Batch::values
 };
 
 struct EventRecord {
@@ -75,7 +75,7 @@ struct EventRecord {
 struct ToneRecord {
     Sequence seq = 0;
     Ert start, end;
-    std::optional<ToneId> tone; ///< none: erasure
+    std::optional<ToneId> tone;  ///< none: erasure
     std::string name, meaning;
     double likelihood = 0.0;
     std::optional<ToneId> runner_up;
@@ -84,23 +84,23 @@ struct ToneRecord {
     double doppler_hz = 0.0;
     bool locked = false;
     std::string model;
-    Sclk sclk; ///< of the vehicle when the symbol began, by light time
-    std::string lock;                     ///< worst of the symbol: locked, fluctuating, coasting, searching; empty: not kept
-    std::vector<ToneLikelihood> best;     ///< the likeliest first, five; or none
-    std::optional<ToneSpectrum> spectrum; ///< of a decision from samples
+    Sclk sclk;         ///< of the vehicle when the symbol began, by light time
+    std::string lock;  ///< worst of the symbol: locked, fluctuating, coasting, searching; empty: not kept
+    std::vector<ToneLikelihood> best;      ///< the likeliest first, five; or none
+    std::optional<ToneSpectrum> spectrum;  ///< of a decision from samples
 };
 
 /// A stage of a command. The first record of a command carries its arguments and octets.
 struct StageRecord {
     Sequence seq = 0;
-    std::uint64_t command = 0; ///< number of the command in its run, from 1
+    std::uint64_t command = 0;  ///< number of the command in its run, from 1
     std::string name, stage, status, evidence;
     Ert at;
     std::string arguments;
     std::uint32_t count = 0;
     std::vector<std::uint8_t> octets;
-    bool held = false, needs_approval = false; ///< of `released` while pending: what it waits for
-    std::string asked_by;                      ///< of one that needs approval: who may not give it
+    bool held = false, needs_approval = false;  ///< of `released` while pending: what it waits for
+    std::string asked_by;                       ///< of one that needs approval: who may not give it
 };
 
 struct FiringRecord {
@@ -128,14 +128,14 @@ struct LinkRecord {
     bool up = false;
     std::string reason;
     Ert ert;
-    bool lost = false; ///< down, and it should be there
+    bool lost = false;  ///< down, and it should be there
 };
 
 struct AlarmRecord {
     Sequence seq = 0;
     Sequence unit = 0;
     ChannelId channel;
-    std::string severity; ///< "none": cleared
+    std::string severity;  ///< "none": cleared
     double value = 0.0;
     Sclk sclk;
     std::string limit;
@@ -144,7 +144,7 @@ struct AlarmRecord {
 /// A packet that should come in real time and does not, or comes again.
 struct StalenessRecord {
     Sequence seq = 0;
-    std::uint16_t packet = 0; ///< index in the dictionary's packets
+    std::uint16_t packet = 0;  ///< index in the dictionary's packets
     bool stale = false;
     double silent_s = 0.0, expected_s = 0.0;
     std::string reason;
@@ -155,7 +155,7 @@ struct StalenessRecord {
 struct AlarmActionRecord {
     Sequence seq = 0;
     std::string alarm, action, note, by;
-    Ert at, until; ///< `until` of shelve only
+    Ert at, until;  ///< `until` of shelve only
 };
 
 /// A line of the shift log, or a remark at an instant.
@@ -163,28 +163,28 @@ struct NoteRecord {
     Sequence seq = 0;
     std::string text, by;
     Ert at;
-    std::string written; ///< wall clock, ISO 8601
+    std::string written;  ///< wall clock, ISO 8601
     std::optional<double> sclk_s;
 };
 
-inline constexpr std::size_t segment_samples = 1024; ///< of a full segment; limits.md
+inline constexpr std::size_t segment_samples = 1024;  ///< of a full segment; limits.md
 
 /// Samples of one packet and source, column by column. Written once, when full or when the run ends: only the last of a
 /// series may hold less than segment_samples.
 struct SegmentRecord {
     std::uint16_t packet = 0;
     Source source{};
-    std::uint64_t position = 0; ///< in its series, from 0
-    Sequence first_unit = 0, last_unit = 0; ///< the units between them, of this packet and source, that are sampled
-    std::vector<double> sclk_s;             ///< in the order of receipt
+    std::uint64_t position = 0;              ///< in its series, from 0
+    Sequence first_unit = 0, last_unit = 0;  ///< the units between them, of this packet and source, that are sampled
+    std::vector<double> sclk_s;              ///< in the order of receipt
     std::vector<ChannelId> channels;
-    std::vector<double> values; ///< channel by channel, sclk_s.size() each; NaN: undefined
+    std::vector<double> values;  ///< channel by channel, sclk_s.size() each; NaN: undefined
 };
 
 /// What a stretch of samples of one channel comes to: all that a plot can show of it.
 struct Extremes {
     double least = 0.0, least_sclk_s = 0.0, largest = 0.0, largest_sclk_s = 0.0;
-    std::uint32_t defined = 0; ///< samples that are not NaN; with none the rest is 0
+    std::uint32_t defined = 0;  ///< samples that are not NaN; with none the rest is 0
 
     void add(const Extremes& later);
     /// Not NaN.
@@ -195,11 +195,11 @@ struct Extremes {
 struct PyramidRecord {
     std::uint16_t packet = 0;
     Source source{};
-    std::uint8_t level = 0;     ///< from 1
-    std::uint64_t position = 0; ///< in its level, from 0
-    std::vector<double> first_sclk_s, last_sclk_s; ///< least and largest time, a node
+    std::uint8_t level = 0;                         ///< from 1
+    std::uint64_t position = 0;                     ///< in its level, from 0
+    std::vector<double> first_sclk_s, last_sclk_s;  ///< least and largest time, a node
     std::vector<ChannelId> channels;
-    std::vector<Extremes> nodes; ///< channel by channel, first_sclk_s.size() each
+    std::vector<Extremes> nodes;  ///< channel by channel, first_sclk_s.size() each
 };
 
 /// Real time against the recording, and how much of the recording has come down.
@@ -222,27 +222,27 @@ struct RunStart {
     std::uint64_t seed = 0;
     std::uint64_t case_number = 0;
     double pace = 0.0;
-    std::string started; ///< wall clock, ISO 8601
-    Sclk start, entry;   ///< entry as predicted
+    std::string started;  ///< wall clock, ISO 8601
+    Sclk start, entry;    ///< entry as predicted
     ClockCorrelation correlation;
     double light_time_s = 0.0;
     std::string tone_model;
-    std::string scenario_text; ///< the whole scenario as Protobuf text: with the seed, the run can be flown again
-    std::vector<std::pair<std::string, double>> solution; ///< ground's navigation solution
+    std::string scenario_text;  ///< the whole scenario as Protobuf text: with the seed, the run can be flown again
+    std::vector<std::pair<std::string, double>> solution;  ///< ground's navigation solution
 };
 
 struct RunEnd {
-    std::string outcome; ///< touchdown, impact, lost, not_commanded, timeout, stopped
+    std::string outcome;  ///< touchdown, impact, lost, not_commanded, timeout, stopped
     std::string reason;
     std::string digest;
-    std::string ended; ///< wall clock, ISO 8601
+    std::string ended;  ///< wall clock, ISO 8601
 };
 
-/// A controller's request to the gateway that it took, or what an instructor did: with the scenario and the seed, all that
-/// decides how a run goes, and what an instructor wrote about it.
+/// A controller's request to the gateway that it took, or what an instructor did: with the scenario and the seed, all
+/// that decides how a run goes, and what an instructor wrote about it.
 struct RequestRecord {
-    std::uint64_t cycle = 0; ///< cycles of 1/64 s that had been flown
-    std::string request;     ///< as kept_text() has it
+    std::uint64_t cycle = 0;  ///< cycles of 1/64 s that had been flown
+    std::string request;      ///< as kept_text() has it
 };
 
 /// A run that was cut off, and what it takes to fly it again up to there.
@@ -250,11 +250,11 @@ struct CutOffRun {
     RunId run;
     std::string scenario_text, started;
     std::uint64_t seed = 0;
-    ClockCorrelation clock;  ///< by which it was flown, whatever the dictionary's sheet says by now
-    bool clock_kept = false; ///< false: of schema 5 or before, whose clocks had no drift
-    Sequence last_seq = 0; ///< durable, and perhaps published
-    std::vector<RequestRecord> requests; ///< as they were taken
-    std::vector<Sequence> annotations;   ///< items that people made: they do not come again by flying
+    ClockCorrelation clock;               ///< by which it was flown, whatever the dictionary's sheet says by now
+    bool clock_kept = false;              ///< false: of schema 5 or before, whose clocks had no drift
+    Sequence last_seq = 0;                ///< durable, and perhaps published
+    std::vector<RequestRecord> requests;  ///< as they were taken
+    std::vector<Sequence> annotations;    ///< items that people made: they do not come again by flying
 };
 
 /// What a person adds to a run: to the one that goes on, or to one that is over.
@@ -262,7 +262,7 @@ using Annotation = std::variant<NoteRecord, AlarmActionRecord>;
 
 /// What becomes durable together.
 struct Batch {
-    Sequence first_seq = 0, last_seq = 0; ///< of all items in it; both 0 when it has none
+    Sequence first_seq = 0, last_seq = 0;  ///< of all items in it; both 0 when it has none
     std::vector<std::uint8_t> octets;
     std::vector<double> values;
     std::vector<UnitRecord> units;
@@ -281,14 +281,14 @@ struct Batch {
     std::vector<RequestRecord> requests;
     std::vector<PyramidRecord> pyramid;
     std::optional<RecordingTotals> totals;
-    std::vector<LinkTotals> link_totals; ///< those that changed
+    std::vector<LinkTotals> link_totals;  ///< those that changed
     std::optional<RunEnd> end;
 
     bool empty() const {
         return last_seq == 0 && segments.empty() && requests.empty() && !totals && link_totals.empty() && !end;
     }
     void add(Annotation annotation);
-    void clear(); ///< keeps capacity
+    void clear();  ///< keeps capacity
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

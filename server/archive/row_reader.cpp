@@ -27,7 +27,7 @@ std::optional<ToneId> maybe_tone(const sqlite::Statement& row, int column) {
     return ToneId{static_cast<std::uint8_t>(row.integer(column))};
 }
 
-} // namespace
+}  // namespace
 
 UnitRecord unit(const sqlite::Statement& row) {
     UnitRecord record;
@@ -95,7 +95,7 @@ StageRecord stage(const sqlite::Statement& row) {
             text(row, 7),
             static_cast<std::uint32_t>(row.integer(8)),
             {},
-            row.integer(9) != 0, // none is 0
+            row.integer(9) != 0,  // none is 0
             row.integer(10) != 0,
             text(row, 11)};
 }
@@ -145,8 +145,13 @@ AlarmRecord alarm(const sqlite::Statement& row) {
 }
 
 StalenessRecord staleness(const sqlite::Statement& row) {
-    return {seq(row),    static_cast<std::uint16_t>(row.integer(1)), row.integer(2) != 0, row.real(3), row.real(4),
-            text(row, 5), Ert{row.integer(6)}};
+    return {seq(row),
+            static_cast<std::uint16_t>(row.integer(1)),
+            row.integer(2) != 0,
+            row.real(3),
+            row.real(4),
+            text(row, 5),
+            Ert{row.integer(6)}};
 }
 
 AlarmActionRecord alarm_action(const sqlite::Statement& row) {
@@ -154,8 +159,9 @@ AlarmActionRecord alarm_action(const sqlite::Statement& row) {
 }
 
 NoteRecord note(const sqlite::Statement& row) {
-    return {seq(row), text(row, 1), text(row, 2), Ert{row.integer(3)}, text(row, 4),
-            row.is_null(5) ? std::nullopt : std::optional(row.real(5))};
+    return {seq(row),     text(row, 1),
+            text(row, 2), Ert{row.integer(3)},
+            text(row, 4), row.is_null(5) ? std::nullopt : std::optional(row.real(5))};
 }
 
-} // namespace aeolis::archive::row
+}  // namespace aeolis::archive::row

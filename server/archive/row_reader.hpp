@@ -7,9 +7,9 @@
 // row that stands ready.
 namespace aeolis::archive::row {
 
-inline constexpr char unit_rows[] =
-    "SELECT key, apid, packet, refusal, sclk, ert_us, (SELECT word FROM words WHERE kind = 'link' AND number = link), source, standing, sampled, octets"
-    " FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+inline constexpr char unit_rows[] = "SELECT key, apid, packet, refusal, sclk, ert_us, (SELECT word FROM words WHERE "
+                                    "kind = 'link' AND number = link), source, standing, sampled, octets"
+                                    " FROM units WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 /// The octets themselves stay in the row: column unit_octets_column.
 UnitRecord unit(const sqlite::Statement& row);
 inline constexpr int unit_octets_column = 10;
@@ -21,15 +21,17 @@ EventRecord event(const sqlite::Statement& row);
 /// Without its best tones, which have rows of their own.
 inline constexpr char tone_rows[] =
     "SELECT t.key, start_us, end_us, t.tone, name, meaning, likelihood, runner_up, runner_up_likelihood, c_n0_dbhz,"
-    " doppler_hz, locked, model, sclk, coalesce(lock, ''), spectrum FROM tones t LEFT JOIN tone_evidence e ON e.key = t.key"
+    " doppler_hz, locked, model, sclk, coalesce(lock, ''), spectrum FROM tones t LEFT JOIN tone_evidence e ON e.key = "
+    "t.key"
     " WHERE t.key BETWEEN ?1 AND ?2 ORDER BY t.key LIMIT ?3";
 ToneRecord tone(const sqlite::Statement& row);
 inline constexpr char tone_likelihood_rows[] =
     "SELECT tone, likelihood FROM tone_likelihoods WHERE key = ?1 ORDER BY position";
 ToneLikelihood tone_likelihood(const sqlite::Statement& row);
 
-inline constexpr char stage_rows[] = "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
-                                     " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
+inline constexpr char stage_rows[] =
+    "SELECT key, command, name, stage, status, evidence, at_us, arguments, count, held, needs_approval, asked_by"
+    " FROM command_stages LEFT JOIN command_waits USING (key) WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 StageRecord stage(const sqlite::Statement& row);
 
 inline constexpr char firing_rows[] =
@@ -45,14 +47,17 @@ inline constexpr char condition_rows[] = "SELECT quantity, value, comparison, bo
                                          " FROM explanation_conditions WHERE key = ?1 ORDER BY position";
 telemetry::Condition condition(const sqlite::Statement& row);
 
-inline constexpr char link_rows[] =
-    "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us, l.key IS NOT NULL"
-    " FROM link_changes c LEFT JOIN link_losses l ON l.key = c.key WHERE c.key BETWEEN ?1 AND ?2 ORDER BY c.key LIMIT ?3";
+inline constexpr char link_rows[] = "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, "
+                                    "reason, ert_us, l.key IS NOT NULL"
+                                    " FROM link_changes c LEFT JOIN link_losses l ON l.key = c.key WHERE c.key BETWEEN "
+                                    "?1 AND ?2 ORDER BY c.key LIMIT ?3";
 /// Of links that were lost some time in the run.
 inline constexpr char lost_link_rows[] =
-    "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us, l.key IS NOT NULL"
+    "SELECT c.key, (SELECT word FROM words WHERE kind = 'link' AND number = link), up, reason, ert_us, l.key IS NOT "
+    "NULL"
     " FROM link_changes c LEFT JOIN link_losses l ON l.key = c.key WHERE c.key BETWEEN ?1 AND ?2 AND link IN"
-    " (SELECT link FROM link_changes JOIN link_losses USING (key) WHERE key BETWEEN ?1 >> 40 << 40 AND ?2) ORDER BY c.key LIMIT ?3";
+    " (SELECT link FROM link_changes JOIN link_losses USING (key) WHERE key BETWEEN ?1 >> 40 << 40 AND ?2) ORDER BY "
+    "c.key LIMIT ?3";
 LinkRecord link(const sqlite::Statement& row);
 
 inline constexpr char alarm_rows[] = "SELECT key, unit, channel, severity, value, sclk, limit_text"
@@ -71,4 +76,4 @@ inline constexpr char note_rows[] = "SELECT key, text, author, at_us, written, s
                                     " FROM notes WHERE key BETWEEN ?1 AND ?2 ORDER BY key LIMIT ?3";
 NoteRecord note(const sqlite::Statement& row);
 
-} // namespace aeolis::archive::row
+}  // namespace aeolis::archive::row

@@ -29,7 +29,7 @@ std::int64_t number(std::uint64_t value) {
     return static_cast<std::int64_t>(value);
 }
 
-} // namespace
+}  // namespace
 
 Result<RowWriter> RowWriter::open(sqlite::Database& database) {
     RowWriter writer;
@@ -55,14 +55,16 @@ Result<RowWriter> RowWriter::open(sqlite::Database& database) {
         {&RowWriter::segment_number_, "SELECT max(segment) FROM segments WHERE segment BETWEEN ?1 AND ?2"},
         {&RowWriter::segment_, "INSERT INTO segments (segment, run, packet, source, position, first_unit, last_unit,"
                                " samples, first_sclk, last_sclk, sclk, packed) VALUES (?,?,?,?,?,?,?,?,?,?,?,1)"},
-        {&RowWriter::block_number_, "SELECT max(key) / 65536 FROM pyramid_columns WHERE key BETWEEN ?1 * 65536 AND ?2 * 65536 + 65535"},
+        {&RowWriter::block_number_,
+         "SELECT max(key) / 65536 FROM pyramid_columns WHERE key BETWEEN ?1 * 65536 AND ?2 * 65536 + 65535"},
         {&RowWriter::block_, "INSERT INTO pyramid VALUES (?,?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::block_column_, "INSERT INTO pyramid_columns VALUES (?,?)"},
         {&RowWriter::column_, "INSERT INTO segment_columns VALUES (?,?,?,?,?,?,?,?,?)"},
         {&RowWriter::link_number_, "SELECT number FROM words WHERE kind = 'link' AND word = ?"},
         {&RowWriter::link_word_, "INSERT INTO words SELECT 'link', max(number) + 1, ? FROM words WHERE kind = 'link'"},
         {&RowWriter::link_totals_, "INSERT OR REPLACE INTO link_totals VALUES (?,?,?,?,?,?,?,?,?,?,?)"},
-        {&RowWriter::request_, "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
+        {&RowWriter::request_,
+         "INSERT INTO requests SELECT ?1, coalesce(max(position), 0) + 1, ?2, ?3 FROM requests WHERE run = ?1"},
         {&RowWriter::totals_, "INSERT OR REPLACE INTO recordings VALUES (?,?,?,?,?,?,?,?,?)"},
     };
     for (const auto& [member, sql] : statements) {
@@ -85,19 +87,22 @@ Result<void> RowWriter::write(RunId run, const Batch& batch) {
     if (auto done = each(batch.staleness, [&](const auto& r) { return staleness(run, r); }); !done) return done;
     if (auto done = each(batch.alarm_actions, [&](const auto& r) { return alarm_action(run, r); }); !done) return done;
     if (auto done = each(batch.notes, [&](const auto& r) { return note(run, r); }); !done) return done;
-    if (!batch.events.empty() || !batch.explanations.empty() || !batch.stages.empty() || !batch.notes.empty() || !batch.alarm_actions.empty()) {
+    if (!batch.events.empty() || !batch.explanations.empty() || !batch.stages.empty() || !batch.notes.empty() ||
+        !batch.alarm_actions.empty()) {
         search_.bind(1, item_key(run, batch.first_seq)).bind(2, item_key(run, batch.last_seq));
         if (auto done = search_.run(); !done) return done;
     }
     if (!batch.segments.empty()) {
         auto next = next_number(run, segment_number_);
         if (!next) return next.error();
-        if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r, (*next)++); }); !done) return done;
+        if (auto done = each(batch.segments, [&](const auto& r) { return segment(run, r, (*next)++); }); !done)
+            return done;
     }
     if (!batch.pyramid.empty()) {
         auto next = next_number(run, block_number_);
         if (!next) return next.error();
-        if (auto done = each(batch.pyramid, [&](const auto& r) { return block(run, r, (*next)++); }); !done) return done;
+        if (auto done = each(batch.pyramid, [&](const auto& r) { return block(run, r, (*next)++); }); !done)
+            return done;
     }
     if (auto done = each(batch.requests, [&](const auto& r) { return request(run, r); }); !done) return done;
     if (auto done = each(batch.link_totals, [&](const auto& r) { return link_totals(run, r); }); !done) return done;
@@ -319,7 +324,8 @@ Result<std::int64_t> RowWriter::next_number(RunId run, sqlite::Statement& larges
     const std::int64_t next = largest.is_null(0) ? segment_key(run, 0) : largest.integer(0) + 1;
     largest.reset();
     if (next < segment_key(run, segments_max)) return next;
-    return Error{"run " + std::to_string(run.value) + " has " + std::to_string(segments_max) + " segments, no more can be numbered"};
+    return Error{"run " + std::to_string(run.value) + " has " + std::to_string(segments_max) +
+                 " segments, no more can be numbered"};
 }
 
 Result<void> RowWriter::segment(RunId run, const SegmentRecord& record, std::int64_t number_of_segment) {
@@ -380,8 +386,7 @@ Result<void> RowWriter::column(std::int64_t key, const SegmentRecord& record, st
     }
     column_.bind(1, key).bind(2, defined);
     if (defined == 0) {
-        for (int parameter = 3; parameter <= 8; ++parameter)
-            column_.bind_null(parameter);
+        for (int parameter = 3; parameter <= 8; ++parameter) column_.bind_null(parameter);
     } else {
         column_.bind(3, values[*least]).bind(4, record.sclk_s[*least]);
         column_.bind(5, values[*largest]).bind(6, record.sclk_s[*largest]);
@@ -425,4 +430,4 @@ Result<void> RowWriter::link_totals(RunId run, const LinkTotals& totals) {
     return link_totals_.run();
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

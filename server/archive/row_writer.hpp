@@ -38,11 +38,11 @@ class RowWriter {
     Result<void> totals(RunId run, const RecordingTotals& totals);
     Result<void> link_totals(RunId run, const LinkTotals& totals);
 
-    sqlite::Statement unit_, event_, tone_, command_, stage_, wait_, firing_, explanation_, condition_, link_, link_loss_, alarm_,
-        staleness_, alarm_action_, note_, search_,
-        segment_number_, segment_, column_, block_number_, block_, block_column_, link_number_, link_word_, totals_, link_totals_,
-        request_, tone_evidence_, tone_likelihood_;
+    sqlite::Statement unit_, event_, tone_, command_, stage_, wait_, firing_, explanation_, condition_, link_,
+        link_loss_, alarm_, staleness_, alarm_action_, note_, search_, segment_number_, segment_, column_,
+        block_number_, block_, block_column_, link_number_, link_word_, totals_, link_totals_, request_, tone_evidence_,
+        tone_likelihood_;
     ColumnCodec codec_;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

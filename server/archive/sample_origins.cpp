@@ -13,10 +13,12 @@ namespace aeolis::archive {
 namespace {
 
 // By the index on time; another mission's container may come with any APID.
-constexpr char of_packet_sql[] = " FROM units u WHERE u.run = ?1 AND u.apid = ?2 AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
-                                 " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
-constexpr char of_container_sql[] = " FROM units u WHERE u.run = ?1 AND ?2 IS NOT NULL AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
-                                    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
+constexpr char of_packet_sql[] =
+    " FROM units u WHERE u.run = ?1 AND u.apid = ?2 AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
+    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
+constexpr char of_container_sql[] =
+    " FROM units u WHERE u.run = ?1 AND ?2 IS NOT NULL AND u.source = ?3 AND u.sclk BETWEEN ?4 AND ?5"
+    " AND u.packet = ?6 AND u.sampled = 1 ORDER BY u.sclk";
 const std::string told_columns = std::string("SELECT u.sclk, u.link, u.octets, ") + on_other_path_sql;
 const std::string units_of_packet = told_columns + of_packet_sql;
 const std::string units_of_container = told_columns + of_container_sql;
@@ -34,10 +36,11 @@ struct Told {
     }
 };
 
-Result<void> read_told(Reader::State& reader, const RunInfo& run, PacketColumns::Place place, Source source, const ClosedRange& range,
-                       std::vector<Told>& told) {
+Result<void> read_told(Reader::State& reader, const RunInfo& run, PacketColumns::Place place, Source source,
+                       const ClosedRange& range, std::vector<Told>& told) {
     const Apid apid = reader.dictionary.packets[place.packet].apid;
-    auto rows = reader.query((apid == telemetry::OtherMission::any_apid ? units_of_container : units_of_packet).c_str());
+    auto rows =
+        reader.query((apid == telemetry::OtherMission::any_apid ? units_of_container : units_of_packet).c_str());
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.run.value})
@@ -51,7 +54,8 @@ Result<void> read_told(Reader::State& reader, const RunInfo& run, PacketColumns:
         if (!found) return found.error();
         if (!*found) return {};
         if (told.size() == exact_samples_max)
-            return Error{"the range holds more than " + std::to_string(exact_samples_max) + " packets of the channel: ask for less, or without provenance"};
+            return Error{"the range holds more than " + std::to_string(exact_samples_max) +
+                         " packets of the channel: ask for less, or without provenance"};
         if (!reader.decode(row.octets(2))) continue;
         const bool defined = !std::isnan(reader.columns.value(reader.decoded, place.column));
         told.push_back({row.real(0), row.integer(1), source, static_cast<OnOtherPath>(row.integer(3)), defined});
@@ -96,7 +100,8 @@ Result<std::vector<Outage>> live_outages(Reader::State& reader, const RunInfo& r
     for (const v1::Silence& silence : *silences) {
         if (silence.link() != "uhf_live" && silence.link() != "downlink") continue;
         const double to_e_s = silence.has_to_e_s() ? silence.to_e_s() : std::numeric_limits<double>::infinity();
-        outages.push_back({run.entry.seconds + silence.from_e_s(), run.entry.seconds + to_e_s, silence.link() + ": " + silence.reason()});
+        outages.push_back({run.entry.seconds + silence.from_e_s(), run.entry.seconds + to_e_s,
+                           silence.link() + ": " + silence.reason()});
     }
     return outages;
 }
@@ -114,14 +119,15 @@ std::string reason_of(const std::vector<Outage>& outages, double from_s, double 
     return words;
 }
 
-} // namespace
+}  // namespace
 
-Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId channel, const SclkRange& asked, const ClosedRange& range,
-                         std::optional<Source> only, v1::ChannelSeries& series) {
+Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId channel, const SclkRange& asked,
+                         const ClosedRange& range, std::optional<Source> only, v1::ChannelSeries& series) {
     const auto& places = reader.columns.places(channel);
     std::vector<Told> told;
     for (const auto place : places)
-        for (const Source source : {Source::realtime, Source::recorded}) // of one instant in this order, as in the series
+        for (const Source source :
+             {Source::realtime, Source::recorded})  // of one instant in this order, as in the series
             if (!only || *only == source)
                 if (auto done = read_told(reader, run, place, source, range, told); !done) return done;
     std::ranges::stable_sort(told, {}, &Told::sclk_s);
@@ -130,12 +136,13 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
     const auto complete = reader.recording_complete(run.run);
     if (!complete) return complete.error();
     // Why the live link was down says nothing of what only the recording brought.
-    const auto outages = only == Source::recorded ? Result<std::vector<Outage>>{std::vector<Outage>{}} : live_outages(reader, run);
+    const auto outages =
+        only == Source::recorded ? Result<std::vector<Outage>>{std::vector<Outage>{}} : live_outages(reader, run);
     if (!outages) return outages.error();
 
     const double longest_s = longest_interval_s(reader.dictionary, places);
-    std::optional<double> last_s = asked.from_s; ///< of what is there
-    bool undefined = false;                      ///< told of since
+    std::optional<double> last_s = asked.from_s;  ///< of what is there
+    bool undefined = false;                       ///< told of since
     const auto come_to = [&](double sclk_s) {
         if (last_s && (undefined || sclk_s - *last_s > longest_s)) {
             auto& gap = *series.add_gaps();
@@ -169,4 +176,4 @@ Result<void> add_origins(Reader::State& reader, const RunInfo& run, ChannelId ch
     return {};
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

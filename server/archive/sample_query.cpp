@@ -14,14 +14,15 @@ constexpr char columns_sql[] =
     "SELECT s.segment, s.position, s.samples, s.packed, s.sclk, v.value FROM segments s LEFT JOIN segment_columns v"
     " ON v.key = s.segment * 65536 + ?6 WHERE s.run = ?1 AND s.packet = ?2 AND s.source = ?3"
     " AND s.position BETWEEN ?4 AND ?5 ORDER BY s.position";
-constexpr char nodes_sql[] = "SELECT p.position, c.nodes FROM pyramid p JOIN pyramid_columns c ON c.key = p.block * 65536 + ?5"
-                             " WHERE run = ?1 AND packet = ?2 AND source = ?3 AND level = ?4 AND position BETWEEN ?6 AND ?7"
-                             " ORDER BY position";
+constexpr char nodes_sql[] =
+    "SELECT p.position, c.nodes FROM pyramid p JOIN pyramid_columns c ON c.key = p.block * 65536 + ?5"
+    " WHERE run = ?1 AND packet = ?2 AND source = ?3 AND level = ?4 AND position BETWEEN ?6 AND ?7"
+    " ORDER BY position";
 // Two ways to the units after ?5, the last one in a segment: past all of this packet by the index (the plus keeps
 // SQLite on it), or past all that came since. The first suits slow packets, the second fast ones.
-constexpr char tail_by_time_sql[] =
-    "SELECT octets, sclk FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND sclk BETWEEN ?3 AND ?4 AND +key > ?5"
-    " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
+constexpr char tail_by_time_sql[] = "SELECT octets, sclk FROM units WHERE run = ?1 AND apid = ?2 AND source = ?6 AND "
+                                    "sclk BETWEEN ?3 AND ?4 AND +key > ?5"
+                                    " AND +key <= ?8 AND packet = ?7 AND sampled = 1";
 constexpr char tail_by_key_sql[] =
     "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND +apid = ?2 AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
@@ -30,9 +31,9 @@ constexpr char tail_of_any_apid_sql[] =
     "SELECT octets, sclk FROM units WHERE key > ?5 AND key <= ?8 AND +run = ?1 AND ?2 IS NOT NULL AND +source = ?6"
     " AND sclk BETWEEN ?3 AND ?4 AND packet = ?7 AND sampled = 1";
 
-
 Error damaged(const Reader::State& reader, const std::string& what, const std::string& why) {
-    return {reader.database.file() + ": " + what + " is damaged: " + why + " (aeolis archive verify names all that is)"};
+    return {reader.database.file() + ": " + what + " is damaged: " + why +
+            " (aeolis archive verify names all that is)"};
 }
 
 /// A column of `samples` doubles: packed, or as archives of schema 3 have it.
@@ -46,8 +47,8 @@ Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, in
 }
 
 /// Samples first … last - 1 of a series, those that are defined and in the range, to the end of `into`.
-Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage, std::uint64_t first,
-                          std::uint64_t last, std::vector<Sample>& into) {
+Result<void> read_samples(Reader::State& reader, const SealedSeries& series, const Coverage& coverage,
+                          std::uint64_t first, std::uint64_t last, std::vector<Sample>& into) {
     auto rows = reader.query(columns_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -64,7 +65,8 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         };
         if (row.integer(2) < 1 || row.integer(2) > static_cast<std::int64_t>(segment_samples))
             return wrong("its number of samples", std::to_string(row.integer(2)));
-        if (auto done = read_column(reader, row, 4, reader.segment_sclk_s); !done) return wrong("its times", done.error().message);
+        if (auto done = read_column(reader, row, 4, reader.segment_sclk_s); !done)
+            return wrong("its times", done.error().message);
         if (row.is_null(5)) return wrong("channel " + std::to_string(coverage.channel.value), "it is missing");
         if (auto done = read_column(reader, row, 5, reader.segment_values); !done)
             return wrong("channel " + std::to_string(coverage.channel.value), done.error().message);
@@ -74,7 +76,8 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         std::size_t end = into.size();
         into.resize(end + (to > from ? to - from : 0));
         for (std::size_t i = from; i < to; ++i)
-            if (const double sclk_s = reader.segment_sclk_s[i]; !std::isnan(reader.segment_values[i]) && coverage.range.holds(sclk_s))
+            if (const double sclk_s = reader.segment_sclk_s[i];
+                !std::isnan(reader.segment_values[i]) && coverage.range.holds(sclk_s))
                 into[end++] = {sclk_s, reader.segment_values[i], series.source};
         into.resize(end);
     }
@@ -106,8 +109,9 @@ Result<void> read_nodes(Reader::State& reader, const SealedSeries& series, Chann
             take(pyramid::node_of(octets, nodes, static_cast<std::size_t>(next - base)));
     }
     if (next == last) return {};
-    return damaged(reader, "the pyramid", "level " + std::to_string(level) + " of channel " + std::to_string(channel.value) +
-                                              " ends at node " + std::to_string(next));
+    return damaged(reader, "the pyramid",
+                   "level " + std::to_string(level) + " of channel " + std::to_string(channel.value) +
+                       " ends at node " + std::to_string(next));
 }
 
 template <typename Take>
@@ -117,9 +121,9 @@ Result<void> read_tail(Reader::State& reader, const SealedSeries& series, std::s
     if (!last) return last.error();
 
     const Apid apid = reader.dictionary.packets[series.packet].apid;
-    const char* const sql = apid == telemetry::OtherMission::any_apid      ? tail_of_any_apid_sql
+    const char* const sql = apid == telemetry::OtherMission::any_apid    ? tail_of_any_apid_sql
                             : series.nodes[0] < *last - series.last_unit ? tail_by_time_sql
-                                                                 : tail_by_key_sql;
+                                                                         : tail_by_key_sql;
     auto rows = reader.query(sql);
     if (!rows) return rows.error();
     (*rows)
@@ -148,11 +152,13 @@ bool earlier(const Sample& a, const Sample& b) {
 /// Each source comes nearly in order; together they interleave.
 std::span<const Sample> merged(Reader::State& reader) {
     for (auto* samples : {&reader.realtime, &reader.recorded})
-        if (!std::is_sorted(samples->begin(), samples->end(), earlier)) std::sort(samples->begin(), samples->end(), earlier);
+        if (!std::is_sorted(samples->begin(), samples->end(), earlier))
+            std::sort(samples->begin(), samples->end(), earlier);
     if (reader.realtime.empty()) return reader.recorded;
     if (reader.recorded.empty()) return reader.realtime;
     reader.both.resize(reader.realtime.size() + reader.recorded.size());
-    std::merge(reader.realtime.begin(), reader.realtime.end(), reader.recorded.begin(), reader.recorded.end(), reader.both.begin(), earlier);
+    std::merge(reader.realtime.begin(), reader.realtime.end(), reader.recorded.begin(), reader.recorded.end(),
+               reader.both.begin(), earlier);
     return reader.both;
 }
 
@@ -180,7 +186,8 @@ class Intervals {
             if (!interval.filled) continue;
             const bool falls = earlier(interval.largest, interval.least);
             points.push_back(falls ? interval.largest : interval.least);
-            if (interval.least.sclk_s != interval.largest.sclk_s) points.push_back(falls ? interval.least : interval.largest);
+            if (interval.least.sclk_s != interval.largest.sclk_s)
+                points.push_back(falls ? interval.least : interval.largest);
         }
         return points;
     }
@@ -198,12 +205,11 @@ class Intervals {
 /// The coarsest level that has at least half as many nodes as there are intervals.
 unsigned level_for(std::size_t samples, std::size_t intervals) {
     unsigned level = pyramid::levels;
-    while (level > 0 && samples / pyramid::samples_of_node(level) < (intervals + 1) / 2)
-        --level;
+    while (level > 0 && samples / pyramid::samples_of_node(level) < (intervals + 1) / 2) --level;
     return level;
 }
 
-} // namespace
+}  // namespace
 
 Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId channel, const ClosedRange& range,
                        std::optional<Source> only) {
@@ -216,7 +222,8 @@ Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId chan
             auto found = stretches(reader, *series, range);
             if (!found) return found.error();
             for (const Stretch& each : *found)
-                coverage.samples_at_most += static_cast<std::size_t>((each.last - each.first) * pyramid::samples_of_node(each.level));
+                coverage.samples_at_most +=
+                    static_cast<std::size_t>((each.last - each.first) * pyramid::samples_of_node(each.level));
             if (!found->empty()) coverage.parts.push_back({*series, std::move(found).value()});
             if (run.finished) continue;
             auto done = read_tail(reader, *series, place.column, range,
@@ -231,7 +238,9 @@ Result<Coverage> cover(Reader::State& reader, const RunInfo& run, ChannelId chan
 Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Coverage& coverage) {
     reader.realtime.clear();
     reader.recorded.clear();
-    const auto of = [&](Source source) -> std::vector<Sample>& { return source == Source::realtime ? reader.realtime : reader.recorded; };
+    const auto of = [&](Source source) -> std::vector<Sample>& {
+        return source == Source::realtime ? reader.realtime : reader.recorded;
+    };
     for (const auto& [series, parts] : coverage.parts) {
         for (std::size_t i = 0; i < parts.size();) {
             // Neighbours of any level in one go, so that no segment is unpacked twice.
@@ -239,11 +248,11 @@ Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Cover
             std::uint64_t last = first;
             for (; i < parts.size() && parts[i].first * pyramid::samples_of_node(parts[i].level) == last; ++i)
                 last = parts[i].last * pyramid::samples_of_node(parts[i].level);
-            if (auto done = read_samples(reader, series, coverage, first, last, of(series.source)); !done) return done.error();
+            if (auto done = read_samples(reader, series, coverage, first, last, of(series.source)); !done)
+                return done.error();
         }
     }
-    for (const Sample& sample : coverage.tail)
-        of(sample.source).push_back(sample);
+    for (const Sample& sample : coverage.tail) of(sample.source).push_back(sample);
     return merged(reader);
 }
 
@@ -252,7 +261,8 @@ Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage,
     const unsigned wanted = level_for(coverage.samples_at_most, count);
     Thinned thinned;
     std::vector<Sample> found;
-    found.reserve(coverage.tail.size() + 2 * coverage.samples_at_most / pyramid::samples_of_node(wanted) + segment_samples);
+    found.reserve(coverage.tail.size() + 2 * coverage.samples_at_most / pyramid::samples_of_node(wanted) +
+                  segment_samples);
     found.assign(coverage.tail.begin(), coverage.tail.end());
     thinned.samples = found.size();
     for (const auto& [series, parts] : coverage.parts) {
@@ -279,10 +289,9 @@ Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage,
     // An open end of the range is where the samples end.
     const auto [first, last] = std::ranges::minmax_element(found, {}, &Sample::sclk_s);
     Intervals intervals({first->sclk_s, last->sclk_s}, count);
-    for (const Sample& sample : found)
-        intervals.add(sample);
+    for (const Sample& sample : found) intervals.add(sample);
     thinned.points = intervals.points();
     return thinned;
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -17,8 +17,8 @@ struct Coverage {
     ChannelId channel;
     ClosedRange range;
     std::vector<Part> parts;
-    std::vector<Sample> tail;        ///< of no segment yet: made again from the raw units
-    std::size_t samples_at_most = 0; ///< nodes and segments that only touch the range count whole
+    std::vector<Sample> tail;         ///< of no segment yet: made again from the raw units
+    std::size_t samples_at_most = 0;  ///< nodes and segments that only touch the range count whole
 };
 /// Sealed segments hold most; what came after the last of them is made again from the raw units, so that the answer is
 /// everything durable without the writer's help. Call within a read transaction, and use it within the same.
@@ -32,11 +32,11 @@ Result<std::span<const Sample>> exact_samples(Reader::State& reader, const Cover
 
 struct Thinned {
     std::vector<Sample> points;
-    std::uint64_t samples = 0; ///< that the points stand for
+    std::uint64_t samples = 0;  ///< that the points stand for
 };
-/// The range in `points` / 2 equal intervals, each with the least and the largest of what falls into it, each at its own
-/// time: nodes of the pyramid, at least half as many as intervals, or, where there are too few of them, samples. An
+/// The range in `points` / 2 equal intervals, each with the least and the largest of what falls into it, each at its
+/// own time: nodes of the pyramid, at least half as many as intervals, or, where there are too few of them, samples. An
 /// extreme of all is always among the points; at the border of two intervals one node may speak for both.
 Result<Thinned> thinned_samples(Reader::State& reader, const Coverage& coverage, std::size_t points);
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

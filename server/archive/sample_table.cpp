@@ -15,21 +15,24 @@ SampleTable::~SampleTable() {
 
 Result<SampleTable> SampleTable::create(const std::filesystem::path& file) {
     std::error_code ignored;
-    if (std::filesystem::exists(file, ignored)) return Error{file.string() + " is there already: nothing is overwritten"};
+    if (std::filesystem::exists(file, ignored))
+        return Error{file.string() + " is there already: nothing is overwritten"};
     auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
     if (!database) return database.error();
     // A file that can be made again: it is all there when finish() is done, or it is not there.
-    constexpr char begin[] = "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
-                             "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"
-                             " e_s REAL NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL, source TEXT NOT NULL) STRICT;"
-                             "BEGIN";
+    constexpr char begin[] =
+        "PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;"
+        "CREATE TABLE samples (run INTEGER NOT NULL, channel TEXT NOT NULL, sclk REAL NOT NULL,"
+        " e_s REAL NOT NULL, value REAL NOT NULL, unit TEXT NOT NULL, source TEXT NOT NULL) STRICT;"
+        "BEGIN";
     if (auto done = database->execute(begin); !done) return done.error();
     auto insert = database->prepare("INSERT INTO samples VALUES (?,?,?,?,?,?,?)");
     if (!insert) return insert.error();
     return SampleTable(file, std::move(*database), std::move(*insert));
 }
 
-Result<void> SampleTable::add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary, std::span<const ChannelValue> samples) {
+Result<void> SampleTable::add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary,
+                              std::span<const ChannelValue> samples) {
     for (const ChannelValue& sample : samples) {
         const auto& channel = dictionary.channels[sample.channel.value];
         insert_.bind(1, std::int64_t{run.value})
@@ -50,4 +53,4 @@ Result<void> SampleTable::finish() {
     return done;
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

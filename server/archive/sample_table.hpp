@@ -16,7 +16,8 @@ class SampleTable {
     /// Refuses a file that is there already.
     static Result<SampleTable> create(const std::filesystem::path& file);
 
-    Result<void> add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary, std::span<const ChannelValue> samples);
+    Result<void> add(RunId run, Sclk entry, const dictionary::Dictionary& dictionary,
+                     std::span<const ChannelValue> samples);
     /// Makes the index and keeps the file; without it the file is taken away again.
     Result<void> finish();
 
@@ -27,9 +28,9 @@ class SampleTable {
   private:
     SampleTable(std::filesystem::path file, sqlite::Database database, sqlite::Statement insert);
 
-    std::filesystem::path file_; ///< empty: finished, or moved from
+    std::filesystem::path file_;  ///< empty: finished, or moved from
     sqlite::Database database_;
     sqlite::Statement insert_;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

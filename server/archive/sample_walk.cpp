@@ -30,11 +30,12 @@ class Walk {
             take(0, first, last);
             return {};
         }
-        std::vector<std::uint64_t> cut; // nodes on an end of the range, for the level below
+        std::vector<std::uint64_t> cut;  // nodes on an end of the range, for the level below
         if (auto done = visit_blocks(level, first, last, cut); !done) return done;
         const std::uint64_t shares = level == 1 ? pyramid::node_samples : pyramid::fan_out;
         for (const std::uint64_t node : cut)
-            if (auto done = visit(level - 1, node * shares, std::min((node + 1) * shares, series_.nodes[level - 1])); !done)
+            if (auto done = visit(level - 1, node * shares, std::min((node + 1) * shares, series_.nodes[level - 1]));
+                !done)
                 return done;
         return {};
     }
@@ -44,7 +45,10 @@ class Walk {
         auto rows = reader_.query(segments_sql);
         if (!rows) return rows.error();
         series_.bind(**rows);
-        (*rows)->bind(4, static_cast<std::int64_t>(from_sample / segment_samples)).bind(5, range_.from_s).bind(6, range_.to_s);
+        (*rows)
+            ->bind(4, static_cast<std::int64_t>(from_sample / segment_samples))
+            .bind(5, range_.from_s)
+            .bind(6, range_.to_s);
         for (;;) {
             auto found = (*rows)->step();
             if (!found) return found.error();
@@ -70,7 +74,8 @@ class Walk {
   private:
     void take(unsigned level, std::uint64_t first, std::uint64_t last) { stretches_.push_back({level, first, last}); }
 
-    Result<void> visit_blocks(unsigned level, std::uint64_t first, std::uint64_t last, std::vector<std::uint64_t>& cut) {
+    Result<void> visit_blocks(unsigned level, std::uint64_t first, std::uint64_t last,
+                              std::vector<std::uint64_t>& cut) {
         auto rows = reader_.query(blocks_sql);
         if (!rows) return rows.error();
         series_.bind(**rows);
@@ -83,7 +88,8 @@ class Walk {
             if (!found) return found.error();
             if (!*found) return {};
             const auto& row = **rows;
-            const std::uint64_t base = count(row, 0) * pyramid::block_nodes, nodes = std::min(count(row, 1), pyramid::block_nodes);
+            const std::uint64_t base = count(row, 0) * pyramid::block_nodes,
+                                nodes = std::min(count(row, 1), pyramid::block_nodes);
             const std::uint64_t from = std::max(first, base), to = std::min(last, base + nodes);
             if (row.real(2) > range_.to_s || row.real(3) < range_.from_s) continue;
             if (range_.holds(row.real(2)) && range_.holds(row.real(3))) {
@@ -92,8 +98,9 @@ class Walk {
             }
             spans_s_.resize(static_cast<std::size_t>(2 * nodes));
             if (auto done = reader_.codec.unpack(row.octets(4), spans_s_); !done)
-                return Error{reader_.database.file() + ": block " + std::to_string(row.integer(0)) + " of level " + std::to_string(level) +
-                             " of the pyramid is damaged: " + done.error().message + " (aeolis archive verify names all that is)"};
+                return Error{reader_.database.file() + ": block " + std::to_string(row.integer(0)) + " of level " +
+                             std::to_string(level) + " of the pyramid is damaged: " + done.error().message +
+                             " (aeolis archive verify names all that is)"};
             for (std::uint64_t node = from; node < to; ++node) {
                 const double from_s = spans_s_[node - base], to_s = spans_s_[nodes + node - base];
                 if (from_s > range_.to_s || to_s < range_.from_s) continue;
@@ -112,7 +119,7 @@ class Walk {
     std::vector<double> spans_s_;
 };
 
-} // namespace
+}  // namespace
 
 void SealedSeries::bind(sqlite::Statement& statement) const {
     statement.bind(1, std::int64_t{run.value}).bind(2, std::int64_t{packet}).bind(3, static_cast<std::int64_t>(source));
@@ -147,7 +154,7 @@ Result<SealedSeries> sealed_series(Reader::State& reader, RunId run, std::uint16
 Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries& series, const ClosedRange& range) {
     if (series.nodes[0] == 0) return std::vector<Stretch>{};
     Walk walk(reader, series, range);
-    std::uint64_t reached = 0; // samples
+    std::uint64_t reached = 0;  // samples
     for (unsigned level = pyramid::levels; level >= 1; --level) {
         const std::uint64_t size = pyramid::samples_of_node(level);
         if (auto done = walk.visit(level, (reached + size - 1) / size, series.nodes[level]); !done) return done.error();
@@ -158,4 +165,4 @@ Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries
     return std::move(walk).result();
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

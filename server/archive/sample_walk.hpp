@@ -14,7 +14,7 @@ struct SealedSeries {
     RunId run;
     std::uint16_t packet = 0;
     Source source{};
-    Sequence last_unit = 0; ///< 0: no segment yet
+    Sequence last_unit = 0;  ///< 0: no segment yet
     /// Stored nodes by level; level 0: samples. What a level does not reach is in the one below.
     std::array<std::uint64_t, pyramid::levels + 1> nodes{};
 
@@ -31,4 +31,4 @@ struct Stretch {
 /// All samples of a series in a range, each in one stretch, of the highest level that it can be in; in order.
 Result<std::vector<Stretch>> stretches(Reader::State& reader, const SealedSeries& series, const ClosedRange& range);
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -157,8 +157,9 @@ CREATE VIEW channel_segments AS
 /// What a version of the schema added to the one before.
 struct Addition {
     std::int32_t version;
-    const char* sql;     ///< CREATE TABLE and CREATE VIEW only, or there is `reading`
-    const char* reading; ///< the same for a connection that must not write; null: the same with TEMP; empty: it reads without
+    const char* sql;  ///< CREATE TABLE and CREATE VIEW only, or there is `reading`
+    const char*
+        reading;  ///< the same for a connection that must not write; null: the same with TEMP; empty: it reads without
 };
 const Addition additions[] = {
     {2, R"sql(
@@ -301,7 +302,8 @@ CREATE VIEW command_wait_log AS
     FROM command_waits w JOIN command_stages c ON c.key = w.key;
 )sql",
      nullptr},
-    // All that a plot asks of a segment but its values lies in the index: it is found in three pages less. docs/decisions/0028
+    // All that a plot asks of a segment but its values lies in the index: it is found in three pages less.
+    // docs/decisions/0028
     {8, R"sql(
 DROP INDEX segments_by_position;
 CREATE INDEX segments_by_position ON segments
@@ -310,8 +312,8 @@ CREATE INDEX segments_by_position ON segments
      ""},
 };
 
-// Of a new archive; SQLite's own is 4 kB. A block of the pyramid, or a packed column, lies in one page, and trees are a level less deep:
-// a plot that is looked at first reads a third of the pages. docs/decisions/0028
+// Of a new archive; SQLite's own is 4 kB. A block of the pyramid, or a packed column, lies in one page, and trees are a
+// level less deep: a plot that is looked at first reads a third of the pages. docs/decisions/0028
 constexpr char page_size_sql[] = "PRAGMA page_size = 16384";
 
 constexpr char by_key[] = "key BETWEEN ?1 << 40 AND ?1 << 40 | 0xFFFFFFFFFF";
@@ -389,7 +391,7 @@ std::string temporary(std::string_view sql) {
     return text.append(sql);
 }
 
-} // namespace
+}  // namespace
 
 const std::span<const RunTable> run_tables = tables_of_runs;
 
@@ -399,7 +401,8 @@ Result<void> prepare_for_writing(sqlite::Database& database) {
     if (*version == schema_version) return {};
     if (*version == 0)
         if (auto done = database.execute(page_size_sql); !done) return done;
-    // One transaction, before WAL is switched on: a crash leaves the file as it was, or a whole archive, nothing between.
+    // One transaction, before WAL is switched on: a crash leaves the file as it was, or a whole archive, nothing
+    // between.
     auto transaction = sqlite::Transaction::begin_write(database);
     if (!transaction) return transaction.error();
     const std::string marks = "PRAGMA application_id = " + std::to_string(application_id) +
@@ -426,4 +429,4 @@ Result<void> check_for_reading(sqlite::Database& database) {
     return {};
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

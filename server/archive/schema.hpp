@@ -8,9 +8,9 @@
 namespace aeolis::archive {
 
 /// Makes tables, indices and views of schema_version in an empty database, or checks that it is one of ours. A later
-/// version only ever adds tables, columns, indices and views to an earlier one: an older file gets them when it is opened for
-/// writing, and is read as if it had them, empty.
-/// Fails with "FILE is not an Aeolis archive", or "… was written by a newer Aeolis …".
+/// version only ever adds tables, columns, indices and views to an earlier one: an older file gets them when it is
+/// opened for writing, and is read as if it had them, empty. Fails with "FILE is not an Aeolis archive", or "… was
+/// written by a newer Aeolis …".
 Result<void> prepare_for_writing(sqlite::Database& database);
 Result<void> check_for_reading(sqlite::Database& database);
 
@@ -40,17 +40,17 @@ constexpr std::int64_t column_key(std::int64_t segment, ChannelId channel) {
 struct RunTable {
     const char* name;
     const char* rows;
-    bool derived; ///< from the units, all of it; else it holds what only was received or decided once
+    bool derived;  ///< from the units, all of it; else it holds what only was received or decided once
 };
 /// In an order in which they can be emptied. All tables but those of dictionaries and words.
 extern const std::span<const RunTable> run_tables;
 
-/// Puts the words of items into the index that finds them (the table "search"), as SQL over ?1, ?2 = their first and last
-/// key. They must not be in it already.
+/// Puts the words of items into the index that finds them (the table "search"), as SQL over ?1, ?2 = their first and
+/// last key. They must not be in it already.
 inline constexpr char add_to_search_sql[] =
     "INSERT INTO search (rowid, text) SELECT key, text FROM search_text WHERE key BETWEEN ?1 AND ?2";
 
 /// The last sequence number of each of the tables, as SQL over ?1 = item_key(run, 0), ?2 = item_key(run, max).
 extern const char* const last_key_sql;
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

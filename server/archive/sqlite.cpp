@@ -11,9 +11,9 @@ namespace {
 
 /// A reader never waits; a writer only for a checkpoint of another connection.
 constexpr int busy_timeout_ms = 250;
-constexpr int operations_between_looks = 1000; ///< of SQLite's machine: some 20 us
+constexpr int operations_between_looks = 1000;  ///< of SQLite's machine: some 20 us
 
-} // namespace
+}  // namespace
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
     sqlite3_finalize(statement);
@@ -160,7 +160,9 @@ Result<void> Database::copy_to(Database& empty) const {
     const int stepped = sqlite3_backup_step(backup, -1);
     const int finished = sqlite3_backup_finish(backup);
     if (stepped == SQLITE_DONE && finished == SQLITE_OK) return {};
-    return Error{file_ + ": the copy into " + empty.file_ + " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped), true};
+    return Error{file_ + ": the copy into " + empty.file_ +
+                     " failed: " + sqlite3_errstr(stepped == SQLITE_DONE ? finished : stepped),
+                 true};
 }
 
 void Database::stop_when(std::function<bool()> stop) {
@@ -217,4 +219,4 @@ Result<void> Transaction::commit() {
     return done;
 }
 
-} // namespace aeolis::archive::sqlite
+}  // namespace aeolis::archive::sqlite

@@ -89,7 +89,7 @@ class Database {
         bool happened = false;
     };
     std::string file_;
-    std::unique_ptr<Stop> stop_; ///< SQLite holds its address
+    std::unique_ptr<Stop> stop_;  ///< SQLite holds its address
     std::unique_ptr<sqlite3, Close> database_;
 };
 
@@ -111,4 +111,4 @@ class Transaction {
     Database* database_;
 };
 
-} // namespace aeolis::archive::sqlite
+}  // namespace aeolis::archive::sqlite

@@ -19,13 +19,14 @@ Times anchors_from_entry_s(const dictionary::Dictionary& dictionary) {
         const auto& row = dictionary.anchors[i];
         if (row.name == "entry")
             anchors[i] = 0.0;
-        else if (row.parent && row.parent->value < i) // anchors are in topological order
+        else if (row.parent && row.parent->value < i)  // anchors are in topological order
             anchors[i] = sum(anchors[row.parent->value], row.offset_s);
     }
     return anchors;
 }
 
-/// What firings tell of their anchors. A timepoint can be later than its anchor says, never earlier: the earliest tells it best.
+/// What firings tell of their anchors. A timepoint can be later than its anchor says, never earlier: the earliest tells
+/// it best.
 Times told_anchors(const dictionary::Dictionary& dictionary, const Times& heard_e_s) {
     Times told(dictionary.anchors.size());
     for (std::size_t i = 0; i < heard_e_s.size(); ++i) {
@@ -39,20 +40,23 @@ Times told_anchors(const dictionary::Dictionary& dictionary, const Times& heard_
 }
 
 struct Anchors {
-    Times before; ///< until something was heard of each itself
+    Times before;  ///< until something was heard of each itself
     Times now;
 };
 
 Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times& design_e_s, const Times& told) {
     Anchors anchors{anchors_from_entry_s(dictionary), Times(dictionary.anchors.size())};
-    std::optional<std::size_t> last; ///< of those that the design predicts
+    std::optional<std::size_t> last;  ///< of those that the design predicts
     for (std::size_t i = 0; i < anchors.now.size(); ++i) {
         const auto& row = dictionary.anchors[i];
         const auto predicted = i < design_e_s.size() ? design_e_s[i] : std::nullopt;
         if (!anchors.before[i] && predicted)
-            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *design_e_s[*last]) : *predicted; // by its distance to the last
+            anchors.before[i] = last ? *predicted + (*anchors.now[*last] - *design_e_s[*last])
+                                     : *predicted;  // by its distance to the last
         const bool from_parent = row.parent && row.parent->value < i && row.offset_s && anchors.now[row.parent->value];
-        anchors.now[i] = told[i] ? told[i] : from_parent ? sum(anchors.now[row.parent->value], row.offset_s) : anchors.before[i];
+        anchors.now[i] = told[i]       ? told[i]
+                         : from_parent ? sum(anchors.now[row.parent->value], row.offset_s)
+                                       : anchors.before[i];
         if (predicted) last = i;
     }
     return anchors;
@@ -75,7 +79,7 @@ Times fires_from_entry_s(const dictionary::Dictionary& dictionary, const Anchors
     return all;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<std::optional<double>> planned_from_entry_s(const dictionary::Dictionary& dictionary) {
     const auto planned = anchors_from_entry_s(dictionary);
@@ -85,7 +89,8 @@ std::vector<std::optional<double>> planned_from_entry_s(const dictionary::Dictio
 std::vector<std::optional<double>> predicted_from_entry_s(const dictionary::Dictionary& dictionary,
                                                           const std::vector<std::optional<double>>& design_e_s,
                                                           const std::vector<std::optional<double>>& heard_e_s) {
-    return fires_from_entry_s(dictionary, predicted_anchors(dictionary, design_e_s, told_anchors(dictionary, heard_e_s)), heard_e_s);
+    return fires_from_entry_s(
+        dictionary, predicted_anchors(dictionary, design_e_s, told_anchors(dictionary, heard_e_s)), heard_e_s);
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -14,9 +14,10 @@ namespace {
 
 /// Every number that an item of the run has. An archive that is only read has the tables of its own schema.
 std::string item_keys_sql(const std::string& schema, bool since_five) {
-    std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " + schema +
-                      "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
-    for (const char* table : {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes", "alarms"})
+    std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " +
+                      schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
+    for (const char* table :
+         {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes", "alarms"})
         sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
     if (since_five)
         for (const char* table : {"staleness", "alarm_actions", "notes"})
@@ -24,7 +25,7 @@ std::string item_keys_sql(const std::string& schema, bool since_five) {
     return sql;
 }
 
-} // namespace
+}  // namespace
 
 Result<void> make_durable(const std::filesystem::path& file) {
     const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
@@ -52,16 +53,18 @@ Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
 }
 
 Result<std::vector<RunLine>> run_lines(sqlite::Database& database) {
-    auto rows = database.prepare("SELECT run, scenario, state, outcome, started, (SELECT count(*) FROM units u"
-                                 " WHERE u.key BETWEEN r.run << 40 AND r.run << 40 | 0xFFFFFFFFFF) FROM runs r ORDER BY run");
+    auto rows =
+        database.prepare("SELECT run, scenario, state, outcome, started, (SELECT count(*) FROM units u"
+                         " WHERE u.key BETWEEN r.run << 40 AND r.run << 40 | 0xFFFFFFFFFF) FROM runs r ORDER BY run");
     if (!rows) return rows.error();
     std::vector<RunLine> lines;
     for (;;) {
         auto found = rows->step();
         if (!found) return found.error();
         if (!*found) return lines;
-        lines.push_back({RunId{static_cast<std::uint32_t>(rows->integer(0))}, std::string(rows->text(1)), std::string(rows->text(2)),
-                         std::string(rows->text(3)), std::string(rows->text(4)), static_cast<std::uint64_t>(rows->integer(5))});
+        lines.push_back({RunId{static_cast<std::uint32_t>(rows->integer(0))}, std::string(rows->text(1)),
+                         std::string(rows->text(2)), std::string(rows->text(3)), std::string(rows->text(4)),
+                         static_cast<std::uint64_t>(rows->integer(5))});
     }
 }
 
@@ -99,7 +102,8 @@ Result<void> vacuum(Maintenance& archive) {
 
 Result<void> backup(const std::filesystem::path& file, const std::filesystem::path& copy) {
     std::error_code ignored;
-    if (std::filesystem::exists(copy, ignored)) return Error{copy.string() + " is there already: nothing is overwritten"};
+    if (std::filesystem::exists(copy, ignored))
+        return Error{copy.string() + " is there already: nothing is overwritten"};
     auto source = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
     if (!source) return source.error();
     if (auto ours = check_for_reading(*source); !ours) return ours;
@@ -142,12 +146,14 @@ Result<std::vector<std::string>> integrity_faults(sqlite::Database& database) {
     }
 }
 
-Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema, std::size_t most) {
+Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema,
+                                                 std::size_t most) {
     auto notes = database.integer_of(("SELECT count(*) FROM " + schema + "sqlite_schema WHERE name = 'notes'").c_str());
     if (!notes) return notes.error();
     const bool since_five = *notes != 0;
-    const std::string sql = "SELECT before, key FROM (SELECT lag(key, 1, ?1) OVER (ORDER BY key) AS before, key FROM (" +
-                            item_keys_sql(schema, since_five) + ")) WHERE key <> before + 1 LIMIT ?3";
+    const std::string sql =
+        "SELECT before, key FROM (SELECT lag(key, 1, ?1) OVER (ORDER BY key) AS before, key FROM (" +
+        item_keys_sql(schema, since_five) + ")) WHERE key <> before + 1 LIMIT ?3";
     auto rows = database.prepare(sql.c_str());
     if (!rows) return rows.error();
     rows->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, static_cast<std::int64_t>(most));
@@ -161,22 +167,25 @@ Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, Run
         if (before == next)
             faults.push_back(of_run + "two items have the number " + std::to_string(next));
         else
-            faults.push_back(of_run + "no item has the number" + (next == before + 2 ? " " : "s ") + std::to_string(before + 1) +
+            faults.push_back(of_run + "no item has the number" + (next == before + 2 ? " " : "s ") +
+                             std::to_string(before + 1) +
                              (next == before + 2 ? "" : " to " + std::to_string(next - 1)));
     }
-    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema, since_five) + ")) FROM " + schema +
-                                  "runs WHERE run = ?3 AND last_seq IS NOT NULL")
+    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema, since_five) +
+                                  ")) FROM " + schema + "runs WHERE run = ?3 AND last_seq IS NOT NULL")
                                      .c_str());
     if (!last) return last.error();
     last->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{run.value});
     auto found = last->step();
     if (!found) return found.error();
     if (*found) {
-        const auto noted = static_cast<Sequence>(last->integer(0)), stored = last->is_null(1) ? 0 : sequence_of(last->integer(1));
+        const auto noted = static_cast<Sequence>(last->integer(0)),
+                   stored = last->is_null(1) ? 0 : sequence_of(last->integer(1));
         if (noted != stored)
-            faults.push_back(of_run + "its last item should be " + std::to_string(noted) + ", and is " + std::to_string(stored));
+            faults.push_back(of_run + "its last item should be " + std::to_string(noted) + ", and is " +
+                             std::to_string(stored));
     }
     return faults;
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -25,7 +25,7 @@ class Maintenance {
   private:
     Maintenance(WriterLock lock, sqlite::Database database) : lock_(std::move(lock)), database_(std::move(database)) {}
 
-    WriterLock lock_; // released last
+    WriterLock lock_;  // released last
     sqlite::Database database_;
 };
 
@@ -62,6 +62,7 @@ Result<std::vector<std::string>> integrity_faults(sqlite::Database& database);
 
 /// Sequence numbers of a run that no item has, or more than one, in words; at most `most`. SQL names of tables are
 /// prefixed by `schema` ("main.").
-Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema, std::size_t most);
+Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema,
+                                                 std::size_t most);
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -13,32 +13,35 @@ namespace {
 
 /// The last holder removes the file: a lock on a file that no longer has its name locks out nobody.
 bool still_named(int descriptor, const std::filesystem::path& file) {
-    struct stat held {};
-    struct stat named {};
+    struct stat held{};
+    struct stat named{};
     return ::fstat(descriptor, &held) == 0 && ::stat(file.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
            held.st_dev == named.st_dev;
 }
 
 /// What root leaves behind must not lock out whose the archive is: the file of the lock is theirs.
 void give_to_owner(int descriptor, const std::filesystem::path& archive) {
-    struct stat owner {};
-    struct stat held {};
-    // Whoever may write the folder may also have put another file there: only an empty one that has no other name is given away.
+    struct stat owner{};
+    struct stat held{};
+    // Whoever may write the folder may also have put another file there: only an empty one that has no other name is
+    // given away.
     if (::fstat(descriptor, &held) != 0 || !S_ISREG(held.st_mode) || held.st_size != 0 || held.st_nlink != 1) return;
     const auto folder = std::filesystem::absolute(archive).parent_path();
     if (::geteuid() != 0 || (::stat(archive.c_str(), &owner) != 0 && ::stat(folder.c_str(), &owner) != 0)) return;
-    if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return; // a file system without owners
+    if (::fchown(descriptor, owner.st_uid, owner.st_gid) != 0) return;  // a file system without owners
 }
 
-} // namespace
+}  // namespace
 
 Result<WriterLock> WriterLock::take(const std::filesystem::path& archive) {
     auto file = archive;
     file += "-writer";
     for (;;) {
         int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644);
-        if (descriptor < 0 && errno == EACCES) descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW); // another's: enough for a lock
-        if (descriptor < 0) return Error{archive.string() + ": cannot be written: " + file.string() + ": " + std::strerror(errno)};
+        if (descriptor < 0 && errno == EACCES)
+            descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);  // another's: enough for a lock
+        if (descriptor < 0)
+            return Error{archive.string() + ": cannot be written: " + file.string() + ": " + std::strerror(errno)};
         give_to_owner(descriptor, archive);
         if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
             ::close(descriptor);
@@ -55,4 +58,4 @@ WriterLock::~WriterLock() {
     ::close(descriptor_);
 }
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

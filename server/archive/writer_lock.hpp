@@ -28,4 +28,4 @@ class WriterLock {
     int descriptor_ = -1;
 };
 
-} // namespace aeolis::archive
+}  // namespace aeolis::archive

@@ -13,9 +13,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr auto keep_at_most = std::chrono::milliseconds{500}; // not yet durable
+constexpr auto keep_at_most = std::chrono::milliseconds{500};  // not yet durable
 constexpr auto tell_every = std::chrono::milliseconds{100};
-constexpr std::size_t waiting_per_job = 2; // so that no thread waits for the one that writes
+constexpr std::size_t waiting_per_job = 2;  // so that no thread waits for the one that writes
 
 using Fly = std::function<std::optional<CaseResult>(std::uint64_t)>;
 
@@ -53,8 +53,7 @@ class Pilots {
     ~Pilots() {
         wanted.close();
         done.close();
-        for (auto& thread : threads_)
-            thread.join();
+        for (auto& thread : threads_) thread.join();
     }
 
     BoundedQueue<std::uint64_t> wanted;
@@ -65,11 +64,10 @@ class Pilots {
     std::vector<std::thread> threads_;
 };
 
-} // namespace
+}  // namespace
 
-Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigned jobs,
-                              const Fly& fly, const std::atomic<bool>& stop,
-                              const std::function<void(const Progress&)>& tell) {
+Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigned jobs, const Fly& fly,
+                              const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
     const auto began = Clock::now();
     Progress progress;
     progress.of = cases;
@@ -113,4 +111,4 @@ Result<Progress> run_campaign(CampaignStore& store, std::uint64_t cases, unsigne
     }
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -24,7 +24,8 @@ std::string name_of_file(const std::filesystem::path& file) {
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
     std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> found;
     std::error_code error;
-    for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end; entry.increment(error)) {
+    for (std::filesystem::directory_iterator entry{folder, error}, end; !error && entry != end;
+         entry.increment(error)) {
         std::error_code gone;
         if (name_of_file(entry->path()).empty() || !entry->is_regular_file(gone)) continue;
         if (const auto written = entry->last_write_time(gone); !gone) found.emplace_back(written, entry->path());
@@ -32,8 +33,7 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
     std::ranges::sort(found, std::greater{});
     std::vector<std::filesystem::path> files;
     files.reserve(found.size());
-    for (auto& [written, file] : found)
-        files.push_back(std::move(file));
+    for (auto& [written, file] : found) files.push_back(std::move(file));
     return files;
 }
 
@@ -110,19 +110,20 @@ void add(const Summary& summary, v1::CampaignReport& report) {
     }
 }
 
-} // namespace
+}  // namespace
 
 /// What flies, and after that how it ended. Its thread writes, others read.
 struct CampaignDesk::Flight {
     std::string name;
     Order order;
-    std::optional<CampaignStore> store; ///< none once it is over: the file is free for others
+    std::optional<CampaignStore> store;  ///< none once it is over: the file is free for others
     std::atomic<bool> stop{false}, begun{false}, over{false};
     std::atomic<double> rate_per_s{0.0};
-    std::string fault{}; ///< once it is over
+    std::string fault{};  ///< once it is over
     std::thread thread{};
 
-    Flight(std::string of, Order asked, CampaignStore into) : name(std::move(of)), order(std::move(asked)), store(std::move(into)) {}
+    Flight(std::string of, Order asked, CampaignStore into)
+        : name(std::move(of)), order(std::move(asked)), store(std::move(into)) {}
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;
     ~Flight() {
@@ -150,7 +151,8 @@ struct CampaignDesk::Flight {
     }
 };
 
-CampaignDesk::CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary)
+CampaignDesk::CampaignDesk(std::filesystem::path folder, const ScenarioLibrary& scenarios,
+                           const dictionary::Dictionary& dictionary)
     : folder_(folder.empty() ? "." : std::move(folder)), scenarios_(scenarios), dictionary_(dictionary) {}
 
 CampaignDesk::~CampaignDesk() = default;
@@ -171,13 +173,23 @@ bool CampaignDesk::flying() const {
 Result<Order> CampaignDesk::order_of(const v1::StartCampaign& request) const {
     auto scenario = scenarios_.scenario(request.scenario());
     if (!scenario) return scenario.error();
-    if (const auto flyable = check(*scenario); !flyable) return Error{request.scenario() + ": " + flyable.error().message};
-    if (const auto script = check_script(*scenario, dictionary_); !script) return Error{request.scenario() + ": " + script.error().message};
-    if (request.cases() < 1 || request.cases() > cases_max) return Error{fmt::format("cases: {} is not within 1 … {}", request.cases(), cases_max)};
-    if (request.jobs() > jobs_max()) return Error{fmt::format("jobs: {} is more than the processors here ({})", request.jobs(), jobs_max())};
-    if (request.seed() > static_cast<std::uint64_t>(INT64_MAX)) return Error{fmt::format("seed: {} is more than {}", request.seed(), INT64_MAX)};
+    if (const auto flyable = check(*scenario); !flyable)
+        return Error{request.scenario() + ": " + flyable.error().message};
+    if (const auto script = check_script(*scenario, dictionary_); !script)
+        return Error{request.scenario() + ": " + script.error().message};
+    if (request.cases() < 1 || request.cases() > cases_max)
+        return Error{fmt::format("cases: {} is not within 1 … {}", request.cases(), cases_max)};
+    if (request.jobs() > jobs_max())
+        return Error{fmt::format("jobs: {} is more than the processors here ({})", request.jobs(), jobs_max())};
+    if (request.seed() > static_cast<std::uint64_t>(INT64_MAX))
+        return Error{fmt::format("seed: {} is more than {}", request.seed(), INT64_MAX)};
     const unsigned jobs = request.jobs() != 0 ? request.jobs() : std::max(1U, jobs_max() - 1);
-    return Order{std::move(*scenario), request.seed(), request.cases(), jobs, results_file(folder_, request.scenario(), request.seed()), true};
+    return Order{std::move(*scenario),
+                 request.seed(),
+                 request.cases(),
+                 jobs,
+                 results_file(folder_, request.scenario(), request.seed()),
+                 true};
 }
 
 Result<v1::CampaignState> CampaignDesk::start(Order order) {
@@ -185,8 +197,10 @@ Result<v1::CampaignState> CampaignDesk::start(Order order) {
     {
         const std::scoped_lock lock{mutex_};
         if (!closed_.empty()) return Error{closed_};
-        if (flying() && flight_->stop) return Error{fmt::format("the campaign {} is being cancelled: try again in a moment", flight_->name)};
-        if (flying()) return Error{fmt::format("the campaign {} flies: cancel it first, or wait for its end", flight_->name)};
+        if (flying() && flight_->stop)
+            return Error{fmt::format("the campaign {} is being cancelled: try again in a moment", flight_->name)};
+        if (flying())
+            return Error{fmt::format("the campaign {} flies: cancel it first, or wait for its end", flight_->name)};
         flight_.reset();
         auto store = open_store(order, dictionary_);
         if (!store) return Error{store.error().message + "; another seed makes another campaign"};
@@ -220,7 +234,8 @@ v1::CampaignState CampaignDesk::state_of(const std::filesystem::path& file) {
     state.set_jobs(flight_->order.jobs);
     const double rate_per_s = flight_->rate_per_s;
     state.set_rate_per_s(rate_per_s);
-    if (rate_per_s > 0.0 && !flight_->stop) state.set_remaining_s(static_cast<double>(state.cases() - state.kept()) / rate_per_s);
+    if (rate_per_s > 0.0 && !flight_->stop)
+        state.set_remaining_s(static_cast<double>(state.cases() - state.kept()) / rate_per_s);
     return state;
 }
 
@@ -228,8 +243,7 @@ v1::CampaignList CampaignDesk::list() {
     v1::CampaignList list;
     list.set_cases_max(cases_max);
     list.set_jobs_max(jobs_max());
-    for (const auto& file : files_in(folder_))
-        *list.add_campaigns() = state_of(file);
+    for (const auto& file : files_in(folder_)) *list.add_campaigns() = state_of(file);
     return list;
 }
 
@@ -249,13 +263,13 @@ Result<v1::CampaignReport> CampaignDesk::report(const std::filesystem::path& fil
     results->stop_when(std::move(stop));
     const auto summary = results->brief();
     if (!summary) return summary.error();
-    report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept)); // one instant in one answer
+    report.mutable_state()->set_kept(static_cast<std::uint32_t>(summary->kept));  // one instant in one answer
     add(*summary, report);
     return report;
 }
 
-Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::path& file, std::uint64_t place, std::uint64_t limit,
-                                                        std::function<bool()> stop) {
+Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::path& file, std::uint64_t place,
+                                                        std::uint64_t limit, std::function<bool()> stop) {
     const auto heading = heading_of(file);
     if (!heading) return heading.error();
     auto results = CampaignResults::open(file, heading->cases);
@@ -277,4 +291,4 @@ Result<v1::CampaignTouchdowns> CampaignDesk::touchdowns(const std::filesystem::p
     return page;
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -19,9 +19,10 @@ void give_way() {
     if (sched_setscheduler(0, SCHED_IDLE, &none) != 0) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), 19);
 }
 
-} // namespace
+}  // namespace
 
-std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario, std::uint64_t seed) {
+std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario,
+                                   std::uint64_t seed) {
     return folder / fmt::format("campaign-{}-{}.db", scenario, seed);
 }
 
@@ -42,7 +43,8 @@ Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionar
 
 Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary::Dictionary& dictionary,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell) {
-    // Not on this thread, which keeps: it shares locks of SQLite with whoever stores a landing, and must never hold one while it waits.
+    // Not on this thread, which keeps: it shares locks of SQLite with whoever stores a landing, and must never hold one
+    // while it waits.
     const auto flights = std::async(std::launch::async, [&] {
                              if (order.gives_way) give_way();
                              return std::make_unique<const CaseFlights>(order.scenario, order.seed, dictionary, stop);
@@ -54,4 +56,4 @@ Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary:
     return run_campaign(store, order.cases, order.jobs, fly_case, stop, tell);
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -13,13 +13,15 @@ struct Order {
     simulation::Scenario scenario;
     std::uint64_t seed = 1;
     std::uint64_t cases = 1;
-    unsigned jobs = 1; ///< cases at a time
+    unsigned jobs = 1;  ///< cases at a time
     std::filesystem::path file;
-    bool gives_way = false; ///< what flies runs only where nobody else wants the processor; the thread that keeps does not give way
+    bool gives_way =
+        false;  ///< what flies runs only where nobody else wants the processor; the thread that keeps does not give way
 };
 
 /// Where the results of this scenario and seed lie in a folder.
-std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario, std::uint64_t seed);
+std::filesystem::path results_file(const std::filesystem::path& folder, const std::string& scenario,
+                                   std::uint64_t seed);
 
 /// An Error names why cases of this scenario cannot be flown beside each other.
 Result<void> check(const simulation::Scenario& scenario);
@@ -31,4 +33,4 @@ Result<CampaignStore> open_store(const Order& order, const dictionary::Dictionar
 Result<Progress> fly(CampaignStore& store, const Order& order, const dictionary::Dictionary& dictionary,
                      const std::atomic<bool>& stop, const std::function<void(const Progress&)>& tell);
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

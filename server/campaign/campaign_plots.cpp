@@ -53,7 +53,7 @@ std::string whose(const Summary& summary, std::uint64_t count) {
 Result<void> plot_touchdown(CampaignResults& results, const Summary& summary, const std::filesystem::path& file) {
     const Ellipse& ellipse = summary.ellipse;
     const double half_km = 0.5 * ellipse.major_m * km;
-    Range east, north; // the target is in it
+    Range east, north;  // the target is in it
     for (const double sign : {-1.0, 1.0}) {
         east.take(ellipse.east_m * km + sign * half_km);
         north.take(ellipse.north_m * km + sign * half_km);
@@ -161,7 +161,7 @@ Result<void> plot_touchdown_speed(CampaignResults& results, const Summary& summa
     return picture.close();
 }
 
-} // namespace
+}  // namespace
 
 Result<void> write_plots(CampaignResults& results, const Summary& summary, const std::filesystem::path& directory) {
     std::error_code error;
@@ -172,4 +172,4 @@ Result<void> write_plots(CampaignResults& results, const Summary& summary, const
     return plot_touchdown_speed(results, summary, directory / "touchdown_speed.svg");
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

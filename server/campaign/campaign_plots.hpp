@@ -11,4 +11,4 @@ namespace aeolis::server::campaign {
 /// it is meant for) and touchdown_speed.svg (histograms) into `directory`, which is made.
 Result<void> write_plots(CampaignResults& results, const Summary& summary, const std::filesystem::path& directory);
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -9,7 +9,6 @@
 namespace aeolis::server::campaign {
 namespace {
 
-
 std::string spread_json(const Spread& spread) {
     JsonObject object;
     object.count("count", spread.count);
@@ -65,8 +64,7 @@ std::string event_rows(const Summary& summary) {
 
 std::string margin_rows(const Summary& summary) {
     std::string text = heading("timeline margin s");
-    for (const MarginSpread& margin : summary.margins)
-        text += row(margin.timepoint, margin.margin_s, 3);
+    for (const MarginSpread& margin : summary.margins) text += row(margin.timepoint, margin.margin_s, 3);
     return text;
 }
 
@@ -80,12 +78,11 @@ std::string failure_rows(const Summary& summary, const Call& call) {
     return text;
 }
 
-} // namespace
+}  // namespace
 
 std::string campaign_json(const Summary& summary, const Call& call) {
     JsonObject outcomes;
-    for (const auto& [outcome, count] : summary.outcomes)
-        outcomes.count(outcome, count);
+    for (const auto& [outcome, count] : summary.outcomes) outcomes.count(outcome, count);
     const auto event_json = [](const EventSpread& event) {
         return JsonObject{}
             .text("name", event.name)
@@ -201,4 +198,4 @@ std::string progress_line(const Progress& progress) {
     return text + fmt::format("  {:.2f} cases/s, {} min {:02} s remain", rate_per_s, left_s / 60, left_s % 60);
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

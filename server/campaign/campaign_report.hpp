@@ -11,8 +11,8 @@ namespace aeolis::server::campaign {
 struct Call {
     Progress progress{};
     unsigned jobs = 1;
-    std::string scenario{}; ///< as it was given: a file, or a name that ships
-    std::string results{};  ///< the file
+    std::string scenario{};  ///< as it was given: a file, or a name that ships
+    std::string results{};   ///< the file
 };
 
 /// A campaign as `aeolis campaign` prints it: one JSON object on one line, or the same for people.
@@ -23,4 +23,4 @@ std::string campaign_table(const Summary& summary, const Call& call);
 /// here.
 std::string progress_line(const Progress& progress);
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -25,20 +25,23 @@ Result<void> each_row(Statement& statement, const std::function<void(const State
     }
 }
 
-} // namespace
+}  // namespace
 
 Result<Heading> heading_of(const std::filesystem::path& file) {
     auto database = Database::open(file.string(), Mode::read_only);
     if (!database) return database.error();
     const auto id = database->integer_of("PRAGMA application_id");
     if (!id) return id.error();
-    if (*id != campaign_application_id) return Error{file.string() + ": holds something else than a campaign's results"};
+    if (*id != campaign_application_id)
+        return Error{file.string() + ": holds something else than a campaign's results"};
     const auto version = database->integer_of("SELECT schema_version FROM campaign");
     if (!version) return version.error();
     if (*version != campaign_schema_version)
-        return Error{fmt::format("{}: schema_version: {} there, {} here", file.string(), *version, campaign_schema_version)};
-    auto select = database->prepare("SELECT scenario, seed, cases, (SELECT count(*) FROM cases WHERE number <= campaign.cases)"
-                                    " FROM campaign");
+        return Error{
+            fmt::format("{}: schema_version: {} there, {} here", file.string(), *version, campaign_schema_version)};
+    auto select =
+        database->prepare("SELECT scenario, seed, cases, (SELECT count(*) FROM cases WHERE number <= campaign.cases)"
+                          " FROM campaign");
     if (!select) return select.error();
     const auto row = select->step();
     if (!row) return row.error();
@@ -105,7 +108,7 @@ Result<Summary> CampaignResults::brief() {
 }
 
 Result<Summary> CampaignResults::read(bool with_events) {
-    const auto instant = archive::sqlite::Transaction::begin_read(database_); // one, however many cases come meanwhile
+    const auto instant = archive::sqlite::Transaction::begin_read(database_);  // one, however many cases come meanwhile
     if (!instant) return instant.error();
     Summary summary;
     summary.cases = cases_;
@@ -151,9 +154,8 @@ Result<void> CampaignResults::read_outcomes(Summary& into) {
 Result<void> CampaignResults::read_events(Summary& into) {
     auto names = database_.prepare("SELECT name FROM moments GROUP BY name ORDER BY avg(e_s)");
     if (!names) return names.error();
-    const auto read = each_row(*names, [&](const Statement& row) {
-        into.events.push_back({std::string{row.text(0)}, {}, {}, {}});
-    });
+    const auto read =
+        each_row(*names, [&](const Statement& row) { into.events.push_back({std::string{row.text(0)}, {}, {}, {}}); });
     if (!read) return read;
     for (EventSpread& event : into.events)
         for (const auto& [column, spread_of] :
@@ -191,9 +193,8 @@ Result<void> CampaignResults::read_spreads(Summary& into) {
 Result<void> CampaignResults::read_margins(Summary& into) {
     auto timepoints = database_.prepare("SELECT timepoint FROM allowances GROUP BY timepoint ORDER BY avg(place)");
     if (!timepoints) return timepoints.error();
-    const auto read = each_row(*timepoints, [&](const Statement& row) {
-        into.margins.push_back({std::string{row.text(0)}, {}});
-    });
+    const auto read =
+        each_row(*timepoints, [&](const Statement& row) { into.margins.push_back({std::string{row.text(0)}, {}}); });
     if (!read) return read;
     for (MarginSpread& margin : into.margins) {
         const auto found = spread("margin_s", "allowances WHERE timepoint = ?", margin.timepoint);
@@ -223,7 +224,9 @@ Result<std::vector<Touchdown>> CampaignResults::arrivals(std::uint64_t place, st
     select->bind(1, static_cast<std::int64_t>(place)).bind(2, static_cast<std::int64_t>(limit));
     std::vector<Touchdown> touchdowns;
     const auto read = each_row(*select, [&](const Statement& row) {
-        const auto metres = [&](int column) { return row.is_null(column) ? std::nullopt : std::optional{row.real(column)}; };
+        const auto metres = [&](int column) {
+            return row.is_null(column) ? std::nullopt : std::optional{row.real(column)};
+        };
         touchdowns.push_back({static_cast<std::uint64_t>(row.integer(0)), static_cast<std::uint64_t>(row.integer(1)),
                               std::string{row.text(2)}, metres(3), metres(4)});
     });
@@ -249,4 +252,4 @@ Result<void> CampaignResults::each_touchdown_speed_mps(const std::function<void(
     return each("SELECT vertical_mps, horizontal_mps FROM flown WHERE outcome = 'touchdown' ORDER BY number", take);
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -40,29 +40,29 @@ struct MarginSpread {
 struct LeastMargin {
     double margin_s = 0.0;
     std::string timepoint;
-    std::uint64_t number = 0; ///< the case
+    std::uint64_t number = 0;  ///< the case
 };
 
 /// What the cases 1 … `cases` of a file come to. Touchdown's numbers are of the cases with that outcome.
 struct Summary {
     std::string scenario;
     std::uint64_t seed = 0;
-    std::uint64_t cases = 0;                                     ///< asked for
-    std::uint64_t kept = 0;                                      ///< that the file holds of them
-    std::vector<std::pair<std::string, std::uint64_t>> outcomes; ///< most frequent first
-    std::vector<EventSpread> events;                             ///< in the order of their mean time
+    std::uint64_t cases = 0;                                      ///< asked for
+    std::uint64_t kept = 0;                                       ///< that the file holds of them
+    std::vector<std::pair<std::string, std::uint64_t>> outcomes;  ///< most frequent first
+    std::vector<EventSpread> events;                              ///< in the order of their mean time
     Spread vertical_mps, horizontal_mps, miss_m, latitude_deg, longitude_deg;
     Ellipse ellipse;
     Spread parachute_mach, parachute_pressure_Pa;
     Spread peak_deceleration_mps2, propellant_kg;
-    Spread heatshield_least_m, backshell_least_m; ///< of the cases in which the vehicle came nearer to it again
+    Spread heatshield_least_m, backshell_least_m;  ///< of the cases in which the vehicle came nearer to it again
     std::uint64_t recontacts = 0;
-    std::vector<MarginSpread> margins; ///< in the order of the timeline
+    std::vector<MarginSpread> margins;  ///< in the order of the timeline
     std::optional<LeastMargin> least_margin;
-    std::vector<Failure> failures; ///< the first `failures_max`
+    std::vector<Failure> failures;  ///< the first `failures_max`
     std::uint64_t failed = 0;
 
-    static constexpr std::size_t failures_max = 20; ///< ours: a screenful; the file has them all
+    static constexpr std::size_t failures_max = 20;  ///< ours: a screenful; the file has them all
 
     double touchdown_fraction() const;
 };
@@ -71,18 +71,18 @@ struct Summary {
 struct Heading {
     std::string scenario;
     std::uint64_t seed = 0;
-    std::uint64_t cases = 0; ///< that the last call asked for
-    std::uint64_t kept = 0;  ///< that the file holds of them
+    std::uint64_t cases = 0;  ///< that the last call asked for
+    std::uint64_t kept = 0;   ///< that the file holds of them
 };
 /// An Error names the file, and what it is when it is no campaign's of this version.
 Result<Heading> heading_of(const std::filesystem::path& file);
 
 /// Where a case came to the ground.
 struct Touchdown {
-    std::uint64_t place = 0; ///< in the order in which the cases came
+    std::uint64_t place = 0;  ///< in the order in which the cases came
     std::uint64_t number = 0;
     std::string outcome;
-    std::optional<double> east_m, north_m; ///< of the target; none: it never touched down
+    std::optional<double> east_m, north_m;  ///< of the target; none: it never touched down
 };
 
 /// The results of a campaign, read from its file: rows pass one after another and are not kept.
@@ -123,4 +123,4 @@ class CampaignResults {
     std::uint64_t cases_;
 };
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

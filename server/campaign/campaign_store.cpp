@@ -42,7 +42,7 @@ std::string difference(const std::string& before, const std::string& now) {
     }
 }
 
-} // namespace
+}  // namespace
 
 Result<CampaignStore> CampaignStore::open(const std::filesystem::path& file, const Identity& identity) {
     std::error_code ignored;
@@ -114,7 +114,8 @@ Result<void> CampaignStore::check(const Identity& identity) {
 Result<void> CampaignStore::prepare() {
     auto has = database_.prepare("SELECT 1 FROM cases WHERE number = ?");
     if (!has) return has.error();
-    auto add_case = database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+    auto add_case =
+        database_.prepare("INSERT INTO cases VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
     if (!add_case) return add_case.error();
     auto add_arrival = database_.prepare("INSERT INTO arrivals (case_number) VALUES (?)");
     if (!add_arrival) return add_arrival.error();
@@ -151,8 +152,7 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
             .bind(2, std::string_view{result.outcome})
             .bind(3, std::string_view{result.reason})
             .bind(4, static_cast<std::int64_t>(result.end_cycle));
-        for (int column = 5; column <= 11; ++column)
-            add_case_.bind_null(column);
+        for (int column = 5; column <= 11; ++column) add_case_.bind_null(column);
         if (const auto& touchdown = result.touchdown)
             add_case_.bind(5, touchdown->vertical_mps)
                 .bind(6, touchdown->horizontal_mps)
@@ -193,4 +193,4 @@ Result<void> CampaignStore::add(std::span<const CaseResult> results) {
     return transaction->commit();
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

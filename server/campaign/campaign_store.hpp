@@ -13,15 +13,15 @@
 namespace aeolis::server::campaign {
 
 inline constexpr std::int64_t campaign_schema_version = 4;
-inline constexpr std::int64_t campaign_application_id = 0x4165436d; ///< "AeCm", in the file's header
+inline constexpr std::int64_t campaign_application_id = 0x4165436d;  ///< "AeCm", in the file's header
 
 /// What the cases of one file have in common. Cases of two identities never share a file.
 struct Identity {
-    std::string scenario;      ///< its name
-    std::string scenario_text; ///< complete
+    std::string scenario;       ///< its name
+    std::string scenario_text;  ///< complete
     std::uint64_t seed = 1;
-    std::string dictionary; ///< id of the words on board
-    std::string program;    ///< digest of the program that flies
+    std::string dictionary;  ///< id of the words on board
+    std::string program;     ///< digest of the program that flies
 };
 
 /// The results of a campaign in a SQLite file: one row a case, one a case's event. Rows are only ever added, and a case
@@ -51,9 +51,9 @@ class CampaignStore {
     Result<void> make(const Identity& identity);
     Result<void> prepare();
 
-    archive::WriterLock lock_; // released last
+    archive::WriterLock lock_;  // released last
     archive::sqlite::Database database_;
     archive::sqlite::Statement has_, add_case_, add_arrival_, add_event_, add_margin_;
 };
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

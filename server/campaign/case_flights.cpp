@@ -28,7 +28,7 @@ double dispersion_sclk(const simulation::Scenario& scenario) {
     return scenario.entry_sclk.seconds - scenario.disperse_before_entry_s.value_or(scenario.start_before_entry_s);
 }
 
-} // namespace
+}  // namespace
 
 CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t seed,
                          const dictionary::Dictionary& dictionary)
@@ -41,7 +41,8 @@ CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t see
     auto common = std::make_unique<Flight>(
         Flight{ScriptedLanding{scenario, seed, 0, dictionary}, RecordedFirings{dictionary}, {}, 0});
     const auto& landing = common->landing.landing();
-    while (landing.outcome() == simulation::Outcome::running && landing.sclk().seconds < dispersion_sclk(scenario) && !abandon_)
+    while (landing.outcome() == simulation::Outcome::running && landing.sclk().seconds < dispersion_sclk(scenario) &&
+           !abandon_)
         common->step();
     common_ = std::move(common);
 }
@@ -68,7 +69,7 @@ std::unique_ptr<CaseFlights::Flight> CaseFlights::begun(std::uint64_t case_numbe
 }
 
 std::optional<CaseResult> CaseFlights::fly(std::uint64_t case_number) const {
-    if (abandon_) return std::nullopt; // the common flight may not have come to its end
+    if (abandon_) return std::nullopt;  // the common flight may not have come to its end
     CaseResult result;
     result.number = case_number;
     std::unique_ptr<Flight> flight;
@@ -126,4 +127,4 @@ std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& 
     return margins;
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

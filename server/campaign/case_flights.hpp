@@ -49,13 +49,14 @@ class CaseFlights {
     std::uint64_t seed_;
     const dictionary::Dictionary& dictionary_;
     const std::atomic<bool>& abandon_;
-    std::unique_ptr<const Flight> common_; ///< none: each case is flown from the start
+    std::unique_ptr<const Flight> common_;  ///< none: each case is flown from the start
 };
 
-/// Of each timepoint at which the timeline passes from one anchor to the next, and that was fired after `after_sclk`, how
-/// long after its minimum offset permitted it was it triggered: nought is one that the timeline held up. Within an anchor's
-/// own sequence the margins are the timeline's design and say nothing of the case. Minimum offsets are the dictionary's.
+/// Of each timepoint at which the timeline passes from one anchor to the next, and that was fired after `after_sclk`,
+/// how long after its minimum offset permitted it was it triggered: nought is one that the timeline held up. Within an
+/// anchor's own sequence the margins are the timeline's design and say nothing of the case. Minimum offsets are the
+/// dictionary's.
 std::vector<TimelineMargin> timeline_margins(const std::vector<RecordedFiring>& firings,
                                              const dictionary::Dictionary& dictionary, double after_sclk);
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -23,16 +23,16 @@ struct TimelineMargin {
 /// What a campaign keeps of one case.
 struct CaseResult {
     std::uint64_t number = 0;
-    std::string outcome, reason; ///< as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
-    std::uint64_t end_cycle = 0; ///< 64 Hz cycles from the landing's start to its end
+    std::string outcome, reason;  ///< as of a rehearsal: touchdown, impact, lost, not_commanded, timeout
+    std::uint64_t end_cycle = 0;  ///< 64 Hz cycles from the landing's start to its end
     std::optional<simulation::TouchdownReport> touchdown;
-    double east_m = 0.0, north_m = 0.0; ///< of the target, when there was a touchdown
+    double east_m = 0.0, north_m = 0.0;  ///< of the target, when there was a touchdown
     std::optional<simulation::ParachuteReport> parachute;
     simulation::SeparationReport separation;
     double peak_deceleration_mps2 = 0.0;
-    double propellant_kg = 0.0; ///< left at the end, after fly-away
-    std::vector<TimelineMargin> margins; ///< in the order of the timeline
+    double propellant_kg = 0.0;           ///< left at the end, after fly-away
+    std::vector<TimelineMargin> margins;  ///< in the order of the timeline
     std::vector<CaseEvent> events;
 };
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

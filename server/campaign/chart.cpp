@@ -30,7 +30,7 @@ constexpr const char* style = "text{font:13px 'Helvetica Neue',Arial,sans-serif;
                               ".name{fill:#2c7a4d;font-size:12px}.ellipse{fill:none;stroke:#d97706;stroke-width:2}"
                               ".cross{stroke:#c22f3d;stroke-width:2}.crossname{fill:#c22f3d;font-size:12px}";
 
-} // namespace
+}  // namespace
 
 Ticks ticks_of(const Axis& axis, int wanted) {
     Ticks ticks;
@@ -127,4 +127,4 @@ std::string Chart::cross(double x, double y, std::string_view name) const {
                        px(x) - 8.0, py(y), px(x) + 9.0, py(y) - 8.0, escaped(name));
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

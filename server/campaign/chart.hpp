@@ -15,7 +15,7 @@ struct Axis {
 /// `values` of 1, 2 or 5 times a power of ten within the axis, about `wanted` of them.
 struct Ticks {
     std::vector<double> values;
-    int digits = 0; ///< behind the point
+    int digits = 0;  ///< behind the point
 };
 Ticks ticks_of(const Axis& axis, int wanted);
 
@@ -33,7 +33,7 @@ class Chart {
     /// `id` is unique in the picture.
     Chart(std::string id, const Place& place, Axis x, Axis y);
 
-    std::string begin() const; ///< ground, grid and labels; then what is drawn, until end()
+    std::string begin() const;  ///< ground, grid and labels; then what is drawn, until end()
     std::string end() const;
 
     std::string dot(double x, double y) const;
@@ -53,4 +53,4 @@ class Chart {
     Axis x_, y_;
 };
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -17,4 +17,4 @@ Result<std::string> program_digest() {
     return digest.text();
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

@@ -9,4 +9,4 @@ namespace aeolis::server::campaign {
 /// SHA-256 of the program that runs, as its file has it: two builds that may fly differently differ in it.
 Result<std::string> program_digest();
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

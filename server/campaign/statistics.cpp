@@ -7,9 +7,9 @@
 namespace aeolis::server::campaign {
 namespace {
 
-const double chi_squared_99 = -2.0 * std::log(1.0 - 0.99); // two degrees of freedom: closed form
+const double chi_squared_99 = -2.0 * std::log(1.0 - 0.99);  // two degrees of freedom: closed form
 
-} // namespace
+}  // namespace
 
 void Moments::add(double value) {
     ++count_;
@@ -59,4 +59,4 @@ void Percentile::add(double value) {
     ++at_;
 }
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

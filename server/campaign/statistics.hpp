@@ -5,7 +5,7 @@
 
 namespace aeolis::server::campaign {
 
-inline constexpr double km = 1.0e-3; ///< metres times this are kilometres
+inline constexpr double km = 1.0e-3;  ///< metres times this are kilometres
 
 /// Mean and deviation of numbers as they come, without keeping them. Source: [welford-1962].
 class Moments {
@@ -13,7 +13,7 @@ class Moments {
     void add(double value);
     std::uint64_t count() const { return count_; }
     double mean() const { return mean_; }
-    double deviation() const; ///< of the sample, by n − 1; 0 for fewer than two
+    double deviation() const;  ///< of the sample, by n − 1; 0 for fewer than two
 
   private:
     std::uint64_t count_ = 0;
@@ -22,9 +22,9 @@ class Moments {
 
 /// An ellipse about a mean, east and north.
 struct Ellipse {
-    double east_m = 0.0, north_m = 0.0;  ///< of its centre
-    double major_m = 0.0, minor_m = 0.0; ///< full axes
-    double azimuth_deg = 0.0;            ///< of the major axis, from north to east, 0 … 180
+    double east_m = 0.0, north_m = 0.0;   ///< of its centre
+    double major_m = 0.0, minor_m = 0.0;  ///< full axes
+    double azimuth_deg = 0.0;             ///< of the major axis, from north to east, 0 … 180
 };
 
 /// Points in a plane as they come, and the ellipse that holds `0.99` of a Gaussian with their mean and covariance: its
@@ -33,7 +33,7 @@ class PlaneMoments {
   public:
     void add(double east_m, double north_m);
     std::uint64_t count() const { return count_; }
-    Ellipse ellipse_99() const; ///< without extent for fewer than two points
+    Ellipse ellipse_99() const;  ///< without extent for fewer than two points
 
   private:
     std::uint64_t count_ = 0;
@@ -46,7 +46,7 @@ class PlaneMoments {
 class Percentile {
   public:
     Percentile(double fraction, std::uint64_t count);
-    void add(double value); ///< not below the one before
+    void add(double value);  ///< not below the one before
     double value() const { return value_; }
 
   private:
@@ -55,4 +55,4 @@ class Percentile {
     double value_ = 0.0;
 };
 
-} // namespace aeolis::server::campaign
+}  // namespace aeolis::server::campaign

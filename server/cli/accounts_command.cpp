@@ -12,17 +12,21 @@ int accounts_list(const AccountsOptions& options) {
     const auto accounts = read_accounts(options.file);
     if (!accounts) return failed("accounts list: " + accounts.error().message);
     for (const auto& account : accounts->accounts())
-        fmt::print("{:<32}  {}{}\n", account.user(), account.role(), account.choose_password() ? ", has yet to choose a password" : "");
+        fmt::print("{:<32}  {}{}\n", account.user(), account.role(),
+                   account.choose_password() ? ", has yet to choose a password" : "");
     for (const auto& token : accounts->tokens())
-        fmt::print("token {:<26}  {}, {}\n", token.name(), token.role(), token.expires().empty() ? "does not expire" : "until " + token.expires());
+        fmt::print("token {:<26}  {}, {}\n", token.name(), token.role(),
+                   token.expires().empty() ? "does not expire" : "until " + token.expires());
     return 0;
 }
 
 int accounts_reset(const AccountsOptions& options) {
-    if (const auto named = check_name(options.user); !named) return failed("accounts reset: --user: " + named.error().message, 2);
+    if (const auto named = check_name(options.user); !named)
+        return failed("accounts reset: --user: " + named.error().message, 2);
     const AccountsLock lock{options.file};
     std::error_code ignored;
-    auto accounts = std::filesystem::exists(options.file, ignored) ? read_accounts(options.file) : Result<v1::AccountFile>{v1::AccountFile{}};
+    auto accounts = std::filesystem::exists(options.file, ignored) ? read_accounts(options.file)
+                                                                   : Result<v1::AccountFile>{v1::AccountFile{}};
     if (!accounts) return failed("accounts reset: " + accounts.error().message);
     const bool fresh = find_account(*accounts, options.user) == nullptr;
     const auto password = reset_account(*accounts, options.user);
@@ -30,9 +34,11 @@ int accounts_reset(const AccountsOptions& options) {
     reset.set_user(options.user);
     reset.set_at(wall_clock_text());
     reset.set_by(this_user());
-    if (const auto written = write_accounts(options.file, *accounts); !written) return failed("accounts reset: " + written.error().message);
-    fmt::print("{} '{}': {}\n  It only lets its owner choose another.\n", fresh ? "a new administrator," : "user", options.user, password);
+    if (const auto written = write_accounts(options.file, *accounts); !written)
+        return failed("accounts reset: " + written.error().message);
+    fmt::print("{} '{}': {}\n  It only lets its owner choose another.\n", fresh ? "a new administrator," : "user",
+               options.user, password);
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

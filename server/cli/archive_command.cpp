@@ -55,7 +55,7 @@ Result<std::vector<archive::RunLine>> chosen(const PruneOptions& options, const 
     return runs;
 }
 
-} // namespace
+}  // namespace
 
 int archive_verify(const ArchiveOptions& options) {
     int exit_code = 0;
@@ -63,15 +63,13 @@ int archive_verify(const ArchiveOptions& options) {
     if (!words) return exit_code;
     const auto found = [&] {
         ProgressLine line;
-        return pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(), std::filesystem::temp_directory_path(),
-                                until_interrupted(line));
+        return pipeline::verify(options.archive, asked(options), words->dictionary, words->other.get(),
+                                std::filesystem::temp_directory_path(), until_interrupted(line));
     }();
     if (!found) return failed_at("verify", found.error());
     if (found->stopped) return failed("archive verify: stopped before all was compared");
-    for (const auto& fault : found->faults)
-        fmt::print("{}\n", fault);
-    for (const auto& note : found->notes)
-        fmt::print("note: {}\n", note);
+    for (const auto& fault : found->faults) fmt::print("{}\n", fault);
+    for (const auto& note : found->notes) fmt::print("note: {}\n", note);
     fmt::print("{}: {} runs, {} units told again, {}\n", options.archive.string(), found->runs, found->units,
                found->faults.empty() ? "nothing wrong" : fmt::format("{} faults", found->faults.size()));
     return found->faults.empty() ? 0 : 1;
@@ -83,19 +81,20 @@ int archive_rebuild(const ArchiveOptions& options) {
     if (!words) return exit_code;
     const auto rebuilt = [&] {
         ProgressLine line;
-        return pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get(), by_this_user(), until_interrupted(line));
+        return pipeline::rebuild(options.archive, asked(options), words->dictionary, words->other.get(), by_this_user(),
+                                 until_interrupted(line));
     }();
     if (!rebuilt) return failed_at("rebuild", rebuilt.error());
-    for (const auto& run : rebuilt->runs)
-        fmt::print("run {}: made again from its units\n", run.value);
-    for (const auto& left : rebuilt->left)
-        fmt::print("left as it is: {}\n", left);
-    if (rebuilt->stopped) return failed("archive rebuild: stopped; what is not named above is as it was, and can be rebuilt again");
+    for (const auto& run : rebuilt->runs) fmt::print("run {}: made again from its units\n", run.value);
+    for (const auto& left : rebuilt->left) fmt::print("left as it is: {}\n", left);
+    if (rebuilt->stopped)
+        return failed("archive rebuild: stopped; what is not named above is as it was, and can be rebuilt again");
     return rebuilt->left.empty() ? 0 : 1;
 }
 
 int archive_prune(const PruneOptions& options) {
-    if (options.runs.empty() == !options.keep) return failed("archive prune: either --run or --keep says which runs go", 2);
+    if (options.runs.empty() == !options.keep)
+        return failed("archive prune: either --run or --keep says which runs go", 2);
     auto archive = archive::Maintenance::open(options.archive);
     if (!archive) return failed_at("prune", archive.error());
     const auto all = archive::run_lines(archive->database());
@@ -105,14 +104,17 @@ int archive_prune(const PruneOptions& options) {
     std::vector<archive::RunId> numbers;
     for (const auto& run : *runs) {
         numbers.push_back(run.run);
-        fmt::print("run {:>4}  {}  {}  {} ({}), {} units\n", run.run.value, run.started, run.scenario, run.state, run.outcome, run.units);
+        fmt::print("run {:>4}  {}  {}  {} ({}), {} units\n", run.run.value, run.started, run.scenario, run.state,
+                   run.outcome, run.units);
     }
     if (!options.yes || runs->empty()) {
-        fmt::print("{} of {} runs would go; {}\n", runs->size(), all->size(), runs->empty() ? "nothing to do" : "--yes takes them away");
+        fmt::print("{} of {} runs would go; {}\n", runs->size(), all->size(),
+                   runs->empty() ? "nothing to do" : "--yes takes them away");
         return 0;
     }
     if (auto done = archive::prune(*archive, numbers, by_this_user()); !done) return failed_at("prune", done.error());
-    fmt::print("{} of {} runs are gone; aeolis archive vacuum gives their room back to the disk\n", runs->size(), all->size());
+    fmt::print("{} of {} runs are gone; aeolis archive vacuum gives their room back to the disk\n", runs->size(),
+               all->size());
     return 0;
 }
 
@@ -129,8 +131,9 @@ int archive_vacuum(const std::filesystem::path& file) {
 int archive_backup(const std::filesystem::path& file, const std::filesystem::path& copy) {
     if (auto done = archive::backup(file, copy); !done) return failed_at("backup", done.error());
     std::error_code ignored;
-    fmt::print("{}: {} octets, all of {} as it was\n", copy.string(), std::filesystem::file_size(copy, ignored), file.string());
+    fmt::print("{}: {} octets, all of {} as it was\n", copy.string(), std::filesystem::file_size(copy, ignored),
+               file.string());
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -22,22 +22,29 @@ Result<campaign::Call> flown(const CampaignOptions& options, const campaign::Ord
     if (!store) return store.error();
     stop_at_interrupt();
     ProgressLine line;
-    const auto progress = campaign::fly(*store, order, dictionary, stop_asked(),
-                                        [&](const campaign::Progress& so_far) { line.draw(campaign::progress_line(so_far)); });
+    const auto progress = campaign::fly(*store, order, dictionary, stop_asked(), [&](const campaign::Progress& so_far) {
+        line.draw(campaign::progress_line(so_far));
+    });
     if (!progress) return progress.error();
     return campaign::Call{*progress, order.jobs, options.scenario, order.file.string()};
 }
 
-} // namespace
+}  // namespace
 
 int run_campaign(const CampaignOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
     if (!ready) return failed(ready.error().message);
     const auto& [dictionary, scenario] = *ready;
-    if (const auto many = campaign::check(scenario); !many) return failed(options.scenario + ": " + many.error().message);
+    if (const auto many = campaign::check(scenario); !many)
+        return failed(options.scenario + ": " + many.error().message);
 
-    const campaign::Order order{scenario, options.seed, options.cases, jobs_of(options),
-                                options.results.value_or(campaign::results_file("run-data", scenario.name, options.seed)), false};
+    const campaign::Order order{
+        scenario,
+        options.seed,
+        options.cases,
+        jobs_of(options),
+        options.results.value_or(campaign::results_file("run-data", scenario.name, options.seed)),
+        false};
     const auto& file = order.file;
     const auto call = flown(options, order, dictionary);
     if (!call) return failed(call.error().message);
@@ -56,4 +63,4 @@ int run_campaign(const CampaignOptions& options) {
     return summary->kept == summary->cases && summary->failed == 0 ? 0 : 1;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

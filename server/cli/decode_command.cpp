@@ -42,8 +42,8 @@ Result<telemetry::TimeKernels> time_kernels(const DecodeOptions& options) {
         auto clock = telemetry::ClockKernel::read(*text);
         if (!clock) return clock.error();
         if (options.partition && (*options.partition == 0 || *options.partition > clock->partitions()))
-            return Error{fmt::format("--partition {}: {} has {}, from 1", *options.partition, options.clock_kernel->string(),
-                                     clock->partitions())};
+            return Error{fmt::format("--partition {}: {} has {}, from 1", *options.partition,
+                                     options.clock_kernel->string(), clock->partitions())};
         kernels.clock = std::move(*clock);
     }
     return kernels;
@@ -80,7 +80,8 @@ class Printed {
         const bool room = problems_.size() < problems_max || problems_.contains(problem);
         ++problems_[room ? problem : "other problems"];
     }
-    void print_row(std::span<const std::uint8_t> packet, std::uint64_t apid, const telemetry::DecodedContents& contents) {
+    void print_row(std::span<const std::uint8_t> packet, std::uint64_t apid,
+                   const telemetry::DecodedContents& contents) {
         fmt::print("{},{},{},{}", index_, apid, read_bits(packet, 18, 14),
                    contents.time ? telemetry::time_text(*contents.time, kernels_) : std::string{});
         for (const auto& value : contents.values)
@@ -94,7 +95,7 @@ class Printed {
     bool csv_;
     std::uint64_t index_ = 0;
     std::map<std::pair<std::uint64_t, std::string>, std::uint64_t> kinds_;
-    static constexpr std::size_t problems_max = 50; ///< ours: more nobody reads
+    static constexpr std::size_t problems_max = 50;  ///< ours: more nobody reads
     std::map<std::string, std::uint64_t> problems_;
 };
 
@@ -103,19 +104,23 @@ bool print_losses(const telemetry::PacketSource& source, const Printed& printed)
     const auto link = source.link();
     const auto packets = source.packets();
     if (link.octets > 0)
-        fmt::print(stderr, "frames: {} good, {} with a wrong CRC, {} with a wrong header, {} missing in {} gaps; {} octets skipped\n",
-                   link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.skipped_octets);
-    fmt::print(stderr, "packets: {}, {} idle, {} cut off; {} octets unreadable\n", packets.packets, packets.idle_packets,
-               packets.cut_packets, packets.unreadable_octets);
+        fmt::print(
+            stderr,
+            "frames: {} good, {} with a wrong CRC, {} with a wrong header, {} missing in {} gaps; {} octets skipped\n",
+            link.frames, link.bad_crc, link.bad_header, link.missing_frames, link.gaps, link.skipped_octets);
+    fmt::print(stderr, "packets: {}, {} idle, {} cut off; {} octets unreadable\n", packets.packets,
+               packets.idle_packets, packets.cut_packets, packets.unreadable_octets);
     for (const auto& [problem, count] : printed.problems()) fmt::print(stderr, "{} packets: {}\n", count, problem);
-    return link.bad_crc + link.bad_header + link.missing_frames + packets.cut_packets + packets.unreadable_octets == 0 &&
+    return link.bad_crc + link.bad_header + link.missing_frames + packets.cut_packets + packets.unreadable_octets ==
+               0 &&
            printed.problems().empty();
 }
 
-} // namespace
+}  // namespace
 
 int decode(const DecodeOptions& options) {
-    if (!telemetry::downlink_format(options.format.name)) return failed(packet_source(options.format, {}).error().message, 2);
+    if (!telemetry::downlink_format(options.format.name))
+        return failed(packet_source(options.format, {}).error().message, 2);
     const auto kernels = time_kernels(options);
     if (!kernels) return failed(kernels.error().message, 2);
     const auto xtce = read_xtce_file(options.xtce);
@@ -129,7 +134,8 @@ int decode(const DecodeOptions& options) {
         in.read(reinterpret_cast<char*>(piece.data()), static_cast<std::streamsize>(piece.size()));
         return std::span<const std::uint8_t>{piece}.first(static_cast<std::size_t>(in.gcount()));
     };
-    if (!in || std::filesystem::is_directory(options.packets)) return failed(options.packets.string() + " cannot be read", 2);
+    if (!in || std::filesystem::is_directory(options.packets))
+        return failed(options.packets.string() + " cannot be read", 2);
     auto octets = read_piece();
     auto source = packet_source(options.format, octets);
     if (!source) return failed(options.packets.string() + ": " + source.error().message, 2);
@@ -149,4 +155,4 @@ int decode(const DecodeOptions& options) {
     return print_losses(*source, printed) ? 0 : 1;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

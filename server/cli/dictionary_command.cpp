@@ -49,4 +49,4 @@ int dictionary_diagram(const std::filesystem::path& directory) {
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -21,4 +21,4 @@ int entry_reference(const EntryReferenceOptions& options) {
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

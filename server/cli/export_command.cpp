@@ -17,7 +17,8 @@ namespace {
 using Begin = std::function<Result<void>(const v1::RunState&, const dictionary::Dictionary&)>;
 
 /// Says of which run and in whose words, then hands on its samples, some thousands at a time. @return the exit code
-int each_row(const ExportOptions& options, const char* command, const Begin& begin, const archive::Reader::TakeSamples& take) {
+int each_row(const ExportOptions& options, const char* command, const Begin& begin,
+             const archive::Reader::TakeSamples& take) {
     const auto said = [&](const Error& error) { return failed(fmt::format("{}: {}", command, error.message)); };
     int exit_code = 0;
     const auto words = recorded_words(options.of.shared.dictionary, options.of.xtce, exit_code);
@@ -36,20 +37,21 @@ struct CloseFile {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-} // namespace
+}  // namespace
 
 int export_samples(const ExportOptions& options) {
     std::unique_ptr<std::FILE, CloseFile> file;
     if (!options.out.empty()) {
         file.reset(std::fopen(options.out.c_str(), "wx"));
-        if (file == nullptr) return failed(fmt::format("export: {} cannot be made, or is there already", options.out.string()));
+        if (file == nullptr)
+            return failed(fmt::format("export: {} cannot be made, or is there already", options.out.string()));
     }
     std::FILE* const to = file != nullptr ? file.get() : stdout;
     const auto write = [&](std::string_view text) -> Result<void> {
         if (std::fwrite(text.data(), 1, text.size(), to) == text.size()) return {};
         return Error{(file != nullptr ? options.out.string() : std::string("the standard output")) + " takes no more"};
     };
-    std::optional<SampleText> lines; // once it is known which words the run has
+    std::optional<SampleText> lines;  // once it is known which words the run has
     std::string text;
     const int ended = each_row(
         options, "export",
@@ -96,4 +98,4 @@ int archive_samples(const ExportOptions& options) {
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

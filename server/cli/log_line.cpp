@@ -29,7 +29,8 @@ class JsonLine final : public spdlog::formatter {
     void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override {
         time_.format(message, line);
         const std::string_view text{message.payload.data(), message.payload.size()};
-        fmt::format_to(std::back_inserter(line), R"("level":"{}","message":{}}})", to_string_view(message.level), json_text(text));
+        fmt::format_to(std::back_inserter(line), R"("level":"{}","message":{}}})", to_string_view(message.level),
+                       json_text(text));
         line.push_back('\n');
     }
     std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonLine>(); }
@@ -38,7 +39,7 @@ class JsonLine final : public spdlog::formatter {
     spdlog::pattern_formatter time_{R"({"time":"%Y-%m-%dT%H:%M:%S.%eZ",)", spdlog::pattern_time_type::utc, ""};
 };
 
-} // namespace
+}  // namespace
 
 std::string printable(std::string_view text) {
     std::string shown;
@@ -52,7 +53,7 @@ std::string printable(std::string_view text) {
             shown += "\\t";
         else if (octet < 0x20 || octet == 0x7F)
             fmt::format_to(std::back_inserter(shown), "\\x{:02x}", octet);
-        else if (octet == 0xC2 && next >= 0x80 && next < 0xA0) // in UTF-8 those from 80 to 9f
+        else if (octet == 0xC2 && next >= 0x80 && next < 0xA0)  // in UTF-8 those from 80 to 9f
             fmt::format_to(std::back_inserter(shown), "\\x{:02x}", static_cast<unsigned char>(text[++i]));
         else
             shown += text[i];
@@ -68,4 +69,4 @@ std::unique_ptr<spdlog::formatter> json_lines() {
     return std::make_unique<JsonLine>();
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

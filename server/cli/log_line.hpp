@@ -16,4 +16,4 @@ std::unique_ptr<spdlog::formatter> text_lines();
 /// One JSON object a line.
 std::unique_ptr<spdlog::formatter> json_lines();
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

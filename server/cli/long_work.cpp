@@ -10,7 +10,7 @@ std::atomic<bool>& stop_asked() {
     static std::atomic<bool> asked{false};
     return asked;
 }
-static_assert(std::atomic<bool>::is_always_lock_free); // a signal sets it
+static_assert(std::atomic<bool>::is_always_lock_free);  // a signal sets it
 
 void stop_at_interrupt() {
     std::signal(SIGINT, [](int) {
@@ -32,4 +32,4 @@ void ProgressLine::draw(std::string_view text) {
     drawn_ = true;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

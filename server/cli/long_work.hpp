@@ -5,7 +5,8 @@
 
 namespace aeolis::server {
 
-/// Set by the first Ctrl-C, or by SIGTERM, once stop_at_interrupt() was called: work that takes long then ends with what is whole.
+/// Set by the first Ctrl-C, or by SIGTERM, once stop_at_interrupt() was called: work that takes long then ends with
+/// what is whole.
 std::atomic<bool>& stop_asked();
 /// The second Ctrl-C ends the program.
 void stop_at_interrupt();
@@ -25,4 +26,4 @@ class ProgressLine {
     bool drawn_ = false;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

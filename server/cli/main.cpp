@@ -16,9 +16,9 @@ namespace {
 
 using namespace aeolis::server;
 
-constexpr std::uint64_t campaign_cases_max = 10'000'000; // ours: a month on many processors
-constexpr std::size_t decode_skip_max = 65536;           // ours
-constexpr unsigned campaign_jobs_max = 256;              // ours: each holds a landing
+constexpr std::uint64_t campaign_cases_max = 10'000'000;  // ours: a month on many processors
+constexpr std::size_t decode_skip_max = 65536;            // ours
+constexpr unsigned campaign_jobs_max = 256;               // ours: each holds a landing
 
 void add_shared(CLI::App& command, SharedOptions& shared) {
     command.add_option("--dictionary", shared.dictionary, "the mission's words")->capture_default_str();
@@ -36,17 +36,19 @@ CLI::Validator whole_number() {
 
 /// @return the options, of which any may need another
 std::array<CLI::Option*, 3> add_stream_format(CLI::App& command, DownlinkForm& format) {
-    return {command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
-            command.add_option("--skip", format.skip, "octets without meaning before each packet, TM or AOS frame")
-                ->check(whole_number())
-                ->check(CLI::Range(std::size_t{0}, decode_skip_max))
-                ->capture_default_str(),
-            command.add_option("--frame-octets", format.frame_octets, "of a TM or AOS frame; left out: found by trying")
-                ->check(whole_number())
-                ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
+    return {
+        command.add_option("--format", format.name, "packets, tm, aos, cadu or pltu")->capture_default_str(),
+        command.add_option("--skip", format.skip, "octets without meaning before each packet, TM or AOS frame")
+            ->check(whole_number())
+            ->check(CLI::Range(std::size_t{0}, decode_skip_max))
+            ->capture_default_str(),
+        command.add_option("--frame-octets", format.frame_octets, "of a TM or AOS frame; left out: found by trying")
+            ->check(whole_number())
+            ->check(CLI::Range(std::size_t{9}, std::size_t{65536}))};
 }
 
-/// Each option also stands in an environment variable of its name: --log-level in AEOLIS_LOG_LEVEL. Not --config, which is read before.
+/// Each option also stands in an environment variable of its name: --log-level in AEOLIS_LOG_LEVEL. Not --config, which
+/// is read before.
 void name_environment(CLI::App& command) {
     for (auto* option : command.get_options()) {
         const auto& name = option->get_lnames().front();
@@ -62,7 +64,8 @@ std::optional<std::filesystem::path> settings_given(int argc, char** argv) {
     for (int i = 2; i < argc; ++i) {
         const std::string_view word = argv[i];
         if (word == option && i + 1 < argc) return argv[i + 1];
-        if (word.starts_with(option) && word.substr(option.size()).starts_with('=')) return word.substr(option.size() + 1);
+        if (word.starts_with(option) && word.substr(option.size()).starts_with('='))
+            return word.substr(option.size() + 1);
     }
     return std::nullopt;
 }
@@ -72,11 +75,14 @@ aeolis::Result<void> take_settings(CLI::App& command, const std::filesystem::pat
     std::ifstream in{file};
     if (!in) return aeolis::Error{file.string() + " cannot be read"};
     CLI::ConfigINI reader;
-    reader.arrayBounds('\x01', '\x01'); // else it splits a value at commas and blanks: whoever reads the option does, where it has several
+    reader.arrayBounds(
+        '\x01',
+        '\x01');  // else it splits a value at commas and blanks: whoever reads the option does, where it has several
     for (const auto& item : reader.from_config(in)) {
         auto* option = item.name == "config" ? nullptr : command.get_option_no_throw("--" + item.name);
         if (option == nullptr || item.inputs.size() != 1)
-            return aeolis::Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(), item.fullname(), command.get_name())};
+            return aeolis::Error{fmt::format("{}: '{}' is no option of aeolis {} with one value", file.string(),
+                                             item.fullname(), command.get_name())};
         try {
             option->run_callback_for_default()->default_val(item.inputs.front());
         } catch (const CLI::Error& error) {
@@ -86,7 +92,7 @@ aeolis::Result<void> take_settings(CLI::App& command, const std::filesystem::pat
     return {};
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv) {
     spdlog::set_default_logger(spdlog::stderr_color_mt("aeolis"));
@@ -102,18 +108,30 @@ int main(int argc, char** argv) {
     ServeOptions serving;
     serving.shared = {shipped("dictionaries/msl"), shipped("simulation/scenarios")};
     serving.web = shipped("web/dist");
-    auto* serve_command = app.add_subcommand(
-        "serve", "the console backend: open the address it prints in a browser.\n"
-                 "Each option can also stand in a file (--config), a line each without its dashes: archive=/var/lib/aeolis/aeolis.db.\n"
-                 "What the command line says counts first, then the environment variable named beside an option, then the file.");
+    auto* serve_command = app.add_subcommand("serve", "the console backend: open the address it prints in a browser.\n"
+                                                      "Each option can also stand in a file (--config), a line each "
+                                                      "without its dashes: archive=/var/lib/aeolis/aeolis.db.\n"
+                                                      "What the command line says counts first, then the environment "
+                                                      "variable named beside an option, then the file.");
     std::filesystem::path settings;
     serve_command->add_option("--config", settings, "the file of options");
-    serve_command->add_option("--listen", serving.listen, "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")->capture_default_str();
-    serve_command->add_option("--accounts", serving.accounts, "the file of users and tokens, made at the first start; left out: no log-in, on loopback only");
-    serve_command->add_option("--tls-certificate", serving.certificate, "PEM file with the server's certificate and its chain: then https only");
+    serve_command
+        ->add_option(
+            "--listen", serving.listen,
+            "ADDRESS:PORT; port 0 takes a free one. An address that other machines reach needs --accounts and TLS")
+        ->capture_default_str();
+    serve_command->add_option(
+        "--accounts", serving.accounts,
+        "the file of users and tokens, made at the first start; left out: no log-in, on loopback only");
+    serve_command->add_option("--tls-certificate", serving.certificate,
+                              "PEM file with the server's certificate and its chain: then https only");
     serve_command->add_option("--tls-key", serving.key, "PEM file with its private key");
-    serve_command->add_option("--host", serving.names, "names by which browsers call this server, with commas between; loopback names always count")->delimiter(',');
-    serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")->capture_default_str();
+    serve_command
+        ->add_option("--host", serving.names,
+                     "names by which browsers call this server, with commas between; loopback names always count")
+        ->delimiter(',');
+    serve_command->add_option("--archive", serving.archive, "the SQLite file that keeps everything")
+        ->capture_default_str();
     serve_command->add_option("--web", serving.web, "directory of the built console")->capture_default_str();
     serve_command->add_option("--log-level", serving.log_level, "what goes to standard error")
         ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
@@ -123,19 +141,23 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     auto* scenario_option = serve_command->add_option("--scenario", serving.scenario,
                                                       "start this rehearsal at once: a file, or a name that ships");
-    auto* downlink = serve_command
-                         ->add_option("--downlink", serving.downlink,
-                                      "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and again "
-                                      "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
-                                      "--format packets each datagram holds whole packets). What comes is a run of its own: "
-                                      "its packets and their numbers, as channels, are in stream, archive and API")
-                         ->excludes(scenario_option);
-    auto* xtce = serve_command->add_option("--xtce", serving.xtce,
-                                           "that mission's XTCE file; what in it is not supported is named with its line")
+    auto* downlink =
+        serve_command
+            ->add_option("--downlink", serving.downlink,
+                         "follow another mission instead of rehearsing: tcp://HOST:PORT connects, and again "
+                         "after every end, waiting longer each time up to 30 s; udp://HOST:PORT listens (with "
+                         "--format packets each datagram holds whole packets). What comes is a run of its own: "
+                         "its packets and their numbers, as channels, are in stream, archive and API")
+            ->excludes(scenario_option);
+    auto* xtce = serve_command
+                     ->add_option("--xtce", serving.xtce,
+                                  "that mission's XTCE file; what in it is not supported is named with its line")
                      ->needs(downlink);
     downlink->needs(xtce);
     for (auto* option : add_stream_format(*serve_command, serving.format)) option->needs(downlink);
-    serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")->check(whole_number())->capture_default_str();
+    serve_command->add_option("--seed", serving.seed, "of that rehearsal's errors")
+        ->check(whole_number())
+        ->capture_default_str();
     serve_command->add_option("--pace", serving.pace, "of that rehearsal: 1 … 1000, 0 as fast as it goes")
         ->check(CLI::Validator{[](std::string& text) {
                                    const double pace = std::strtod(text.c_str(), nullptr);
@@ -154,12 +176,15 @@ int main(int argc, char** argv) {
     auto* rehearse_command = app.add_subcommand("rehearse", "one landing, without a console, as fast as it goes");
     rehearse_command->add_option("--scenario", rehearsing.scenario, "a file, or the name of one that ships")
         ->required();
-    rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")->check(whole_number())->capture_default_str();
+    rehearse_command->add_option("--seed", rehearsing.seed, "of the errors")
+        ->check(whole_number())
+        ->capture_default_str();
     rehearse_command->add_option("--case", rehearsing.case_number, "another draw of the errors under the same seed")
         ->check(whole_number())
         ->capture_default_str();
     rehearse_command->add_option("--archive", rehearsing.archive, "store everything in this SQLite file");
-    rehearse_command->add_option("--truth", rehearsing.truth, "write what really flew, 16 rows a second, to this CSV file");
+    rehearse_command->add_option("--truth", rehearsing.truth,
+                                 "write what really flew, 16 rows a second, to this CSV file");
     rehearse_command->add_flag("--json", rehearsing.json, "print one JSON object");
     add_shared(*rehearse_command, rehearsing.shared);
     rehearse_command->callback([&] { exit_code = rehearse(rehearsing); });
@@ -206,26 +231,29 @@ int main(int argc, char** argv) {
     modules_command->callback([&] { exit_code = modules(counting); });
 
     DecodeOptions decoding;
-    auto* decode_command = app.add_subcommand(
-        "decode", "any mission's packets by its XTCE file; 1 when not every octet could be decoded");
+    auto* decode_command =
+        app.add_subcommand("decode", "any mission's packets by its XTCE file; 1 when not every octet could be decoded");
     decode_command->add_option("--xtce", decoding.xtce, "the mission's XTCE file, 1.0 to 1.3")->required();
     decode_command->add_option("--packets", decoding.packets, "the file of packets or frames")->required();
     add_stream_format(*decode_command, decoding.format);
     auto* leap_seconds = decode_command->add_option(
         "--lsk", decoding.leap_seconds, "leap seconds, a SPICE text kernel: packets' time in GPS or TAI becomes UTC");
-    auto* clock_kernel = decode_command
-                             ->add_option("--sclk", decoding.clock_kernel,
-                                          "the spacecraft's clock, a SPICE text kernel of type 1: packets' time becomes SCET, "
-                                          "UTC as 2012-219T05:17:57.123")
-                             ->needs(leap_seconds);
-    decode_command->add_option("--partition", decoding.partition, "of the clock; left out: the first that holds the count")
+    auto* clock_kernel =
+        decode_command
+            ->add_option("--sclk", decoding.clock_kernel,
+                         "the spacecraft's clock, a SPICE text kernel of type 1: packets' time becomes SCET, "
+                         "UTC as 2012-219T05:17:57.123")
+            ->needs(leap_seconds);
+    decode_command
+        ->add_option("--partition", decoding.partition, "of the clock; left out: the first that holds the count")
         ->check(whole_number())
         ->needs(clock_kernel);
-    decode_command->add_flag("--csv", decoding.csv,
-                             "a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each. Time is the first "
-                             "absolute time in the packet, seconds since its epoch (UNIX: as UTC); where the XTCE file "
-                             "has none, the two numbers right behind the primary header when their names hold 'coarse' "
-                             "and 'fine': counts and their binary fraction (CUC). Else it is empty");
+    decode_command->add_flag(
+        "--csv", decoding.csv,
+        "a row a packet: index, APID, count, time, then NAME=RAW|CALIBRATED each. Time is the first "
+        "absolute time in the packet, seconds since its epoch (UNIX: as UTC); where the XTCE file "
+        "has none, the two numbers right behind the primary header when their names hold 'coarse' "
+        "and 'fine': counts and their binary fraction (CUC). Else it is empty");
     decode_command->callback([&] { exit_code = decode(decoding); });
 
     auto* dictionary_command = app.add_subcommand("dictionary", "the mission's words")->require_subcommand(1);
@@ -238,8 +266,9 @@ int main(int argc, char** argv) {
     diagram->callback([&] { exit_code = dictionary_diagram(checked); });
     std::filesystem::path export_to;
     auto* exported = dictionary_command->add_subcommand(
-        "export", "the whole dictionary as one XTCE 1.2 file: packets and commands, and the spreadsheets as ancillary data; "
-                  "it can be given wherever a dictionary's directory can");
+        "export",
+        "the whole dictionary as one XTCE 1.2 file: packets and commands, and the spreadsheets as ancillary data; "
+        "it can be given wherever a dictionary's directory can");
     exported->add_option("DIR", checked, "the dictionary's directory, or such a file")->capture_default_str();
     exported->add_option("--out", export_to, "the file to write; left out: standard output");
     exported->callback([&] { exit_code = dictionary_export(checked, export_to); });
@@ -289,13 +318,18 @@ int main(int argc, char** argv) {
     simulate->add_option("--from", sending.from_s, "time of the first sample [s]");
     simulate->add_option("--length", sending.length_s, "[s]");
     simulate->add_option("--c-n0", sending.c_n0_dbhz, "total power to noise density [dB-Hz]")->capture_default_str();
-    simulate->add_option("--seed", sending.seed, "of the noise, and of the landing")->check(whole_number())->capture_default_str();
-    simulate->add_option("--case", sending.case_number, "of the landing's errors")->check(whole_number())->capture_default_str();
+    simulate->add_option("--seed", sending.seed, "of the noise, and of the landing")
+        ->check(whole_number())
+        ->capture_default_str();
+    simulate->add_option("--case", sending.case_number, "of the landing's errors")
+        ->check(whole_number())
+        ->capture_default_str();
     add_shared(*simulate, sending.shared);
     simulate->callback([&] { exit_code = tones_simulate(sending); });
     TonesBenchOptions measuring;
     measuring.shared = serving.shared;
-    auto* measured = tones_command->add_subcommand("bench", "the receiver's figures beside theory; 1 when a goal is missed");
+    auto* measured =
+        tones_command->add_subcommand("bench", "the receiver's figures beside theory; 1 when a goal is missed");
     measured->add_flag("--full", measuring.full, "the points that take long, too");
     add_shared(*measured, measuring.shared);
     measured->callback([&] { exit_code = tones_bench(measuring); });
@@ -309,72 +343,101 @@ int main(int argc, char** argv) {
     const auto add_archive_words = [&](CLI::App& command, ArchiveOptions& options) {
         add_archive(command, options.archive);
         command.add_option("--dictionary", options.shared.dictionary, "the mission's words")->capture_default_str();
-        command.add_option("--xtce", options.xtce, "the XTCE file of the mission that was followed, where it was not ours");
+        command.add_option("--xtce", options.xtce,
+                           "the XTCE file of the mission that was followed, where it was not ours");
     };
     const auto add_selection = [&](CLI::App& command, ExportOptions& options) {
         add_archive_words(command, options.of);
         command.add_option("--run", options.of.run, "number of the run")->required()->check(whole_number());
-        command.add_option("--channel,--channels", options.channels, "names or aliases, several in a row or with commas between; left out: all")->delimiter(',');
+        command
+            .add_option("--channel,--channels", options.channels,
+                        "names or aliases, several in a row or with commas between; left out: all")
+            ->delimiter(',');
         command.add_option("--from", options.from_s, "first SCLK [s]; left out: all");
         command.add_option("--to", options.to_s, "last SCLK [s]; left out: all");
     };
-    auto* export_command = app.add_subcommand("export", "a run's samples in order of SCLK, live and recorded as one series: a row a "
-                                                        "sample, in the same memory however many");
+    auto* export_command =
+        app.add_subcommand("export", "a run's samples in order of SCLK, live and recorded as one series: a row a "
+                                     "sample, in the same memory however many");
     add_selection(*export_command, exporting);
-    auto* lines = export_command->add_option("--format", exporting.format, "csv or jsonl")->check(CLI::IsMember({"csv", "jsonl"}))->capture_default_str();
+    auto* lines = export_command->add_option("--format", exporting.format, "csv or jsonl")
+                      ->check(CLI::IsMember({"csv", "jsonl"}))
+                      ->capture_default_str();
     export_command->add_flag("--csv")->description("as CSV, which is what it is without a word, too")->excludes(lines);
-    export_command->add_option("--align", exporting.align, "a line an instant and a column a channel: at the times of this one of the channels, "
-                                                           "or at multiples of so many seconds; of each the newest value");
+    export_command->add_option("--align", exporting.align,
+                               "a line an instant and a column a channel: at the times of this one of the channels, "
+                               "or at multiples of so many seconds; of each the newest value");
     export_command->add_option("--out", exporting.out, "a new file; left out: standard output");
     export_command->callback([&] { exit_code = export_samples(exporting); });
 
     SendOptions sending_file;
-    auto* send_command = app.add_subcommand("send", "sends a command file to a server: all of its commands are checked before the first goes, and "
-                                                    "when one is refused none goes; a line a command, 1 when nothing was sent, 3 when no answer says whether it was");
-    send_command->add_option("--file", sending_file.file, "JSON, as POST /api/v1/runs/{run}/sequences takes it")->required();
-    send_command->add_option("--server", sending_file.server, "http://HOST:PORT or https://HOST:PORT")->envname("AEOLIS_SERVER")->capture_default_str();
-    send_command->add_option("--token", sending_file.token, "of a server with accounts, over https or to this machine; others can read a command line, but not AEOLIS_TOKEN")->envname("AEOLIS_TOKEN");
-    send_command->add_option("--authorities", sending_file.authorities, "PEM file of who may have signed the server's certificate; left out: the system's");
-    send_command->add_option("--by", sending_file.by, "who asks, where the file does not say it and the server has no accounts");
-    send_command->add_option("--run", sending_file.run, "only if this one goes on; left out: the one that goes on")->check(whole_number());
+    auto* send_command = app.add_subcommand(
+        "send", "sends a command file to a server: all of its commands are checked before the first goes, and "
+                "when one is refused none goes; a line a command, 1 when nothing was sent, 3 when no answer says "
+                "whether it was");
+    send_command->add_option("--file", sending_file.file, "JSON, as POST /api/v1/runs/{run}/sequences takes it")
+        ->required();
+    send_command->add_option("--server", sending_file.server, "http://HOST:PORT or https://HOST:PORT")
+        ->envname("AEOLIS_SERVER")
+        ->capture_default_str();
+    send_command
+        ->add_option("--token", sending_file.token,
+                     "of a server with accounts, over https or to this machine; others can read a command line, but "
+                     "not AEOLIS_TOKEN")
+        ->envname("AEOLIS_TOKEN");
+    send_command->add_option("--authorities", sending_file.authorities,
+                             "PEM file of who may have signed the server's certificate; left out: the system's");
+    send_command->add_option("--by", sending_file.by,
+                             "who asks, where the file does not say it and the server has no accounts");
+    send_command->add_option("--run", sending_file.run, "only if this one goes on; left out: the one that goes on")
+        ->check(whole_number());
     send_command->add_flag("--dry-run", sending_file.dry_run, "only say what would happen");
     send_command->callback([&] { exit_code = send(sending_file); });
 
     ReportOptions reporting{exporting.of};
-    auto* report_command = app.add_subcommand(
-        "report", "a run as it was flown: when each timepoint and event came by plan, tone, UHF and recording, what was silent, and the proof");
+    auto* report_command =
+        app.add_subcommand("report", "a run as it was flown: when each timepoint and event came by plan, tone, UHF and "
+                                     "recording, what was silent, and the proof");
     add_archive(*report_command, reporting.of.archive);
-    report_command->add_option("--dictionary", reporting.of.shared.dictionary, "the mission's words")->capture_default_str();
+    report_command->add_option("--dictionary", reporting.of.shared.dictionary, "the mission's words")
+        ->capture_default_str();
     report_command->add_option("--run", reporting.of.run, "number of the run")->required()->check(whole_number());
     auto* as_object = report_command->add_flag("--json", reporting.json, "print one JSON object");
-    report_command->add_flag("--csv", reporting.csv, "print its timepoints and events, a row each")->excludes(as_object);
+    report_command->add_flag("--csv", reporting.csv, "print its timepoints and events, a row each")
+        ->excludes(as_object);
     report_command->callback([&] { exit_code = report(reporting); });
 
     AccountsOptions keeping;
-    auto* accounts_command = app.add_subcommand("accounts", "who may use a server: its file of accounts, by hand")->require_subcommand(1);
+    auto* accounts_command =
+        app.add_subcommand("accounts", "who may use a server: its file of accounts, by hand")->require_subcommand(1);
     auto* listed = accounts_command->add_subcommand("list", "users and tokens with their roles");
     listed->add_option("--accounts", keeping.file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
     listed->callback([&] { exit_code = accounts_list(keeping); });
     auto* reset = accounts_command->add_subcommand(
-        "reset", "a new password for a user who has lost theirs, or a new administrator; a server that runs takes it over");
+        "reset",
+        "a new password for a user who has lost theirs, or a new administrator; a server that runs takes it over");
     reset->add_option("--accounts", keeping.file, "the file")->required()->envname("AEOLIS_ACCOUNTS");
     reset->add_option("--user", keeping.user, "the name")->required();
     reset->callback([&] { exit_code = accounts_reset(keeping); });
 
-    auto* archive_command = app.add_subcommand("archive", "what is done to an archive now and then")->require_subcommand(1);
+    auto* archive_command =
+        app.add_subcommand("archive", "what is done to an archive now and then")->require_subcommand(1);
     ArchiveOptions kept = exporting.of;
-    auto* verify = archive_command->add_subcommand(
-        "verify", "the file's structure, sequence numbers, and every derived row against the raw units, a line a fault; 1 when there is one");
+    auto* verify =
+        archive_command->add_subcommand("verify", "the file's structure, sequence numbers, and every derived row "
+                                                  "against the raw units, a line a fault; 1 when there is one");
     add_archive_words(*verify, kept);
     verify->add_option("--run", kept.run, "only this one")->check(whole_number());
     verify->callback([&] { exit_code = archive_verify(kept); });
-    auto* rebuild = archive_command->add_subcommand(
-        "rebuild", "makes everything that follows from the raw units again and puts it in place of what is there; no writer may go on");
+    auto* rebuild =
+        archive_command->add_subcommand("rebuild", "makes everything that follows from the raw units again and puts it "
+                                                   "in place of what is there; no writer may go on");
     add_archive_words(*rebuild, kept);
     rebuild->add_option("--run", kept.run, "only this one")->check(whole_number());
     rebuild->callback([&] { exit_code = archive_rebuild(kept); });
     ExportOptions tabulating = exporting;
-    auto* samples = archive_command->add_subcommand("samples", "a run's samples as rows of an SQLite file, for questions in plain SQL");
+    auto* samples = archive_command->add_subcommand(
+        "samples", "a run's samples as rows of an SQLite file, for questions in plain SQL");
     add_selection(*samples, tabulating);
     samples->add_option("--out", tabulating.out, "the new file")->required();
     samples->callback([&] { exit_code = archive_samples(tabulating); });
@@ -382,15 +445,20 @@ int main(int argc, char** argv) {
     pruning.archive = serving.archive;
     auto* prune = archive_command->add_subcommand("prune", "takes runs away; without --yes it says which");
     add_archive(*prune, pruning.archive);
-    auto* gone = prune->add_option("--run", pruning.runs, "numbers, with commas between")->delimiter(',')->check(whole_number());
-    prune->add_option("--keep", pruning.keep, "so many of the newest runs stay, all others go")->check(whole_number())->excludes(gone);
+    auto* gone =
+        prune->add_option("--run", pruning.runs, "numbers, with commas between")->delimiter(',')->check(whole_number());
+    prune->add_option("--keep", pruning.keep, "so many of the newest runs stay, all others go")
+        ->check(whole_number())
+        ->excludes(gone);
     prune->add_flag("--yes", pruning.yes, "do it");
     prune->callback([&] { exit_code = archive_prune(pruning); });
-    auto* vacuum = archive_command->add_subcommand("vacuum", "gives the room of pruned runs back to the disk; needs as much again meanwhile");
+    auto* vacuum = archive_command->add_subcommand(
+        "vacuum", "gives the room of pruned runs back to the disk; needs as much again meanwhile");
     add_archive(*vacuum, pruning.archive);
     vacuum->callback([&] { exit_code = archive_vacuum(pruning.archive); });
     std::filesystem::path backup_to;
-    auto* backup = archive_command->add_subcommand("backup", "the whole archive, as it is now, into a new file; a writer goes on meanwhile");
+    auto* backup = archive_command->add_subcommand(
+        "backup", "the whole archive, as it is now, into a new file; a writer goes on meanwhile");
     add_archive(*backup, pruning.archive);
     backup->add_option("--out", backup_to, "the new file")->required();
     backup->callback([&] { exit_code = archive_backup(pruning.archive, backup_to); });
@@ -398,10 +466,11 @@ int main(int argc, char** argv) {
     try {
         if (argc > 1 && std::string_view{argv[1]} == "serve")
             if (const auto given = settings_given(argc, argv))
-                if (const auto taken = take_settings(*serve_command, *given); !taken) return failed(taken.error().message, 2);
+                if (const auto taken = take_settings(*serve_command, *given); !taken)
+                    return failed(taken.error().message, 2);
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error); // --help, --version
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         const auto is_first = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
         const bool is_option = argc > 1 && argv[1][0] == '-';
         if (is_option) return failed(fmt::format("there is no option '{}' (aeolis --help)", argv[1]), 2);

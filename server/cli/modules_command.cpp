@@ -19,12 +19,13 @@ int modules(const ModulesOptions& options) {
         rehearsal.take_stages();
     }
     if (flow->cycles() == 0)
-        return failed(fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario.test_venue)));
+        return failed(
+            fmt::format("{}: no computer runs in the test venue {}", options.scenario, name_of(scenario.test_venue)));
     if (rehearsal.outcome() != "touchdown")
-        return failed(fmt::format("{}: the landing that is counted ended as {} {}", options.scenario, rehearsal.outcome(),
-                                  rehearsal.outcome_reason()));
+        return failed(fmt::format("{}: the landing that is counted ended as {} {}", options.scenario,
+                                  rehearsal.outcome(), rehearsal.outcome_reason()));
     fmt::print("{}", flow->document(fmt::format("`{}`, seed {}", scenario.name, options.seed)));
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

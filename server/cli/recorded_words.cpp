@@ -5,7 +5,8 @@
 
 namespace aeolis::server {
 
-std::optional<RecordedWords> recorded_words(const std::filesystem::path& dictionary, const std::filesystem::path& xtce, int& exit_code) {
+std::optional<RecordedWords> recorded_words(const std::filesystem::path& dictionary, const std::filesystem::path& xtce,
+                                            int& exit_code) {
     RecordedWords words;
     if (!xtce.empty()) {
         auto file = read_xtce_file(xtce);
@@ -26,4 +27,4 @@ std::optional<RecordedWords> recorded_words(const std::filesystem::path& diction
     return words;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

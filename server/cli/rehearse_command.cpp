@@ -16,7 +16,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::size_t delivery_entries = 512; // ours: some 60 KB a hand-over
+constexpr std::size_t delivery_entries = 512;  // ours: some 60 KB a hand-over
 
 Result<std::unique_ptr<PipelineThread>> opened_archive(const std::filesystem::path& file,
                                                        const dictionary::Dictionary& dictionary) {
@@ -36,7 +36,8 @@ class TruthFile {
     Result<void> open(const std::filesystem::path& file) {
         file_ = file;
         rows_.open(file, std::ios::binary);
-        rows_ << "e_s,altitude_m,speed_mps,flight_path_deg,latitude_deg,longitude_deg,sensed_mps2,bank_deg,angle_of_attack_deg,"
+        rows_ << "e_s,altitude_m,speed_mps,flight_path_deg,latitude_deg,longitude_deg,sensed_mps2,bank_deg,angle_of_"
+                 "attack_deg,"
                  "mach,dynamic_pressure_Pa,thrust_N,mass_kg\n";
         return state();
     }
@@ -50,11 +51,11 @@ class TruthFile {
         const double radius_m = std::hypot(p[0], p[1], p[2]);
         const double climb_mps = (v[0] * p[0] + v[1] * p[1] + v[2] * p[2]) / radius_m;
         constexpr double degree = std::numbers::pi / 180.0;
-        rows_ << fmt::format("{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
-                             truth.altitude_m, truth.speed_mps, std::asin(std::clamp(climb_mps / truth.speed_mps, -1.0, 1.0)) / degree,
-                             std::asin(p[2] / radius_m) / degree, std::atan2(p[1], p[0]) / degree, truth.sensed_mps2,
-                             seen.bank_deg, seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N,
-                             seen.mass_kg);
+        rows_ << fmt::format(
+            "{:.6f},{:.3f},{:.4f},{:.4f},{:.6f},{:.6f},{:.4f},{:.3f},{:.3f},{:.4f},{:.3f},{:.1f},{:.3f}\n", truth.e_s,
+            truth.altitude_m, truth.speed_mps, std::asin(std::clamp(climb_mps / truth.speed_mps, -1.0, 1.0)) / degree,
+            std::asin(p[2] / radius_m) / degree, std::atan2(p[1], p[0]) / degree, truth.sensed_mps2, seen.bank_deg,
+            seen.angle_of_attack_deg, seen.mach, seen.dynamic_pressure_Pa, seen.thrust_N, seen.mass_kg);
     }
     Result<void> close() {
         if (rows_.is_open()) rows_.close();
@@ -83,8 +84,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
         delivery.add(rehearsal.step());
         delivery.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
         truth.add(rehearsal.landing());
-        for (auto& stage : rehearsal.take_stages())
-            delivery.entries.emplace_back(std::move(stage));
+        for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
         if (delivery.entries.size() >= delivery_entries && !hand_over()) return Error{pipeline.fault()};
     }
     delivery.links = rehearsal.link_totals();
@@ -92,7 +92,7 @@ Result<void> fly_archived(Rehearsal& rehearsal, TruthFile& truth, PipelineThread
     return pipeline.finish({rehearsal.outcome(), rehearsal.outcome_reason(), rehearsal.digest(), wall_clock_text()});
 }
 
-} // namespace
+}  // namespace
 
 int rehearse(const RehearseOptions& options) {
     const auto ready = flyable(options.shared, options.scenario);
@@ -130,4 +130,4 @@ int rehearse(const RehearseOptions& options) {
     return rehearsal.outcome() == "touchdown" ? 0 : 1;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

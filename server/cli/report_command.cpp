@@ -19,11 +19,14 @@ std::string from_entry(bool known, double e_s) {
 }
 
 void print_timepoints(const v1::AsFlownReport& report) {
-    fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "predicted", "by tone", "by UHF", "recorded", "margin", "verdict");
+    fmt::print("\n{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", "timepoint", "planned", "predicted", "by tone",
+               "by UHF", "recorded", "margin", "verdict");
     for (const auto& row : report.timepoints())
-        fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(), from_entry(row.has_planned_e_s(), row.planned_e_s()),
+        fmt::print("{:<28}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}  {}\n", row.name(),
+                   from_entry(row.has_planned_e_s(), row.planned_e_s()),
                    from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
-                   from_entry(row.has_tone_e_s(), row.tone_e_s()), from_entry(row.has_realtime_e_s(), row.realtime_e_s()),
+                   from_entry(row.has_tone_e_s(), row.tone_e_s()),
+                   from_entry(row.has_realtime_e_s(), row.realtime_e_s()),
                    from_entry(row.has_recorded_e_s(), row.recorded_e_s()),
                    row.has_margin_s() ? fmt::format("{:.1f} s", row.margin_s()) : "-", row.verdict());
     fmt::print("Predicted: at entry interface, by the timeline's rule over the anchors that ground had then.\n");
@@ -34,8 +37,10 @@ void print_timepoints(const v1::AsFlownReport& report) {
 void print_events(const v1::AsFlownReport& report) {
     fmt::print("\n{:<30}{:>10}{:>10}{:>10}  {}\n", "event", "predicted", "by UHF", "recorded", "as flight reported it");
     for (const auto& row : report.events())
-        fmt::print("{:<30}{:>10}{:>10}{:>10}  {}\n", row.name(), from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
-                   from_entry(row.has_realtime_e_s(), row.realtime_e_s()), from_entry(row.has_recorded_e_s(), row.recorded_e_s()), row.text());
+        fmt::print("{:<30}{:>10}{:>10}{:>10}  {}\n", row.name(),
+                   from_entry(row.has_predicted_e_s(), row.predicted_e_s()),
+                   from_entry(row.has_realtime_e_s(), row.realtime_e_s()),
+                   from_entry(row.has_recorded_e_s(), row.recorded_e_s()), row.text());
 }
 
 void print_links(const v1::AsFlownReport& report) {
@@ -58,10 +63,11 @@ void print_proof(const v1::ProofReport& proof) {
         all.set_never_seen_live(all.never_seen_live() + row.never_seen_live());
         all.set_pending(all.pending() + row.pending());
     }
-    fmt::print("\nOf {} packets seen live {} are in the recording bit for bit, {} differ, {} are missing in it, {} wait for it; "
+    fmt::print("\nOf {} packets seen live {} are in the recording bit for bit, {} differ, {} are missing in it, {} "
+               "wait for it; "
                "{} were never seen live.{}\n",
-               all.realtime(), all.identical(), all.differs(), all.missing_in_recording(), all.pending(), all.never_seen_live(),
-               proof.recording_complete() ? "" : " The recording is not complete.");
+               all.realtime(), all.identical(), all.differs(), all.missing_in_recording(), all.pending(),
+               all.never_seen_live(), proof.recording_complete() ? "" : " The recording is not complete.");
 }
 
 /// A note on one line: what a terminal would obey is shown as a space.
@@ -78,7 +84,7 @@ void print_notes(const v1::AsFlownReport& report) {
     }
 }
 
-} // namespace
+}  // namespace
 
 int report(const ReportOptions& options) {
     int exit_code = 0;
@@ -105,10 +111,11 @@ int report(const ReportOptions& options) {
     for (const auto& command : report->commands())
         if (command.stages_size() > 0) {
             const auto& last = command.stages(command.stages_size() - 1).command_stage();
-            fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(), last.stage(), last.status(), last.evidence());
+            fmt::print("Command {} {}: {} {}, {}\n", command.command(), command.name(), last.stage(), last.status(),
+                       last.evidence());
         }
     print_notes(*report);
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -32,7 +32,8 @@ std::string of_one(const v1::CommandReply& reply) {
     std::string text = reply.command() == 0 ? "would be taken" : fmt::format("is command {}", reply.command());
     text += fmt::format(", {} octets", reply.octets().size() / 2);
     if (!reply.arrives().empty()) text += fmt::format(", at the vehicle {} SCET", reply.arrives());
-    if (!reply.latest_useful().empty()) text += fmt::format(", to leave by {} ERT to be there before {}", reply.latest_useful(), reply.useful_before());
+    if (!reply.latest_useful().empty())
+        text += fmt::format(", to leave by {} ERT to be there before {}", reply.latest_useful(), reply.useful_before());
     if (!reply.reason().empty()) text += ", " + reply.reason();
     if (reply.needs_approval()) text += ", waits for a second person";
     return text;
@@ -43,32 +44,43 @@ constexpr int exit_not_known = 3;
 /// The server may have taken all of the file or nothing.
 int perhaps_taken(const v1::CommandSequence& sequence, const std::string& why, const SendOptions& options) {
     if (sequence.dry_run()) return failed("send: a dry run, nothing was sent: " + why);
-    return failed(fmt::format("send: {}: it is not known whether the commands were taken: look at the history before you send them again "
-                              "(GET /api/v1/runs/{}/commands, or the console's)", why, options.run ? std::to_string(*options.run) : "latest"),
-                  exit_not_known);
+    return failed(
+        fmt::format(
+            "send: {}: it is not known whether the commands were taken: look at the history before you send them again "
+            "(GET /api/v1/runs/{}/commands, or the console's)",
+            why, options.run ? std::to_string(*options.run) : "latest"),
+        exit_not_known);
 }
 
-} // namespace
+}  // namespace
 
 int send(const SendOptions& options) {
     const auto sequence = sequence_of(options);
     if (!sequence) return failed("send: " + sequence.error().message, 2);
     const HttpClient client{{.server = options.server, .token = options.token, .authorities = options.authorities}};
-    const auto answer = client.post(fmt::format("/api/v1/runs/{}/sequences", options.run ? std::to_string(*options.run) : "latest"), to_json(*sequence));
+    const auto answer =
+        client.post(fmt::format("/api/v1/runs/{}/sequences", options.run ? std::to_string(*options.run) : "latest"),
+                    to_json(*sequence));
     if (!answer) return failed("send: nothing was sent: " + answer.error().message);
     if (!answer->lost.empty()) return perhaps_taken(*sequence, answer->lost, options);
     v1::SequenceReply reply;
     if (const auto parsed = from_json(answer->body, reply); !parsed) {
         v1::ErrorReply refusal;
-        if (!from_json(answer->body, refusal)) return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status), options);
+        if (!from_json(answer->body, refusal))
+            return perhaps_taken(*sequence, fmt::format("the answer ({}) is not one of Aeolis", answer->status),
+                                 options);
         return failed(fmt::format("send: refused ({}): {}", answer->status, refusal.error()));
     }
     for (int i = 0; i < reply.commands_size() && i < sequence->commands_size(); ++i)
         fmt::print("{:>3}  {}  {}\n", i + 1, sequence->commands(i).command(), of_one(reply.commands(i)));
-    const bool any = std::ranges::any_of(reply.commands(), [](const v1::CommandReply& each) { return each.command() != 0; });
-    if (!reply.accepted()) return failed(fmt::format("send: {}: {}", any ? "the commands with a number were taken, the others not" : "nothing was sent", reply.reason()));
+    const bool any =
+        std::ranges::any_of(reply.commands(), [](const v1::CommandReply& each) { return each.command() != 0; });
+    if (!reply.accepted())
+        return failed(fmt::format("send: {}: {}",
+                                  any ? "the commands with a number were taken, the others not" : "nothing was sent",
+                                  reply.reason()));
     if (sequence->dry_run()) fmt::print("a dry run: nothing was sent\n");
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -44,23 +44,26 @@ std::string what_to_do(const std::optional<simulation::Scenario>& scenario) {
                                       ? "needs no commands: GNC flies alone, without a computer"
                                   : scenario->commands.empty() ? "waits for \"set edl parameters\" and \"do edl\""
                                                                : "sends its own commands";
-    return fmt::format("Open it in a browser: the rehearsal '{}' has begun in the test venue {} and {}.", scenario->name,
-                       name_of(scenario->test_venue), waits_for);
+    return fmt::format("Open it in a browser: the rehearsal '{}' has begun in the test venue {} and {}.",
+                       scenario->name, name_of(scenario->test_venue), waits_for);
 }
 
-constexpr rlim_t files_besides_connections = 256; // ours: the archive from each thread, campaigns, the console's files
+constexpr rlim_t files_besides_connections = 256;  // ours: the archive from each thread, campaigns, the console's files
 
-/// A process begins with 1024 open files mostly, and may take more by itself: all streams and who asks besides need them.
+/// A process begins with 1024 open files mostly, and may take more by itself: all streams and who asks besides need
+/// them.
 void allow_open_files() {
     constexpr rlim_t wanted = WebServer::streams_max + WebServer::connections_besides + files_besides_connections;
     rlimit files{};
     if (::getrlimit(RLIMIT_NOFILE, &files) != 0 || files.rlim_cur >= wanted) return;
     files.rlim_cur = std::min(wanted, files.rlim_max);
     ::setrlimit(RLIMIT_NOFILE, &files);
-    if (files.rlim_cur < wanted) spdlog::warn("this process may have {} files open; all streams, and who asks besides, need {}", files.rlim_cur, wanted);
+    if (files.rlim_cur < wanted)
+        spdlog::warn("this process may have {} files open; all streams, and who asks besides, need {}", files.rlim_cur,
+                     wanted);
 }
 
-} // namespace
+}  // namespace
 
 int serve(const ServeOptions& options) {
     set_log(options);
@@ -74,14 +77,18 @@ int serve(const ServeOptions& options) {
     if (options.downlink) {
         auto address = DownlinkAddress::parse(*options.downlink);
         if (!address) return failed("--downlink " + address.error().message, 2);
-        if (!telemetry::downlink_format(options.format.name)) return failed(packet_source(options.format, {}).error().message, 2);
+        if (!telemetry::downlink_format(options.format.name))
+            return failed(packet_source(options.format, {}).error().message, 2);
         auto xtce = read_xtce_file(options.xtce);
         if (!xtce) return xtce.exit_code;
         other = std::make_unique<telemetry::OtherMission>(std::move(*xtce.model), xtce.id);
         if (other->left_out() > 0)
-            spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only", options.xtce.string());
+            spdlog::warn("{}: more numbers than can be channels: the rest is in the packets only",
+                         options.xtce.string());
         dictionary = other->dictionary();
-        downlink = DownlinkFollower::Settings{.address = *address, .format = options.format, .xtce = options.xtce.filename().string(),
+        downlink = DownlinkFollower::Settings{.address = *address,
+                                              .format = options.format,
+                                              .xtce = options.xtce.filename().string(),
                                               .retry_first = std::chrono::milliseconds{250},
                                               .retry_max = std::chrono::milliseconds{30'000}};
     } else {
@@ -102,27 +109,39 @@ int serve(const ServeOptions& options) {
     sigaddset(&ending, SIGTERM);
     pthread_sigmask(SIG_BLOCK, &ending, nullptr);
 
-    auto backend = ConsoleBackend::open(
-        {.web_server = {.address = listen->address, .port = listen->port, .names = options.names, .certificate = options.certificate, .key = options.key},
-         .accounts = options.accounts, .archive = options.archive, .scenarios = options.shared.scenarios, .web = options.web, .other = other.get()},
-        *dictionary);
+    auto backend = ConsoleBackend::open({.web_server = {.address = listen->address,
+                                                        .port = listen->port,
+                                                        .names = options.names,
+                                                        .certificate = options.certificate,
+                                                        .key = options.key},
+                                         .accounts = options.accounts,
+                                         .archive = options.archive,
+                                         .scenarios = options.shared.scenarios,
+                                         .web = options.web,
+                                         .other = other.get()},
+                                        *dictionary);
     if (!backend) return failed(backend.error().message);
     // At once: whatever fails from here on, this is the only time that it can be read.
     if (const auto& password = (*backend)->first_password(); !password.empty()) {
-        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and only lets you choose a "
-                   "password of your own.\n", options.accounts.string(), password);
+        fmt::print("No accounts yet: {} was made.\n  Log in as administrator with {}\n  It is shown this once, and "
+                   "only lets you choose a "
+                   "password of your own.\n",
+                   options.accounts.string(), password);
         std::fflush(stdout);
     }
     if (downlink)
-        if (auto following = (*backend)->follow(*downlink); !following) return failed("--downlink " + following.error().message);
+        if (auto following = (*backend)->follow(*downlink); !following)
+            return failed("--downlink " + following.error().message);
     if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
 
-    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n", (*backend)->secure() ? "https" : "http",
+    fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n",
+               (*backend)->secure() ? "https" : "http",
                listen->address.find(':') == std::string::npos ? listen->address : '[' + listen->address + ']',
                (*backend)->port(),
                downlink ? "Open it in a browser: it follows " + downlink->address.text() + "." : what_to_do(scenario),
                std::filesystem::absolute(options.archive).lexically_normal().string(),
-               options.accounts.empty() ? "no accounts: whoever uses this machine may command" : "accounts in " + options.accounts.string());
+               options.accounts.empty() ? "no accounts: whoever uses this machine may command"
+                                        : "accounts in " + options.accounts.string());
     std::fflush(stdout);
 
     std::thread waiter{[&] {
@@ -136,4 +155,4 @@ int serve(const ServeOptions& options) {
     return 0;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -13,15 +13,15 @@ std::filesystem::path shipped(const std::string& folder) {
     std::error_code error;
     const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
     // Beside the program, above build/release, where the package puts it, and where it was built from.
-    for (const auto& root : {program, program / "../..", program / "../share/aeolis", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
+    for (const auto& root :
+         {program, program / "../..", program / "../share/aeolis", std::filesystem::path{AEOLIS_SOURCE_DIRECTORY}})
         if (std::filesystem::is_directory(root / folder, error)) return (root / folder).lexically_normal();
     return std::filesystem::path{AEOLIS_SOURCE_DIRECTORY} / folder;
 }
 
 std::optional<dictionary::Dictionary> loaded_dictionary(const std::filesystem::path& directory) {
     auto loaded = dictionary::load(directory);
-    for (const auto& finding : loaded.findings)
-        fmt::print(stderr, "{}\n", finding.text());
+    for (const auto& finding : loaded.findings) fmt::print(stderr, "{}\n", finding.text());
     return std::move(loaded.dictionary);
 }
 
@@ -46,7 +46,8 @@ Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario
     if (!dictionary) return dictionary.error();
     auto read = scenario_given(scenario, shared.scenarios);
     if (!read) return read.error();
-    if (const auto script = check_script(*read, *dictionary); !script) return Error{scenario + ": " + script.error().message};
+    if (const auto script = check_script(*read, *dictionary); !script)
+        return Error{scenario + ": " + script.error().message};
     return Flyable{std::move(*dictionary), std::move(*read)};
 }
 
@@ -55,4 +56,4 @@ int failed(const std::string& message, int exit_code) {
     return exit_code;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

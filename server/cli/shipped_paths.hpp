@@ -34,4 +34,4 @@ Result<Flyable> flyable(const SharedOptions& shared, const std::string& scenario
 /// One line to stderr, "aeolis: …"; returns the exit code.
 int failed(const std::string& message, int exit_code = 1);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -23,24 +23,15 @@ std::string seconds(double value_s) {
 
 std::string_view reason_text(ChainStep::Reason reason) {
     switch (reason) {
-    case ChainStep::Reason::order:
-        return "order of the timeline";
-    case ChainStep::Reason::minimum:
-        return "minimum offset";
-    case ChainStep::Reason::desired:
-        return "desired offset";
-    case ChainStep::Reason::cycle_limit:
-        return "five a cycle";
-    case ChainStep::Reason::reply:
-        return "fires after it is triggered";
-    case ChainStep::Reason::reply_timeout:
-        return "reply or time-out";
-    case ChainStep::Reason::anchor_offset:
-        return "offset of the anchor";
-    case ChainStep::Reason::given:
-        return "given";
-    case ChainStep::Reason::as_soon_as:
-        return "triggered as soon as it may be";
+    case ChainStep::Reason::order: return "order of the timeline";
+    case ChainStep::Reason::minimum: return "minimum offset";
+    case ChainStep::Reason::desired: return "desired offset";
+    case ChainStep::Reason::cycle_limit: return "five a cycle";
+    case ChainStep::Reason::reply: return "fires after it is triggered";
+    case ChainStep::Reason::reply_timeout: return "reply or time-out";
+    case ChainStep::Reason::anchor_offset: return "offset of the anchor";
+    case ChainStep::Reason::given: return "given";
+    case ChainStep::Reason::as_soon_as: return "triggered as soon as it may be";
     }
     return "";
 }
@@ -276,7 +267,7 @@ bool is_folder(const std::filesystem::path& path) {
     return std::filesystem::is_directory(path, error);
 }
 
-} // namespace
+}  // namespace
 
 int timeline_analyse(const TimelineAnalyseOptions& options) {
     if (!is_folder(options.directory))
@@ -307,4 +298,4 @@ int timeline_diff(const TimelineDiffOptions& options) {
     return diff.same() ? 0 : 1;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

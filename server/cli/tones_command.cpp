@@ -31,20 +31,22 @@ void print(const telemetry::ToneReception& heard, const dictionary::Dictionary& 
     }
     std::string best, spectrum;
     for (const auto& each : heard.evidence.best)
-        best += fmt::format("{}{{\"tone\":{},\"likelihood\":{:.6g}}}", best.empty() ? "" : ",", each.tone, each.likelihood);
+        best +=
+            fmt::format("{}{{\"tone\":{},\"likelihood\":{:.6g}}}", best.empty() ? "" : ",", each.tone, each.likelihood);
     for (const std::uint8_t level : heard.evidence.spectrum)
         spectrum += fmt::format("{}{:.1f}", spectrum.empty() ? "" : ",", spectrum_db(level));
     fmt::print("{{\"start_s\":{:.3f},\"tone\":{},\"c_n0_dbhz\":{:.2f},\"doppler_hz\":{:.2f},\"lock\":\"{}\","
                "\"seen_fraction\":{:.3f},\"log_likelihood_ratio\":{:.2f},\"best\":[{}],\"spectrum_db\":[{}]}}\n",
-               heard.start_s, heard.tone ? std::to_string(*heard.tone) : "null", heard.total_c_n0_dbhz, heard.doppler_hz,
-               to_text(heard.lock), heard.seen_fraction, heard.evidence.log_likelihood_ratio, best, spectrum);
+               heard.start_s, heard.tone ? std::to_string(*heard.tone) : "null", heard.total_c_n0_dbhz,
+               heard.doppler_hz, to_text(heard.lock), heard.seen_fraction, heard.evidence.log_likelihood_ratio, best,
+               spectrum);
 }
 
 struct Sending {
     std::vector<simulation::SentTone> tones;
     simulation::XBandPath path;
     double length_s = 0.0;
-    TimeTable expected_hz; ///< Doppler as ground would predict it
+    TimeTable expected_hz;  ///< Doppler as ground would predict it
 };
 
 Result<Sending> sending_of_flight(const TonesSimulateOptions& options, const dictionary::Dictionary& dictionary) {
@@ -81,7 +83,7 @@ Result<Sending> sending_of_files(const TonesSimulateOptions& options, const dict
     return sending;
 }
 
-} // namespace
+}  // namespace
 
 int tones_decode(const TonesDecodeOptions& options) {
     const auto dictionary = loaded_dictionary(options.shared.dictionary);
@@ -117,14 +119,14 @@ int tones_decode(const TonesDecodeOptions& options) {
     if (status.loudest == 0.0)
         return failed(fmt::format("{}: silence, {:.1f} s of it", options.samples.string(), length_s));
     if (status.carrier_s == 0.0)
-        return failed(fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", options.samples.string(), length_s,
-                                  options.rate_hz, options.format));
+        return failed(fmt::format("{}: no carrier within {:.1f} s; rate {} Hz, format {}", options.samples.string(),
+                                  length_s, options.rate_hz, options.format));
     if (symbols == 0 && length_s > dictionary->mfsk.symbol_s)
-        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?", options.samples.string(),
-                                  status.carrier_s, options.rate_hz));
+        return failed(fmt::format("{}: a carrier for {:.1f} s, and no tone on it; is {} Hz its rate?",
+                                  options.samples.string(), status.carrier_s, options.rate_hz));
     if (reader->left_over_octets() > 0)
-        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}", options.samples.string(),
-                                  reader->left_over_octets(), options.format));
+        return failed(fmt::format("{}: {} octets behind the last whole sample: truncated, or not {}",
+                                  options.samples.string(), reader->left_over_octets(), options.format));
     return 0;
 }
 
@@ -140,7 +142,8 @@ int tones_simulate(const TonesSimulateOptions& options) {
         return failed(possible.error().message, 2);
     auto sending = options.scenario ? sending_of_flight(options, *words) : sending_of_files(options, *words);
     if (!sending) return failed(sending.error().message);
-    if (!(sending->length_s > 0.0)) return failed("there is nothing to send: give tones, Doppler, a scenario or --length", 2);
+    if (!(sending->length_s > 0.0))
+        return failed("there is nothing to send: give tones, Doppler, a scenario or --length", 2);
     const double start_s = sending->path.start_s;
     auto predict = options.predict_out
                        ? write_doppler(*options.predict_out, sending->expected_hz, start_s, start_s + sending->length_s)
@@ -148,8 +151,11 @@ int tones_simulate(const TonesSimulateOptions& options) {
     if (!predict) return failed(predict.error().message);
     const double residual_hz = sending->path.doppler_hz.at(start_s) - predict->at(start_s);
     if (std::abs(residual_hz) > 0.5 * options.rate_hz)
-        return failed(fmt::format("Doppler minus predict is {:.0f} Hz: outside of samples at {} Hz; give --predict or --predict-out",
-                                  residual_hz, options.rate_hz), 2);
+        return failed(
+            fmt::format(
+                "Doppler minus predict is {:.0f} Hz: outside of samples at {} Hz; give --predict or --predict-out",
+                residual_hz, options.rate_hz),
+            2);
     sending->path.predict_hz = std::move(*predict);
     sending->path.rate_hz = options.rate_hz;
     sending->path.total_c_n0_dbhz = options.c_n0_dbhz;
@@ -162,7 +168,8 @@ int tones_simulate(const TonesSimulateOptions& options) {
     while (left > 0) {
         const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(left, block.size()));
         channel.next(std::span{block}.first(count));
-        if (const auto written = writer->add(std::span{block}.first(count)); !written) return failed(written.error().message);
+        if (const auto written = writer->add(std::span{block}.first(count)); !written)
+            return failed(written.error().message);
         left -= count;
     }
     if (const auto closed = writer->close(); !closed) return failed(closed.error().message);
@@ -179,11 +186,12 @@ int tones_bench(const TonesBenchOptions& options) {
     const auto errors = scenario_given("nominal_auto", options.shared.scenarios);
     if (!errors) return failed(errors.error().message);
     dispersed.dispersions = errors->dispersions;
-    const bool met = tell_tone_figures(landing->dictionary, landing->scenario, dispersed, options.full, [](const ToneFigure& figure) {
-        fmt::print("{}\n", figure.text());
-        std::fflush(stdout);
-    });
+    const bool met = tell_tone_figures(landing->dictionary, landing->scenario, dispersed, options.full,
+                                       [](const ToneFigure& figure) {
+                                           fmt::print("{}\n", figure.text());
+                                           std::fflush(stdout);
+                                       });
     return met ? 0 : 1;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,24 +11,24 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uintmax_t text_octets_max = std::uintmax_t{256} << 20U; // ours
-constexpr std::size_t findings_shown_max = 200;                        // ours: a person reads no more
+constexpr std::uintmax_t text_octets_max = std::uintmax_t{256} << 20U;  // ours
+constexpr std::size_t findings_shown_max = 200;                         // ours: a person reads no more
 
 void print_findings(const std::vector<dictionary::Finding>& findings) {
     for (std::size_t i = 0; i < findings.size() && i < findings_shown_max; ++i)
         fmt::print(stderr, "{}:{}: {}\n", findings[i].file, findings[i].line, findings[i].message);
-    if (findings.size() > findings_shown_max)
-        fmt::print(stderr, "and {} more\n", findings.size() - findings_shown_max);
+    if (findings.size() > findings_shown_max) fmt::print(stderr, "and {} more\n", findings.size() - findings_shown_max);
 }
 
-} // namespace
+}  // namespace
 
 Result<std::string> text_of_file(const std::filesystem::path& path) {
     std::error_code error;
     const auto size = std::filesystem::file_size(path, error);
     std::ifstream in{path, std::ios::binary};
     if (error || !in) return Error{path.string() + " cannot be read"};
-    if (size > text_octets_max) return Error{path.string() + " is larger than " + std::to_string(text_octets_max) + " octets"};
+    if (size > text_octets_max)
+        return Error{path.string() + " is larger than " + std::to_string(text_octets_max) + " octets"};
     return std::string{std::istreambuf_iterator<char>{in}, {}};
 }
 
@@ -44,4 +44,4 @@ XtceFile read_xtce_file(const std::filesystem::path& path) {
     return file;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -15,11 +15,11 @@ Result<std::string> text_of_file(const std::filesystem::path& path);
 
 /// Any mission's XTCE file. What in it is not supported, or wrong, has been printed to stderr with its line.
 struct XtceFile {
-    std::optional<dictionary::xtce::PacketModel> model; ///< none: said why
+    std::optional<dictionary::xtce::PacketModel> model;  ///< none: said why
     int exit_code = 0;
-    std::uint16_t id = 0; ///< changes with every change of the file
+    std::uint16_t id = 0;  ///< changes with every change of the file
     explicit operator bool() const { return model.has_value(); }
 };
 XtceFile read_xtce_file(const std::filesystem::path& path);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -5,7 +5,8 @@
 namespace aeolis::server {
 
 Result<DownlinkAddress> DownlinkAddress::parse(std::string_view text) {
-    const Error refused{"'" + std::string{text} + "': tcp://HOST:PORT or udp://HOST:PORT is wanted, as tcp://127.0.0.1:5000"};
+    const Error refused{"'" + std::string{text} +
+                        "': tcp://HOST:PORT or udp://HOST:PORT is wanted, as tcp://127.0.0.1:5000"};
     DownlinkAddress address;
     address.udp = text.starts_with("udp://");
     if (!address.udp && !text.starts_with("tcp://")) return refused;
@@ -26,4 +27,4 @@ std::string DownlinkAddress::text() const {
     return std::string{udp ? "udp://" : "tcp://"} + (brackets ? "[" + host + "]" : host) + ":" + std::to_string(port);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

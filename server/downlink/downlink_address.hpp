@@ -19,4 +19,4 @@ struct DownlinkAddress {
     std::string text() const;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

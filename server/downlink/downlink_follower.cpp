@@ -9,10 +9,10 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::chrono::milliseconds connect_limit{10'000}; // ours
+constexpr std::chrono::milliseconds connect_limit{10'000};  // ours
 constexpr std::chrono::milliseconds receive_limit{1'000};
 constexpr std::int64_t pass_interval_us = 1'000'000;
-constexpr std::int64_t unix_to_2000_s = 946'728'000; // 1970-01-01 to 2000-01-01T12:00:00
+constexpr std::int64_t unix_to_2000_s = 946'728'000;  // 1970-01-01 to 2000-01-01T12:00:00
 
 Ert now_on_earth() {
     using namespace std::chrono;
@@ -20,13 +20,16 @@ Ert now_on_earth() {
     return Ert{since_1970.count() - unix_to_2000_s * 1'000'000};
 }
 
-} // namespace
+}  // namespace
 
 DownlinkFollower::DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state)
-    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)), wait_(settings_.retry_first) {}
+    : settings_(std::move(settings)), pipeline_(pipeline), on_state_(std::move(on_state)),
+      wait_(settings_.retry_first) {}
 
-Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline, OnState on_state) {
-    std::unique_ptr<DownlinkFollower> follower{new DownlinkFollower{std::move(settings), pipeline, std::move(on_state)}};
+Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings settings, PipelineThread& pipeline,
+                                                                  OnState on_state) {
+    std::unique_ptr<DownlinkFollower> follower{
+        new DownlinkFollower{std::move(settings), pipeline, std::move(on_state)}};
     auto& self = *follower;
     if (!needs_beginning(self.settings_.format))
         if (const auto source = packet_source(self.settings_.format, {}); !source) return source.error();
@@ -35,7 +38,8 @@ Result<std::unique_ptr<DownlinkFollower>> DownlinkFollower::start(Settings setti
         self.port_ = self.settings_.address.port = self.socket_.local_port();
     }
     self.start_.scenario = "downlink";
-    self.start_.title = self.settings_.address.text() + ", " + self.settings_.format.name + " by " + self.settings_.xtce;
+    self.start_.title =
+        self.settings_.address.text() + ", " + self.settings_.format.name + " by " + self.settings_.xtce;
     self.start_.venue = "downlink";
     self.start_.pace = 1.0;
     self.start_.started = wall_clock_text();
@@ -79,7 +83,8 @@ bool DownlinkFollower::connect_again() {
             say(true, "connected");
             return true;
         }
-        say(false, opened.error().message + "; trying again, at most every " + fmt::format("{:.3g} s", settings_.retry_max.count() * 1e-3));
+        say(false, opened.error().message + "; trying again, at most every " +
+                       fmt::format("{:.3g} s", settings_.retry_max.count() * 1e-3));
     }
     stop_ = true;
     return false;
@@ -98,7 +103,8 @@ void DownlinkFollower::receive_until_end() {
         if (received.got == DownlinkSocket::Got::end) return say(false, received.reason);
         if (received.got == DownlinkSocket::Got::nothing) continue;
         take(std::span{piece}.first(received.octets));
-        if (settings_.address.udp && !needs_beginning(settings_.format) && settings_.format.name == "packets") end_of_stream();
+        if (settings_.address.udp && !needs_beginning(settings_.format) && settings_.format.name == "packets")
+            end_of_stream();
         if (stop_) return;
         if (lost_ && !settings_.address.udp) {
             socket_.close();
@@ -178,7 +184,8 @@ void DownlinkFollower::say(bool up, const std::string& reason) {
         spdlog::warn("downlink {}: {}", settings_.address.text(), reason);
     Delivery delivery;
     // What is known of such a mission explains no silence: a way that does not work is ground's.
-    delivery.entries.emplace_back(pipeline::DownlinkState{up, up ? reason : words_of(SilenceClass::ground_fault, reason), now_on_earth()});
+    delivery.entries.emplace_back(
+        pipeline::DownlinkState{up, up ? reason : words_of(SilenceClass::ground_fault, reason), now_on_earth()});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
     on_state_(state("running"));
 }
@@ -196,4 +203,4 @@ v1::RunState DownlinkFollower::state(const std::string& word) const {
     return state;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

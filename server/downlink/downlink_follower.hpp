@@ -16,32 +16,34 @@ namespace aeolis::server {
 
 /// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
 ///
-/// In       octets of a TCP connection or of datagrams            Out   deliveries to the pipeline; the run's state on change
-/// TCP      connects, and again after every end, first after `retry_first`, then twice as long each time up to `retry_max`
-/// UDP      bare packets: each datagram holds whole ones; frames: datagrams are pieces of one stream
-/// Faults   octets that are no packet are counted and skipped; where bare packets cannot be found any more, the connection is
+/// In       octets of a TCP connection or of datagrams            Out   deliveries to the pipeline; the run's state on
+/// change TCP      connects, and again after every end, first after `retry_first`, then twice as long each time up to
+/// `retry_max` UDP      bare packets: each datagram holds whole ones; frames: datagrams are pieces of one stream Faults
+/// octets that are no packet are counted and skipped; where bare packets cannot be found any more, the connection is
 ///          made anew. Each change is logged and is an item of the run.
-/// Memory   a piece of `piece_octets`, a frame, the beginning of a stream whose frames must be recognised; a slow disk holds
+/// Memory   a piece of `piece_octets`, a frame, the beginning of a stream whose frames must be recognised; a slow disk
+/// holds
 ///          the thread, and TCP then the sender. Datagrams that come meanwhile may be lost, as UDP loses them
 class DownlinkFollower {
   public:
-    static constexpr std::size_t piece_octets = 65536;                      ///< no datagram is longer
-    static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U; ///< ours: two frames of any length
+    static constexpr std::size_t piece_octets = 65536;                          ///< no datagram is longer
+    static constexpr std::size_t beginning_octets_max = std::size_t{1} << 20U;  ///< ours: two frames of any length
 
     struct Settings {
         DownlinkAddress address;
         DownlinkForm format;
-        std::string xtce; ///< what the file is called
+        std::string xtce;  ///< what the file is called
         std::chrono::milliseconds retry_first{250}, retry_max{30'000};
     };
-    using OnState = std::function<void(v1::RunState)>; ///< called on the follower's thread
+    using OnState = std::function<void(v1::RunState)>;  ///< called on the follower's thread
 
-    /// Begins the run. Fails when there is no such format, the datagrams' address cannot be had, or the archive refuses.
-    /// The pipeline, which reads that mission's packets, must outlive this.
-    static Result<std::unique_ptr<DownlinkFollower>> start(Settings settings, PipelineThread& pipeline, OnState on_state);
-    ~DownlinkFollower(); ///< ends the run
+    /// Begins the run. Fails when there is no such format, the datagrams' address cannot be had, or the archive
+    /// refuses. The pipeline, which reads that mission's packets, must outlive this.
+    static Result<std::unique_ptr<DownlinkFollower>> start(Settings settings, PipelineThread& pipeline,
+                                                           OnState on_state);
+    ~DownlinkFollower();  ///< ends the run
 
-    std::uint16_t port() const { return port_; } ///< where datagrams are awaited
+    std::uint16_t port() const { return port_; }  ///< where datagrams are awaited
 
   private:
     DownlinkFollower(Settings settings, PipelineThread& pipeline, OnState on_state);
@@ -64,14 +66,14 @@ class DownlinkFollower {
     archive::RunId run_;
     archive::RunStart start_;
     std::optional<telemetry::PacketSource> source_;
-    std::vector<std::uint8_t> beginning_; ///< of a stream whose frames are not recognised yet
+    std::vector<std::uint8_t> beginning_;  ///< of a stream whose frames are not recognised yet
     std::size_t tried_octets_ = 0;
-    std::string said_;                    ///< so that a fault that lasts is said once
+    std::string said_;  ///< so that a fault that lasts is said once
     std::uint64_t packets_ = 0;
-    Ert passed_; ///< until then time has been told
-    std::chrono::milliseconds wait_; ///< before the next attempt to connect; short again when packets have come
+    Ert passed_;                      ///< until then time has been told
+    std::chrono::milliseconds wait_;  ///< before the next attempt to connect; short again when packets have come
     bool stop_ = false, lost_ = false;
     std::thread thread_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -15,9 +15,11 @@
 namespace aeolis::server {
 namespace {
 
-constexpr int udp_buffer_octets = 4 << 20; // ours: what comes while the disk is slow; the kernel may give less
+constexpr int udp_buffer_octets = 4 << 20;  // ours: what comes while the disk is slow; the kernel may give less
 
-std::string words_of_error(int error) { return std::generic_category().message(error); }
+std::string words_of_error(int error) {
+    return std::generic_category().message(error);
+}
 
 enum class Woken : std::uint8_t { ready, time_over, asked };
 
@@ -31,7 +33,7 @@ Woken wait_for(int socket, short events, int wake, std::chrono::milliseconds lim
     return ready > 0 ? Woken::ready : Woken::time_over;
 }
 
-} // namespace
+}  // namespace
 
 DownlinkSocket::DownlinkSocket() : wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {}
 
@@ -87,19 +89,17 @@ std::uint16_t DownlinkSocket::local_port() const {
     socklen_t size = sizeof local;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): the sockets' own way
     if (::getsockname(socket_, reinterpret_cast<sockaddr*>(&local), &size) != 0) return 0;
-    in_port_t port = 0; // both families have it at the same place
-    std::memcpy(&port, reinterpret_cast<const char*>(&local) + offsetof(sockaddr_in, sin_port), sizeof port); // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
+    in_port_t port = 0;  // both families have it at the same place
+    std::memcpy(&port, reinterpret_cast<const char*>(&local) + offsetof(sockaddr_in, sin_port),
+                sizeof port);  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
     return ntohs(port);
 }
 
 DownlinkSocket::Received DownlinkSocket::receive(std::span<std::uint8_t> into, std::chrono::milliseconds limit) {
     switch (wait_for(socket_, POLLIN, wake_, limit)) {
-    case Woken::asked:
-        return {Got::woken, 0, {}};
-    case Woken::time_over:
-        return {Got::nothing, 0, {}};
-    case Woken::ready:
-        break;
+    case Woken::asked: return {Got::woken, 0, {}};
+    case Woken::time_over: return {Got::nothing, 0, {}};
+    case Woken::ready: break;
     }
     const auto octets = ::recv(socket_, into.data(), into.size(), 0);
     if (octets > 0) return {Got::octets, static_cast<std::size_t>(octets), {}};
@@ -107,12 +107,16 @@ DownlinkSocket::Received DownlinkSocket::receive(std::span<std::uint8_t> into, s
     int kind = 0;
     socklen_t size = sizeof kind;
     (void)::getsockopt(socket_, SOL_SOCKET, SO_TYPE, &kind, &size);
-    if (octets == 0 && kind == SOCK_DGRAM) return {Got::nothing, 0, {}}; // an empty datagram
+    if (octets == 0 && kind == SOCK_DGRAM) return {Got::nothing, 0, {}};  // an empty datagram
     return {Got::end, 0, octets == 0 ? "closed by the other side" : words_of_error(errno)};
 }
 
-bool DownlinkSocket::sleep(std::chrono::milliseconds time) const { return wait_for(-1, 0, wake_, time) == Woken::asked; }
+bool DownlinkSocket::sleep(std::chrono::milliseconds time) const {
+    return wait_for(-1, 0, wake_, time) == Woken::asked;
+}
 
-void DownlinkSocket::wake() const { (void)::eventfd_write(wake_, 1); }
+void DownlinkSocket::wake() const {
+    (void)::eventfd_write(wake_, 1);
+}
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

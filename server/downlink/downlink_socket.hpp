@@ -26,11 +26,11 @@ class DownlinkSocket {
     enum class Got : std::uint8_t { octets, nothing, end, woken };
     struct Received {
         Got got = Got::nothing;
-        std::size_t octets = 0; ///< of `into`
-        std::string reason;     ///< of the end
+        std::size_t octets = 0;  ///< of `into`
+        std::string reason;      ///< of the end
     };
-    /// Waits until something comes, `limit` has passed, or wake() was called. Of a datagram what `into` has no room for is
-    /// lost.
+    /// Waits until something comes, `limit` has passed, or wake() was called. Of a datagram what `into` has no room for
+    /// is lost.
     Received receive(std::span<std::uint8_t> into, std::chrono::milliseconds limit);
     /// Waits; true when wake() was called.
     bool sleep(std::chrono::milliseconds time) const;
@@ -39,7 +39,7 @@ class DownlinkSocket {
 
   private:
     int socket_ = -1;
-    int wake_ = -1; ///< an event counter
+    int wake_ = -1;  ///< an event counter
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -6,7 +6,8 @@ namespace {
 using telemetry::DownlinkFormat;
 
 /// How the frames are, from what was said and from the first octets.
-Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, DownlinkFormat kind, std::span<const std::uint8_t> beginning) {
+Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, DownlinkFormat kind,
+                                            std::span<const std::uint8_t> beginning) {
     telemetry::FrameStream stream;
     if (kind == DownlinkFormat::cadu) {
         const auto found = telemetry::recognise_cadus(beginning);
@@ -17,7 +18,8 @@ Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, Downlink
         stream.marker = false;
         stream.prefix_octets = format.skip;
         const auto found = telemetry::crc_frame_octets(beginning, format.skip);
-        if (!found && !format.frame_octets) return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
+        if (!found && !format.frame_octets)
+            return Error{"frames of no length end with a right CRC-16: say --frame-octets"};
         stream.agreed.crc = found.has_value();
         stream.frame_octets = found.value_or(stream.frame_octets);
     }
@@ -28,7 +30,7 @@ Result<telemetry::FrameStream> frame_stream(const DownlinkForm& format, Downlink
     return stream;
 }
 
-} // namespace
+}  // namespace
 
 Result<telemetry::PacketSource> packet_source(const DownlinkForm& format, std::span<const std::uint8_t> beginning) {
     const auto kind = telemetry::downlink_format(format.name);
@@ -45,4 +47,4 @@ bool needs_beginning(const DownlinkForm& format) {
     return kind && *kind != DownlinkFormat::packets && *kind != DownlinkFormat::pltu;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -17,11 +17,11 @@ struct DownlinkForm {
     std::optional<std::size_t> frame_octets;  ///< left out: found by trying
 };
 
-/// What finds the packets of a stream, from what was said and from its first octets. Fails when there is no such format, or
-/// when nothing in `beginning` shows how long frames are.
+/// What finds the packets of a stream, from what was said and from its first octets. Fails when there is no such
+/// format, or when nothing in `beginning` shows how long frames are.
 Result<telemetry::PacketSource> packet_source(const DownlinkForm& format, std::span<const std::uint8_t> beginning);
 
 /// Whether packet_source() looks at the beginning at all.
 bool needs_beginning(const DownlinkForm& format);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -16,7 +16,7 @@ std::optional<double> argument_value(const dictionary::Packet& packet, const tel
     return index ? decoded.value[*index] : std::nullopt;
 }
 
-} // namespace
+}  // namespace
 
 void CommandGateway::receive(std::span<const std::uint8_t> packet, bool live, Ert ert,
                              std::vector<archive::StageRecord>& stages) {
@@ -27,7 +27,8 @@ void CommandGateway::receive(std::span<const std::uint8_t> packet, bool live, Er
     if (live) note_channels(container, ert);
     if (live)
         for (const FieldPlace& clcw : clcw_)
-            if (decoded_.packet == clcw.packet && decoded_.value[clcw.field]) hear_clcw(static_cast<std::uint32_t>(*decoded_.value[clcw.field]), ert, stages);
+            if (decoded_.packet == clcw.packet && decoded_.value[clcw.field])
+                hear_clcw(static_cast<std::uint32_t>(*decoded_.value[clcw.field]), ert, stages);
     if (underway_.empty()) return;
     if (container.event) note_answer(ert, stages);
     note_report(container, packet, ert, stages);
@@ -87,7 +88,8 @@ void CommandGateway::note_read_back(const Underway& underway, const commands::St
     const auto& name = underway.lifecycle.command().name;
     if (change.stage == Stage::radiated && change.status == Status::ok) {
         auto& sent = read_backs_[name];
-        if (std::ranges::find(sent, underway.number, &ReadBack::number) == sent.end()) sent.push_back({underway.number, Status::pending, !sent.empty()});
+        if (std::ranges::find(sent, underway.number, &ReadBack::number) == sent.end())
+            sent.push_back({underway.number, Status::pending, !sent.empty()});
         return;
     }
     auto& sent = read_backs_[name];
@@ -95,10 +97,10 @@ void CommandGateway::note_read_back(const Underway& underway, const commands::St
     if (told == sent.end()) return;
     if (change.stage == Stage::verified) {
         told->held = change.status;
-        if (change.status == Status::ok) sent.erase(sent.begin(), told); // none before it is held any more
-    } else if (change.status == Status::failed) { // it was not carried out: what is held is still of the one before
+        if (change.status == Status::ok) sent.erase(sent.begin(), told);  // none before it is held any more
+    } else if (change.status == Status::failed) {  // it was not carried out: what is held is still of the one before
         sent.erase(told);
     }
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

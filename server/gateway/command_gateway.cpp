@@ -11,8 +11,10 @@
 namespace aeolis::server {
 namespace {
 
-constexpr const char* of_script = "asked for by the scenario's script, "; // the console tells people's commands from the script's by it
-constexpr const char* parameters_received = "parameters_received"; // the vehicle says that it has some; that they are right is ground's to say
+constexpr const char* of_script =
+    "asked for by the scenario's script, ";  // the console tells people's commands from the script's by it
+constexpr const char* parameters_received =
+    "parameters_received";  // the vehicle says that it has some; that they are right is ground's to say
 
 /// None: as the link chooses.
 Result<std::optional<commands::Fop::Service>> service_named(const std::string& name) {
@@ -28,18 +30,19 @@ bool undoes(const commands::StageChange& change) {
     return change.status == commands::Status::failed && change.stage != commands::Stage::verified;
 }
 
-constexpr std::size_t controller_name_max = 64; // ours
+constexpr std::size_t controller_name_max = 64;  // ours
 
 /// Of a person, as it was typed: without blanks around it, in small letters.
 std::string same_person(std::string_view name) {
     const auto first = name.find_first_not_of(' ');
     if (first == std::string_view::npos) return {};
     std::string same{name.substr(first, name.find_last_not_of(' ') - first + 1)};
-    std::ranges::transform(same, same.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    std::ranges::transform(same, same.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     return same;
 }
 
-} // namespace
+}  // namespace
 
 std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution) {
     return {
@@ -72,14 +75,16 @@ std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictio
     std::vector<FieldPlace> places;
     for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
         for (const std::string_view name : {"clcw", "clcw_b"})
-            if (const auto field = telemetry::field_index(dictionary.packets[packet], name)) places.push_back({packet, *field});
+            if (const auto field = telemetry::field_index(dictionary.packets[packet], name))
+                places.push_back({packet, *field});
     return places;
 }
 
 Result<void> CommandGateway::takes(std::size_t more) const {
     if (commands_ + more <= commands_max) return {};
-    return Error{commands_ == commands_max ? fmt::format("this run has had its {} commands", commands_max)
-                                           : fmt::format("this run has had {} of its {} commands", commands_, commands_max)};
+    return Error{commands_ == commands_max
+                     ? fmt::format("this run has had its {} commands", commands_max)
+                     : fmt::format("this run has had {} of its {} commands", commands_, commands_max)};
 }
 
 Result<CommandGateway::Prepared> CommandGateway::prepare(const v1::CommandRequest& request, Ert now) const {
@@ -90,8 +95,7 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const v1::CommandReques
     if (auto room = takes(1); !room) return room.error();
 
     std::vector<commands::NamedValue> arguments;
-    for (const auto& argument : request.arguments())
-        arguments.push_back({argument.name(), argument.value()});
+    for (const auto& argument : request.arguments()) arguments.push_back({argument.name(), argument.value()});
     if (request.from_solution()) arguments = commands::fill_from_solution(*command, arguments, solution_);
     auto packet = commands::encode(*command, arguments, count_);
     if (!packet) return packet.error();
@@ -105,28 +109,33 @@ Result<CommandGateway::Prepared> CommandGateway::prepare(const v1::CommandReques
         if (*release_at < now)
             return Error{fmt::format("release_at: {} is past, it is {}", request.release_at(), day_of_year_text(now))};
     }
-    const auto held = commands::decode(*command, *packet); // as encoded: defaults are in it
-    return Prepared{command, *packet, commands::arguments_text(held ? *held : arguments),
-                    preconditions(*command, now), *wanted, release_at};
+    const auto held = commands::decode(*command, *packet);  // as encoded: defaults are in it
+    return Prepared{
+        command, *packet,   commands::arguments_text(held ? *held : arguments), preconditions(*command, now),
+        *wanted, release_at};
 }
 
-std::vector<commands::PreconditionState> CommandGateway::preconditions(const dictionary::Command& command, Ert now) const {
+std::vector<commands::PreconditionState> CommandGateway::preconditions(const dictionary::Command& command,
+                                                                       Ert now) const {
     auto states = commands::check(dictionary_, command, latest(now));
     const auto* received = dictionary_.channel(parameters_received);
-    const bool wants_them = received != nullptr && std::ranges::any_of(command.preconditions, [&](const auto& each) { return each.channel == received->id; });
+    const bool wants_them = received != nullptr && std::ranges::any_of(command.preconditions, [&](const auto& each) {
+                                return each.channel == received->id;
+                            });
     if (!wants_them) return states;
     using State = commands::PreconditionState::State;
     for (const auto& [name, sent] : read_backs_) {
         if (sent.empty()) continue;
         const ReadBack& told = sent.back();
         auto& state = states.emplace_back();
-        // Of the first that was sent flight itself says whether it has it. That it has a later one only the read-back tells, so while that
-        // can still come it is waited for.
-        const auto [holds, words] = told.held == commands::Status::ok       ? std::pair{State::holds, "read back"}
-                                    : told.held == commands::Status::failed ? std::pair{State::fails, "the vehicle reports other values"}
-                                    : told.held == commands::Status::unknown ? std::pair{State::unknown, "not read back in its time"}
-                                    : told.renewed                          ? std::pair{State::fails, "sent anew and not read back yet, wait for it"}
-                                                                            : std::pair{State::unknown, "not read back yet"};
+        // Of the first that was sent flight itself says whether it has it. That it has a later one only the read-back
+        // tells, so while that can still come it is waited for.
+        const auto [holds, words] =
+            told.held == commands::Status::ok        ? std::pair{State::holds, "read back"}
+            : told.held == commands::Status::failed  ? std::pair{State::fails, "the vehicle reports other values"}
+            : told.held == commands::Status::unknown ? std::pair{State::unknown, "not read back in its time"}
+            : told.renewed ? std::pair{State::fails, "sent anew and not read back yet, wait for it"}
+                           : std::pair{State::unknown, "not read back yet"};
         state.state = holds;
         state.text = fmt::format("{} held as sent (command {}): {}", name, told.number, words);
     }
@@ -147,13 +156,14 @@ v1::CommandReply CommandGateway::submit(const v1::CommandRequest& request, Ert n
     if (!prepared) return refuse(prepared.error().message);
     tell(*prepared, now, reply);
     const Ert leaves = prepared->release_at.value_or(now);
-    const bool settled = prepared->release_at || !request.hold(); // else nobody can say yet when it leaves
+    const bool settled = prepared->release_at || !request.hold();  // else nobody can say yet when it leaves
     if (settled ? !stations_.sees(leaves) : stations_.over(now)) return refuse(stations_.refusal(leaves));
     if (settled) tell_station(leaves, reply);
     // What waits is looked at when it leaves: a condition that fails now may hold then.
     const bool waits = request.hold() || prepared->release_at;
-    const auto authorised = commands::authorise(*prepared->command, {request.armed(), request.confirmation()},
-                                                waits ? std::span<const commands::PreconditionState>{} : prepared->preconditions);
+    const auto authorised =
+        commands::authorise(*prepared->command, {request.armed(), request.confirmation()},
+                            waits ? std::span<const commands::PreconditionState>{} : prepared->preconditions);
     if (!authorised) return refuse(authorised.error().message);
     const auto approval = needs_approval(request);
     if (!approval) return refuse(approval.error().message);
@@ -170,7 +180,8 @@ Result<bool> CommandGateway::needs_approval(const v1::CommandRequest& request) c
         return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
     if (std::ranges::find(second_person_, request.command()) == second_person_.end()) return false;
     if (same_person(request.controller()).empty())
-        return Error{request.command() + " needs a second person: say who you are (controller), then another controller approves it"};
+        return Error{request.command() +
+                     " needs a second person: say who you are (controller), then another controller approves it"};
     return true;
 }
 
@@ -185,14 +196,17 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
             not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
     const auto* report = commands::read_back_packet(dictionary_, *prepared.command);
     auto& underway = underway_.emplace_back(
-        Underway{++commands_, prepared.packet, prepared.arguments, request.controller(), request.browser(), "", request.priority(), prepared.wanted, report,
+        Underway{++commands_, prepared.packet, prepared.arguments, request.controller(), request.browser(), "",
+                 request.priority(), prepared.wanted, report,
                  commands::CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
     count_ = static_cast<std::uint16_t>((count_ + 1) % commands::count_modulus);
 
     changes_.clear();
     auto& lifecycle = underway.lifecycle;
-    lifecycle.ground_stage(Stage::queued, Status::ok, fmt::format("{}accepted as command {}", asker == Asker::script ? of_script : "", underway.number), now,
-                           changes_);
+    lifecycle.ground_stage(
+        Stage::queued, Status::ok,
+        fmt::format("{}accepted as command {}", asker == Asker::script ? of_script : "", underway.number), now,
+        changes_);
     lifecycle.ground_stage(
         Stage::authorised, Status::ok,
         (commands::is_hazardous(*prepared.command) ? "armed and confirmed by name" : "no arming needed") +
@@ -201,10 +215,16 @@ void CommandGateway::queue(const Prepared& prepared, const v1::CommandRequest& r
     append(underway, changes_, stages);
     reply.set_accepted(true);
     reply.set_command(underway.number);
-    const commands::CommandQueue::Entry entry{underway.number, request.priority(), prepared.release_at, request.hold(), reply.needs_approval(),
-                                              commands::changes_offsets(prepared.command->name), false};
+    const commands::CommandQueue::Entry entry{underway.number,
+                                              request.priority(),
+                                              prepared.release_at,
+                                              request.hold(),
+                                              reply.needs_approval(),
+                                              commands::changes_offsets(prepared.command->name),
+                                              false};
     queue_.add(entry);
-    if (request.hold() || prepared.release_at || reply.needs_approval() || queue_.leaves_after(entry)) tell_wait(underway, now, stages);
+    if (request.hold() || prepared.release_at || reply.needs_approval() || queue_.leaves_after(entry))
+        tell_wait(underway, now, stages);
     release_due(now, stages);
 }
 
@@ -212,7 +232,7 @@ std::vector<v1::CommandReply> CommandGateway::look(std::span<const v1::CommandRe
     std::vector<v1::CommandReply> replies;
     std::vector<archive::StageRecord> none;
     const auto kept = read_backs_;
-    std::size_t more = 0; // each needs its place
+    std::size_t more = 0;  // each needs its place
     for (v1::CommandRequest request : file) {
         request.set_dry_run(true);
         auto& reply = replies.emplace_back(submit(request, now, none));
@@ -223,8 +243,9 @@ std::vector<v1::CommandReply> CommandGateway::look(std::span<const v1::CommandRe
             continue;
         }
         const bool leaves = !request.hold() && request.release_at().empty() && !reply.needs_approval();
-        if (!leaves || commands::read_back_packet(dictionary_, *dictionary_.command(request.command())) == nullptr) continue;
-        auto& sent = read_backs_[request.command()]; // for those behind it in the file
+        if (!leaves || commands::read_back_packet(dictionary_, *dictionary_.command(request.command())) == nullptr)
+            continue;
+        auto& sent = read_backs_[request.command()];  // for those behind it in the file
         sent.push_back({commands_ + more, commands::Status::pending, !sent.empty()});
     }
     read_backs_ = kept;
@@ -234,15 +255,17 @@ std::vector<v1::CommandReply> CommandGateway::look(std::span<const v1::CommandRe
 void CommandGateway::note_refused(const v1::CommandRequest& request, const std::string& reason, Ert now,
                                   std::vector<archive::StageRecord>& stages) {
     const auto* command = dictionary_.command(request.command());
-    if (command == nullptr) return; // no script is begun with one
+    if (command == nullptr) return;  // no script is begun with one
     auto prepared = prepare(request, now);
-    Underway refused{++commands_, {}, "", "", "", "", 0, {}, nullptr, commands::CommandLifecycle{*command, count_, light_time_s_, false}};
+    Underway refused{++commands_, {}, "", "",      "",
+                     "",          0,  {}, nullptr, commands::CommandLifecycle{*command, count_, light_time_s_, false}};
     if (prepared) {
         refused.packet = std::move(prepared->packet);
         refused.arguments = std::move(prepared->arguments);
     }
     changes_.clear();
-    refused.lifecycle.ground_stage(commands::Stage::queued, commands::Status::failed, of_script + ("refused: " + reason), now, changes_);
+    refused.lifecycle.ground_stage(commands::Stage::queued, commands::Status::failed,
+                                   of_script + ("refused: " + reason), now, changes_);
     append(refused, changes_, stages);
 }
 
@@ -266,7 +289,8 @@ std::string CommandGateway::perform(const v1::CommandRequest& asked, const Under
     const auto waits = [&](bool done) {
         if (done) return std::string{};
         const std::string stations = stations_.over(now) ? "; " + stations_.refusal(now) : "";
-        return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}", number, stations);
+        return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}",
+                           number, stations);
     };
     if (action == "hold") return waits(queue_.hold(number));
     const auto* entry = waiting(number);
@@ -292,10 +316,12 @@ std::string CommandGateway::not_another_person(const v1::CommandRequest& asked, 
     const std::string person = same_person(asked.controller());
     if (person.empty() || asked.controller().size() > controller_name_max) return "controller: say who approves it";
     if (person == same_person(command.controller))
-        return fmt::format("command {} was asked for by {}: another controller must approve it", command.number, command.controller);
+        return fmt::format("command {} was asked for by {}: another controller must approve it", command.number,
+                           command.controller);
     // Names are only typed where there are no accounts.
     if (asked.browser().empty() || asked.browser() != command.browser) return {};
-    return fmt::format("command {} was asked for, as {}, from where it would now be approved: a second person approves it in a browser of their own",
+    return fmt::format("command {} was asked for, as {}, from where it would now be approved: a second person approves "
+                       "it in a browser of their own",
                        command.number, command.controller);
 }
 
@@ -306,25 +332,28 @@ v1::CommandReply CommandGateway::act(const v1::CommandRequest& request, Ert now,
     reply.set_dry_run(request.dry_run());
     const std::string& action = request.action();
     auto* command = underway(request.number());
-    const std::string refusal = request.dry_run() ? "dry_run: what is done about a waiting command cannot be tried out" : perform(request, command, now);
+    const std::string refusal = request.dry_run() ? "dry_run: what is done about a waiting command cannot be tried out"
+                                                  : perform(request, command, now);
     const std::string by = request.controller().empty() ? "a controller" : request.controller();
     if (!refusal.empty()) {
         reply.set_reason(refusal);
     } else {
-        AEOLIS_CHECK(command != nullptr); // what waits is under way
+        AEOLIS_CHECK(command != nullptr);  // what waits is under way
         reply.set_accepted(true);
         reply.set_command(command->number);
         changes_.clear();
         if (action == "cancel")
-            command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by " + by, now,
-                                            changes_);
+            command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed, "cancelled by " + by,
+                                            now, changes_);
         else if (action == timeline_refuted_action)
             command->lifecycle.ground_stage(commands::Stage::released, commands::Status::failed,
-                                            "what it was analysed with has changed: " + request.analysis(), now, changes_);
+                                            "what it was analysed with has changed: " + request.analysis(), now,
+                                            changes_);
         else if (action == timeline_holds_action)
             command->timeline = request.analysis();
         else if (action == "approve")
-            command->lifecycle.approved(fmt::format("approved by {}, as the second person", request.controller()), now, changes_);
+            command->lifecycle.approved(fmt::format("approved by {}, as the second person", request.controller()), now,
+                                        changes_);
         append(*command, changes_, stages);
         // What is due while no station sees the vehicle is told below, with the pass for which it waits.
         if (stations_.sees(now) || !queue_.due(command->number, now)) tell_wait(*command, now, stages);
@@ -346,7 +375,8 @@ void CommandGateway::append(const Underway& underway, const std::vector<commands
     for (const auto& change : changes) {
         note_read_back(underway, change);
         if (change.stage == commands::Stage::executed && change.status == commands::Status::ok)
-            if (const auto arguments = commands::decode(underway.lifecycle.command(), underway.packet)) deadlines_.executed(underway.lifecycle.command(), *arguments);
+            if (const auto arguments = commands::decode(underway.lifecycle.command(), underway.packet))
+                deadlines_.executed(underway.lifecycle.command(), *arguments);
         undone = undone || undoes(change);
         auto& stage = stages.emplace_back();
         stage.command = underway.number;
@@ -360,14 +390,16 @@ void CommandGateway::append(const Underway& underway, const std::vector<commands
             stage.arguments = underway.arguments;
             stage.octets = underway.packet;
         }
-        if (change.stage == commands::Stage::released && change.status == commands::Status::pending && waits != nullptr) {
+        if (change.stage == commands::Stage::released && change.status == commands::Status::pending &&
+            waits != nullptr) {
             stage.held = waits->held;
             stage.needs_approval = waits->needs_approval;
             if (waits->needs_approval) stage.asked_by = underway.controller;
         }
     }
-    if (undone && commands::changes_offsets(underway.lifecycle.command().name) && undone_.insert(underway.number).second)
+    if (undone && commands::changes_offsets(underway.lifecycle.command().name) &&
+        undone_.insert(underway.number).second)
         doubt_after(underway.number, changes.back().at, stages);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -1,4 +1,5 @@
-// How commands leave: out of the queue, while a station sees the vehicle, by the uplink; and what the vehicle's reports say of their frames.
+// How commands leave: out of the queue, while a station sees the vehicle, by the uplink; and what the vehicle's reports
+// say of their frames.
 #include "server/gateway/command_gateway.hpp"
 
 #include "commands/timeline_change.hpp"
@@ -29,7 +30,8 @@ void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& sta
         if (taken)
             command->lifecycle.ground_stage(
                 Stage::released, Status::ok,
-                fmt::format("to the uplink, {}; ahead of it: {}", name_of(service), link_.waiting() - 1), now, changes_);
+                fmt::format("to the uplink, {}; ahead of it: {}", name_of(service), link_.waiting() - 1), now,
+                changes_);
         else
             command->lifecycle.ground_stage(Stage::released, Status::failed, taken.error().message, now, changes_);
         append(*command, changes_, stages);
@@ -55,38 +57,45 @@ void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stag
         command->lifecycle.ground_stage(stage, commands::Status::failed, stations_.refusal(now), now, changes_);
         append(*command, changes_, stages);
     };
-    for (const std::uint64_t number : not_radiated)
-        fail(number, Stage::radiated);
-    for (const std::uint64_t number : queue_.take_all())
-        fail(number, Stage::released);
+    for (const std::uint64_t number : not_radiated) fail(number, Stage::radiated);
+    for (const std::uint64_t number : queue_.take_all()) fail(number, Stage::released);
 }
 
-void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now,
+                                std::vector<archive::StageRecord>& stages) {
     auto* command = underway(number);
     if (command == nullptr) return;
-    const commands::CommandQueue::Entry entry{number, command->priority, until, false, false,
-                                              commands::changes_offsets(command->lifecycle.command().name), false};
+    const commands::CommandQueue::Entry entry{
+        number, command->priority, until, false, false, commands::changes_offsets(command->lifecycle.command().name),
+        false};
     queue_.add(entry);
     std::vector<commands::StageChange> changes;
-    command->lifecycle.taken_back("taken back from the uplink, which had not radiated it " + why + "; " + leaving_text(entry), now, changes);
+    command->lifecycle.taken_back(
+        "taken back from the uplink, which had not radiated it " + why + "; " + leaving_text(entry), now, changes);
     append(*command, changes, stages);
 }
 
 void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<archive::StageRecord>& stages) {
     using commands::Stage;
     using commands::Status;
-    const auto after = [&](const Underway& each) { return each.number > undone && commands::changes_offsets(each.lifecycle.command().name); };
+    const auto after = [&](const Underway& each) {
+        return each.number > undone && commands::changes_offsets(each.lifecycle.command().name);
+    };
     const auto reached = [](const Underway& each, Stage stage) { return each.lifecycle.status(stage) == Status::ok; };
-    const auto at_uplink = [&](const Underway& each) { return reached(each, Stage::released) && each.lifecycle.status(Stage::radiated) == Status::pending; };
+    const auto at_uplink = [&](const Underway& each) {
+        return reached(each, Stage::released) && each.lifecycle.status(Stage::radiated) == Status::pending;
+    };
     if (std::ranges::any_of(underway_, [&](const Underway& each) { return after(each) && at_uplink(each); }))
-        for (const std::uint64_t number : link_.take_back()) // all of it: those that nobody doubts are released again at once
+        for (const std::uint64_t number :
+             link_.take_back())  // all of it: those that nobody doubts are released again at once
             wait_again(number, {}, fmt::format("when command {} came to nothing", undone), now, stages);
-    for (const std::uint64_t number : queue_.doubt_after(undone))
-        doubted_.push_back(number);
+    for (const std::uint64_t number : queue_.doubt_after(undone)) doubted_.push_back(number);
     for (Underway& each : underway_) {
         if (!after(each) || !reached(each, Stage::radiated) || each.lifecycle.finished()) continue;
         std::vector<commands::StageChange> changes;
-        each.lifecycle.radiated_in_doubt(fmt::format("has left Earth, and its timeline was analysed with command {}, which came to nothing", undone), now, changes);
+        each.lifecycle.radiated_in_doubt(
+            fmt::format("has left Earth, and its timeline was analysed with command {}, which came to nothing", undone),
+            now, changes);
         append(each, changes, stages);
     }
 }
@@ -100,7 +109,8 @@ void CommandGateway::begin_pass(Ert now, std::vector<archive::StageRecord>& stag
         if (failing.empty()) continue;
         any = true;
         changes_.clear();
-        command->lifecycle.radiated_in_doubt("not acknowledged, and not radiated again: it must not be sent now: " + failing, now, changes_);
+        command->lifecycle.radiated_in_doubt(
+            "not acknowledged, and not radiated again: it must not be sent now: " + failing, now, changes_);
         append(*command, changes_, stages);
     }
     if (!any) return;
@@ -114,11 +124,17 @@ void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive:
     if (entry == nullptr) return;
     const std::string when = leaving_text(*entry);
     changes_.clear();
-    const std::string looked_at = entry->doubted ? "does not leave before its timeline is looked at again, for what it was analysed with has changed; "
-                                  : underway.timeline.empty() ? ""
-                                                              : "its timeline was looked at again, for what it was analysed with has changed: " + underway.timeline + "; ";
-    const std::string approval = entry->needs_approval ? "waits for the approval of another controller than " + underway.controller + "; " : "";
-    underway.lifecycle.await_release(looked_at + approval + (entry->held ? "held until a controller releases it; " + when : when), now, changes_);
+    const std::string looked_at =
+        entry->doubted
+            ? "does not leave before its timeline is looked at again, for what it was analysed with has changed; "
+        : underway.timeline.empty()
+            ? ""
+            : "its timeline was looked at again, for what it was analysed with has changed: " + underway.timeline +
+                  "; ";
+    const std::string approval =
+        entry->needs_approval ? "waits for the approval of another controller than " + underway.controller + "; " : "";
+    underway.lifecycle.await_release(
+        looked_at + approval + (entry->held ? "held until a controller releases it; " + when : when), now, changes_);
     append(underway, changes_, stages);
 }
 
@@ -126,7 +142,8 @@ std::string CommandGateway::leaving_text(const commands::CommandQueue::Entry& en
     std::string when = entry.release_at ? "leaves at " + day_of_year_text(*entry.release_at) : "then leaves at once";
     const auto* pass = entry.release_at ? stations_.pass_at(*entry.release_at) : nullptr;
     if (pass != nullptr) when += " by " + pass->station;
-    if (const auto other = queue_.leaves_after(entry)) when += fmt::format(", after command {}, with which its timeline was analysed", *other);
+    if (const auto other = queue_.leaves_after(entry))
+        when += fmt::format(", after command {}, with which its timeline was analysed", *other);
     if (entry.priority > 0) when += fmt::format(", priority {}", entry.priority);
     return when;
 }
@@ -139,12 +156,14 @@ void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages)
         if (auto* command = underway(unit->tag)) {
             const std::string frame =
                 fmt::format("{} octets left {}, packet {} in frame {}, {}; at the vehicle {:.1f} s later",
-                            unit->cltu.size(), pass == nullptr ? "the station" : pass->station, command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
+                            unit->cltu.size(), pass == nullptr ? "the station" : pass->station,
+                            command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
             changes_.clear();
             if (unit->transmission == 1)
                 command->lifecycle.ground_stage(commands::Stage::radiated, commands::Status::ok, frame, now, changes_);
             else
-                command->lifecycle.radiated_again(fmt::format("transmission {}: {}", unit->transmission, frame), now, changes_);
+                command->lifecycle.radiated_again(fmt::format("transmission {}: {}", unit->transmission, frame), now,
+                                                  changes_);
             append(*command, changes_, stages);
         }
         uplinks_.push_back(std::move(unit->cltu));
@@ -164,8 +183,9 @@ void CommandGateway::note_frames(Ert now, std::vector<archive::StageRecord>& sta
                                            now, changes_);
         else
             command->lifecycle.frame_not_acknowledged(
-                fmt::format("radiated {} x, and no report of the vehicle has its frame: taken or not", frame.transmissions), now,
-                changes_);
+                fmt::format("radiated {} x, and no report of the vehicle has its frame: taken or not",
+                            frame.transmissions),
+                now, changes_);
         append(*command, changes_, stages);
     }
 }
@@ -185,8 +205,8 @@ void CommandGateway::pass(Ert now, std::vector<archive::StageRecord>& stages) {
         underway.lifecycle.pass(now, changes_);
         append(underway, changes_, stages);
     }
-    if (stations_.sees(now)) link_.pass(now); // else what is not acknowledged is sent again when the next pass begins
+    if (stations_.sees(now)) link_.pass(now);  // else what is not acknowledged is sent again when the next pass begins
     release_due(now, stages);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,12 +12,11 @@ namespace {
 std::string hex_text(std::span<const std::uint8_t> octets) {
     std::string text;
     text.reserve(octets.size() * 2);
-    for (const auto octet : octets)
-        fmt::format_to(std::back_inserter(text), "{:02x}", octet);
+    for (const auto octet : octets) fmt::format_to(std::back_inserter(text), "{:02x}", octet);
     return text;
 }
 
-} // namespace
+}  // namespace
 
 void CommandGateway::tell(const Prepared& prepared, Ert now, v1::CommandReply& reply) const {
     reply.set_octets(hex_text(prepared.packet));
@@ -31,20 +30,19 @@ void CommandGateway::tell(const Prepared& prepared, Ert now, v1::CommandReply& r
     tell_arrival(*prepared.command, prepared.packet, now, prepared.release_at.value_or(now), reply);
 }
 
-void CommandGateway::tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now, Ert leaves,
-                                  v1::CommandReply& reply) const {
+void CommandGateway::tell_arrival(const dictionary::Command& command, std::span<const std::uint8_t> packet, Ert now,
+                                  Ert leaves, v1::CommandReply& reply) const {
     const auto light_time_us = static_cast<std::int64_t>(light_time_s_ * 1.0e6);
     reply.set_leaves(day_of_year_text(leaves));
     reply.set_arrives(day_of_year_text(Scet{leaves.microseconds + light_time_us}));
     reply.set_effect_seen(day_of_year_text(Ert{leaves.microseconds + 2 * light_time_us}));
     const auto arguments = commands::decode(command, packet);
-    AEOLIS_CHECK(arguments.ok()); // it was encoded here
+    AEOLIS_CHECK(arguments.ok());  // it was encoded here
     if (const auto deadline = deadlines_.of(command, *arguments, leaves)) {
         reply.set_latest_useful(day_of_year_text(deadline->latest));
         reply.set_useful_before(deadline->timepoint);
     }
-    for (const auto& timepoint : deadlines_.missed(now, leaves))
-        reply.add_too_late_for(timepoint);
+    for (const auto& timepoint : deadlines_.missed(now, leaves)) reply.add_too_late_for(timepoint);
 }
 
 void CommandGateway::tell_station(Ert leaves, v1::CommandReply& reply) const {
@@ -63,4 +61,4 @@ void CommandGateway::tell_leaving(const Underway& command, Ert now, v1::CommandR
     tell_station(leaves, reply);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

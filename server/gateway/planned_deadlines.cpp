@@ -7,7 +7,8 @@
 
 namespace aeolis::server {
 
-PlannedDeadlines::PlannedDeadlines(const dictionary::Dictionary& dictionary, std::optional<Scet> entry, double light_time_s)
+PlannedDeadlines::PlannedDeadlines(const dictionary::Dictionary& dictionary, std::optional<Scet> entry,
+                                   double light_time_s)
     : dictionary_(dictionary), entry_(entry), light_time_us_(static_cast<std::int64_t>(light_time_s * 1.0e6)) {
     plan();
 }
@@ -45,10 +46,12 @@ std::optional<PlannedDeadlines::Deadline> PlannedDeadlines::next(Ert now) const 
 }
 
 std::optional<PlannedDeadlines::Deadline> PlannedDeadlines::of(const dictionary::Command& command,
-                                                               std::span<const commands::NamedValue> arguments, Ert leaves) const {
+                                                               std::span<const commands::NamedValue> arguments,
+                                                               Ert leaves) const {
     const auto moved = commands::moved_timepoints(dictionary_, command.name, arguments);
     if (moved.empty()) return next(leaves);
-    const auto first = std::ranges::find_if(predicted_, [&](const Planned& each) { return std::ranges::find(moved, each.timepoint) != moved.end(); });
+    const auto first = std::ranges::find_if(
+        predicted_, [&](const Planned& each) { return std::ranges::find(moved, each.timepoint) != moved.end(); });
     return first == predicted_.end() ? std::nullopt : std::optional{deadline(*first)};
 }
 
@@ -56,8 +59,9 @@ std::vector<std::string> PlannedDeadlines::missed(Ert now, Ert leaves) const {
     const Scet there{leaves.microseconds + light_time_us_};
     std::vector<std::string> names;
     for (const auto& each : planned_)
-        if (each.at > Scet{now.microseconds} && each.at <= there) names.push_back(dictionary_.timeline[each.timepoint].name);
+        if (each.at > Scet{now.microseconds} && each.at <= there)
+            names.push_back(dictionary_.timeline[each.timepoint].name);
     return names;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

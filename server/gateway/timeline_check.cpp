@@ -19,12 +19,14 @@ bool failed(const v1::CommandHistory& command) {
 }
 
 std::string text_of(const dictionary::Dictionary& dictionary, const dictionary::ConstraintRow& row) {
-    return fmt::format("{} to {} (constraints.csv:{})", moment_text(dictionary, row.from), moment_text(dictionary, row.to), row.line);
+    return fmt::format("{} to {} (constraints.csv:{})", moment_text(dictionary, row.from),
+                       moment_text(dictionary, row.to), row.line);
 }
 
 Result<std::string> words_of(const dictionary::Dictionary& changed, const dictionary::TimelineAnalysis& analysis) {
     if (!analysis.contradiction.empty() || !analysis.admits_schedule)
-        return Error{"the changed timeline cannot be flown: its offsets contradict what constraints.csv gives (aeolis timeline analyse)"};
+        return Error{"the changed timeline cannot be flown: its offsets contradict what constraints.csv gives (aeolis "
+                     "timeline analyse)"};
     for (const auto& bound : analysis.bounds) {
         if (bound.proof == dictionary::Proof::proven) continue;
         const auto& row = changed.constraints[bound.constraint];
@@ -49,12 +51,14 @@ struct ChangedTimeline {
     /// Nothing where it is of another dictionary.
     void change(const v1::CommandHistory& command) {
         const auto* const known = dictionary.command(command.name());
-        const auto arguments = known == nullptr ? Error{"unknown"} : commands::decode(*known, archive::octets_of_hex(command.octets()));
+        const auto arguments =
+            known == nullptr ? Error{"unknown"} : commands::decode(*known, archive::octets_of_hex(command.octets()));
         if (arguments) change(command.name(), *arguments);
     }
 };
 
-/// Those that change offsets and have not failed: what left in the order in which it did, then what waits by its number.
+/// Those that change offsets and have not failed: what left in the order in which it did, then what waits by its
+/// number.
 struct Changes {
     std::vector<const v1::CommandHistory*> left, waiting;
 };
@@ -73,33 +77,31 @@ Changes changes_of(const v1::CommandList& list) {
             changes.waiting.push_back(&command);
     }
     std::ranges::sort(left);
-    for (const auto& [seq, command] : left)
-        changes.left.push_back(command);
+    for (const auto& [seq, command] : left) changes.left.push_back(command);
     std::ranges::sort(changes.waiting, {}, [](const auto* command) { return command->command(); });
     return changes;
 }
 
-} // namespace
+}  // namespace
 
 bool changes_timeline(const v1::CommandRequest& request) {
     return request.action().empty() && commands::changes_offsets(request.command());
 }
 
-Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked, bool only_check, const Stop& stop) {
+Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked,
+                                         bool only_check, const Stop& stop) {
     ChangedTimeline timeline{dictionary_, ""};
     const auto changes = changes_of(before);
     for (const auto& commands : {changes.left, changes.waiting})
-        for (const auto* command : commands)
-            timeline.change(*command);
+        for (const auto* command : commands) timeline.change(*command);
     for (const auto& request : asked) {
         const auto* const known = dictionary_.command(request.command());
         if (known == nullptr || !changes_timeline(request)) continue;
         std::vector<commands::NamedValue> given;
-        for (const auto& argument : request.arguments())
-            given.push_back({argument.name(), argument.value()});
+        for (const auto& argument : request.arguments()) given.push_back({argument.name(), argument.value()});
         const auto packet = commands::encode(*known, given, 0);
-        if (!packet) continue; // the gateway refuses it, and says why
-        const auto arguments = commands::decode(*known, *packet); // with defaults
+        if (!packet) continue;                                     // the gateway refuses it, and says why
+        const auto arguments = commands::decode(*known, *packet);  // with defaults
         if (!arguments) return arguments.error();
         timeline.change(request.command(), *arguments);
     }
@@ -108,12 +110,13 @@ Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::spa
 
 TimelineCheck::Look TimelineCheck::look_again(const v1::CommandList& before, const Stop& stop) {
     Look look;
-    look.undone = static_cast<std::size_t>(std::ranges::count_if(
-        before.commands(), [](const v1::CommandHistory& command) { return commands::changes_offsets(command.name()) && failed(command); }));
+    look.undone =
+        static_cast<std::size_t>(std::ranges::count_if(before.commands(), [](const v1::CommandHistory& command) {
+            return commands::changes_offsets(command.name()) && failed(command);
+        }));
     ChangedTimeline timeline{dictionary_, ""};
     const auto changes = changes_of(before);
-    for (const auto* command : changes.left)
-        timeline.change(*command);
+    for (const auto* command : changes.left) timeline.change(*command);
     for (const auto* command : changes.waiting) {
         auto with = timeline;
         with.change(*command);
@@ -128,7 +131,8 @@ TimelineCheck::Look TimelineCheck::look_again(const v1::CommandList& before, con
     return look;
 }
 
-Result<std::string> TimelineCheck::analysed(const std::string& key, const dictionary::Dictionary& changed, bool only_check, const Stop& stop) {
+Result<std::string> TimelineCheck::analysed(const std::string& key, const dictionary::Dictionary& changed,
+                                            bool only_check, const Stop& stop) {
     const auto known = [&]() -> std::optional<Result<std::string>> {
         const std::scoped_lock lock{mutex_};
         const auto found = answers_.find(key);
@@ -140,7 +144,9 @@ Result<std::string> TimelineCheck::analysed(const std::string& key, const dictio
         return analysed_now_ == key;
     }();
     const std::unique_lock turn{analysing_, only_check && !under_way ? std::chrono::milliseconds{0} : turn_max};
-    if (!turn.owns_lock()) return Error{.message = "the timeline is analysed for another change: send again in a moment", .internal = true};
+    if (!turn.owns_lock())
+        return Error{.message = "the timeline is analysed for another change: send again in a moment",
+                     .internal = true};
     if (const auto answer = known()) return *answer;
     {
         const std::scoped_lock lock{mutex_};
@@ -148,7 +154,8 @@ Result<std::string> TimelineCheck::analysed(const std::string& key, const dictio
     }
     const auto analysis = dictionary::analyse_bounds(changed, stop);
     if (analysis.stopped)
-        return Error{.message = "the analysis of the changed timeline did not end in its time, so that nobody knows whether its constraints hold: "
+        return Error{.message = "the analysis of the changed timeline did not end in its time, so that nobody knows "
+                                "whether its constraints hold: "
                                 "send it again, or change less at once",
                      .internal = true};
     const auto answer = words_of(changed, analysis);
@@ -158,4 +165,4 @@ Result<std::string> TimelineCheck::analysed(const std::string& key, const dictio
     return answer;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -19,4 +19,4 @@ void ConnectionCount::leave(const std::string& from) {
     if (const auto found = from_.find(from); --found->second == 0) from_.erase(found);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -6,8 +6,9 @@
 
 namespace aeolis::server {
 
-/// Connections that are open, in all and from each address or network, so that one cannot take the places of all others. Loopback is
-/// this machine: whoever is on it can do worse, and a proxy in front of the server brings everybody from there.
+/// Connections that are open, in all and from each address or network, so that one cannot take the places of all
+/// others. Loopback is this machine: whoever is on it can do worse, and a proxy in front of the server brings everybody
+/// from there.
 class ConnectionCount {
   public:
     ConnectionCount(std::size_t all_max, std::size_t each_max) : all_max_(all_max), each_max_(each_max) {}
@@ -23,4 +24,4 @@ class ConnectionCount {
     std::map<std::string, std::size_t> from_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,7 +11,7 @@
 namespace aeolis::server {
 namespace {
 
-constexpr unsigned stream_check_ms = 1'000; // ours: so long a client may follow after its log-in has ended
+constexpr unsigned stream_check_ms = 1'000;  // ours: so long a client may follow after its log-in has ended
 
 /// Who started the program.
 Operator by_command_line() {
@@ -26,18 +26,20 @@ Result<void> check_reach(const ConsoleBackend::Settings& settings) {
     const auto& web = settings.web_server;
     if (WebServer::is_loopback(web.address)) return {};
     if (settings.accounts.empty() || web.certificate.empty())
-        return Error{fmt::format("--listen {}: other machines reach this address: give --accounts, --tls-certificate and --tls-key; "
-                                 "without accounts the server listens on loopback only", web.address)};
+        return Error{fmt::format(
+            "--listen {}: other machines reach this address: give --accounts, --tls-certificate and --tls-key; "
+            "without accounts the server listens on loopback only",
+            web.address)};
     if (web.names.empty())
         return Error{fmt::format("--listen {}: give --host, the name by which browsers call this server", web.address)};
     return {};
 }
 
-} // namespace
+}  // namespace
 
 ConsoleBackend::ConsoleBackend(Settings settings, const dictionary::Dictionary& dictionary)
-    : settings_(std::move(settings)), dictionary_(dictionary), timeline_check_(dictionary), scenarios_(settings_.scenarios),
-      console_(settings_.web) {}
+    : settings_(std::move(settings)), dictionary_(dictionary), timeline_check_(dictionary),
+      scenarios_(settings_.scenarios), console_(settings_.web) {}
 
 Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
                                                              const dictionary::Dictionary& dictionary) {
@@ -64,7 +66,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     auto archive = archive::Archive::open(chosen.archive);
     if (!archive) return archive.error();
     for (const auto run : archive->interrupted())
-        spdlog::warn("run {} was cut off: it can be continued in the console, or by POST /api/v1/rehearsals {{\"continue_run\":{}}}",
+        spdlog::warn("run {} was cut off: it can be continued in the console, or by POST /api/v1/rehearsals "
+                     "{{\"continue_run\":{}}}",
                      run.value, run.value);
     auto queries = QueryThreads::open(chosen.archive, dictionary, chosen.other);
     if (!queries) return queries.error();
@@ -76,7 +79,8 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
         },
         chosen.other);
     backend->pipeline_->want_items(false);
-    backend->pipeline_->on_fault([self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
+    backend->pipeline_->on_fault(
+        [self, post](const std::string& fault) { post([self, fault] { self->hub_->archive_fault(fault); }); });
     backend->desk_ = std::make_unique<RehearsalDesk>(
         backend->scenarios_, dictionary, *backend->pipeline_, post,
         [self](archive::RunId run, const auto& done) {
@@ -90,10 +94,12 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
     auto access = Access::open({.file = chosen.accounts});
     if (!access) return access.error();
     backend->access_ = std::move(*access);
-    backend->campaigns_ = std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
+    backend->campaigns_ =
+        std::make_unique<campaign::CampaignDesk>(chosen.archive.parent_path(), backend->scenarios_, dictionary);
     backend->api_ = std::make_unique<Api>(
-        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_, *backend->hub_,
-                   *backend->pipeline_, backend->console_, *backend->access_, backend->server_->secure(), [self] { return self->server_->connections(); }});
+        Api::Parts{dictionary, backend->scenarios_, *backend->queries_, *backend->desk_, *backend->campaigns_,
+                   *backend->hub_, *backend->pipeline_, backend->console_, *backend->access_,
+                   backend->server_->secure(), [self] { return self->server_->connections(); }});
     backend->adopt_newest_run();
     backend->note_resets();
     return backend;
@@ -101,11 +107,15 @@ Result<std::unique_ptr<ConsoleBackend>> ConsoleBackend::open(Settings settings,
 
 WebServer::Handlers ConsoleBackend::web_handlers() {
     WebServer::Handlers handlers;
-    handlers.request = [this](HttpRequest request, const Respond& respond) { api_->handle(std::move(request), respond); };
+    handlers.request = [this](HttpRequest request, const Respond& respond) {
+        api_->handle(std::move(request), respond);
+    };
     handlers.body_octets = [this](const Credentials& credentials, std::string_view method, std::string_view path) {
         return api_->body_octets(credentials, method, path);
     };
-    handlers.admit_stream = [this](const Credentials& credentials) { return refusal_of(access_->identify(credentials), Right::watch); };
+    handlers.admit_stream = [this](const Credentials& credentials) {
+        return refusal_of(access_->identify(credentials), Right::watch);
+    };
     handlers.open_stream = [this](const Credentials& credentials, StreamFormat format, std::function<void()> wake) {
         return std::make_shared<StreamSession>(*hub_, format, std::move(wake), stream_client(credentials));
     };
@@ -115,36 +125,47 @@ WebServer::Handlers ConsoleBackend::web_handlers() {
 /// The same checks and the same audit as the routes of the same words.
 StreamSession::Client ConsoleBackend::stream_client(const Credentials& credentials) {
     StreamSession::Client client;
-    client.refusal = [this, credentials] { return may(access_->identify(credentials), Right::watch) ? "" : "the log-in has ended: log in again"; };
+    client.refusal = [this, credentials] {
+        return may(access_->identify(credentials), Right::watch) ? "" : "the log-in has ended: log in again";
+    };
     const auto full = [this] { return !pipeline_->audit_has_room(); };
     const auto allowed = [this, full](const Operator& who, Right right) -> Result<void> {
         if (!who.role) return Error{"the log-in has ended: log in again"};
         if (!may(who, right))
-            return Error{fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
+            return Error{
+                fmt::format("{} is {}: this needs the right to {}", who.user, name_of(*who.role), name_of(right))};
         if (full()) return Error{"nothing is done that the audit cannot take: " + pipeline_->fault()};
         return {};
     };
-    client.command = [this, credentials, allowed, full](v1::CommandRequest request, const std::function<void(v1::CommandReply)>& reply) {
+    client.command = [this, credentials, allowed, full](v1::CommandRequest request,
+                                                        const std::function<void(v1::CommandReply)>& reply) {
         const auto who = access_->identify(credentials);
         name_asker(who, request);
         auto right = allowed(who, Right::command);
         if (right) right = may_send(who, dictionary_, *desk_, request);
-        const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full, reply](const v1::CommandReply& answer) {
+        const auto noted = [this, who, detail = to_json(request), dry_run = request.dry_run(), full,
+                            reply](const v1::CommandReply& answer) {
             // A dry run is no action: a console asks each second while it shows what would be sent.
-            if (!dry_run && !full()) pipeline_->audit(audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
+            if (!dry_run && !full())
+                pipeline_->audit(
+                    audit_record(who, "command", detail, answer.accepted() ? "done" : "refused: " + answer.reason()));
             reply(answer);
         };
-        if (right) return desk_->command(std::move(request), may_still_send(*access_, credentials, dictionary_, *desk_), noted);
+        if (right)
+            return desk_->command(std::move(request), may_still_send(*access_, credentials, dictionary_, *desk_),
+                                  noted);
         v1::CommandReply refusal;
         refusal.set_request(request.request());
         refusal.set_reason(right.error().message);
         noted(refusal);
     };
-    client.control = [this, credentials, allowed](v1::RehearsalControl control, const std::function<void(Result<void>)>& done) {
+    client.control = [this, credentials, allowed](v1::RehearsalControl control,
+                                                  const std::function<void(Result<void>)>& done) {
         const auto who = access_->identify(credentials);
         sign(who, control);
         const auto noted = [this, who, detail = to_json(control), done](const Result<void>& result) {
-            pipeline_->audit(audit_record(who, "rehearsal", detail, result ? "done" : "refused: " + result.error().message));
+            pipeline_->audit(
+                audit_record(who, "rehearsal", detail, result ? "done" : "refused: " + result.error().message));
             done(result);
         };
         if (const auto right = allowed(who, Right::rehearse); !right) return noted(right);
@@ -162,9 +183,10 @@ ConsoleBackend::~ConsoleBackend() {
     // A run that goes on waits until its end is stored, and so for a disk that may never take it.
     if (pipeline_) pipeline_->closing();
     // Said and not left to the members' order: until it is gone, each may call what comes after it here.
-    if (queries_) queries_->end(); // what still waits may add a note, through api and pipeline; who asks from now on is refused
+    if (queries_)
+        queries_->end();  // what still waits may add a note, through api and pipeline; who asks from now on is refused
     api_.reset();
-    campaigns_.reset(); // what flies is abandoned
+    campaigns_.reset();  // what flies is abandoned
     downlink_.reset();
     desk_.reset();
     queries_.reset();
@@ -176,20 +198,28 @@ ConsoleBackend::~ConsoleBackend() {
 /// A second of work each, asked each second by who looks at a dry run; the time of a question at most.
 RehearsalDesk::TimelineQuestions ConsoleBackend::timeline_questions() {
     RehearsalDesk::TimelineQuestions questions;
-    questions.check = [this](archive::RunId run, const std::vector<v1::CommandRequest>& requests, bool only_check, const auto& done) {
+    questions.check = [this](archive::RunId run, const std::vector<v1::CommandRequest>& requests, bool only_check,
+                             const auto& done) {
         if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
-        const bool taken = queries_->ask([this, run, requests, only_check, done](archive::Reader& reader) {
-            const auto before = run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run); // 0: none yet
-            done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({})) : Result<std::string>{before.error()});
-        }, {}, Haste::soon);
+        const bool taken = queries_->ask(
+            [this, run, requests, only_check, done](archive::Reader& reader) {
+                const auto before =
+                    run.value == 0 ? Result<v1::CommandList>{v1::CommandList{}} : reader.commands(run);  // 0: none yet
+                done(before ? timeline_check_.check(*before, requests, only_check, queries_->stop_of_question({}))
+                            : Result<std::string>{before.error()});
+            },
+            {}, Haste::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
     };
     questions.look_again = [this](archive::RunId run, const auto& done) {
         using Look = TimelineCheck::Look;
-        const bool taken = queries_->ask([this, run, done](archive::Reader& reader) {
-            const auto before = reader.commands(run);
-            done(before ? Result<Look>{timeline_check_.look_again(*before, queries_->stop_of_question({}))} : Result<Look>{before.error()});
-        }, {}, Haste::soon);
+        const bool taken = queries_->ask(
+            [this, run, done](archive::Reader& reader) {
+                const auto before = reader.commands(run);
+                done(before ? Result<Look>{timeline_check_.look_again(*before, queries_->stop_of_question({}))}
+                            : Result<Look>{before.error()});
+            },
+            {}, Haste::soon);
         if (!taken) done(Error{.message = QueryThreads::busy, .internal = true});
     };
     return questions;
@@ -199,17 +229,21 @@ StreamHub::Services ConsoleBackend::stream_services() {
     StreamHub::Services services;
     services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
                                  archive::Reader::ItemKinds kinds, const auto& done) {
-        const bool taken = queries_->ask([this, run, after, limit, kinds, done](archive::Reader& reader) {
-            auto page = reader.items(run, after, limit, kinds);
-            server_->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
-        }, {}, Haste::soon);
+        const bool taken = queries_->ask(
+            [this, run, after, limit, kinds, done](archive::Reader& reader) {
+                auto page = reader.items(run, after, limit, kinds);
+                server_->post([done, page = std::move(page)]() mutable { done(std::move(page)); });
+            },
+            {}, Haste::soon);
         if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.read_run = [this](std::uint64_t run, const auto& done) {
-        const bool taken = queries_->ask([this, run, done](archive::Reader& reader) {
-            auto state = reader.run(archive::RunId{static_cast<std::uint32_t>(run)});
-            server_->post([done, state = std::move(state)]() mutable { done(std::move(state)); });
-        }, {}, Haste::soon);
+        const bool taken = queries_->ask(
+            [this, run, done](archive::Reader& reader) {
+                auto state = reader.run(archive::RunId{static_cast<std::uint32_t>(run)});
+                server_->post([done, state = std::move(state)]() mutable { done(std::move(state)); });
+            },
+            {}, Haste::soon);
         if (!taken) server_->post([done] { done(Error{.message = QueryThreads::busy, .internal = true}); });
     };
     services.want_items = [this](bool wanted) {
@@ -226,20 +260,24 @@ void ConsoleBackend::adopt_newest_run() {
     if (runs && !runs->runs().empty()) hub_->run_state(runs->runs(0));
 }
 
-/// Who can write the file of accounts needs no server to become an administrator: the next one that runs says that it happened.
+/// Who can write the file of accounts needs no server to become an administrator: the next one that runs says that it
+/// happened.
 void ConsoleBackend::note_resets() {
     for (const auto& reset : access_->take_resets()) {
         Operator who;
         who.user = reset.by();
         who.from = command_line;
-        pipeline_->audit(audit_record(who, "user", fmt::format("aeolis accounts reset: a new password for '{}', {}", reset.user(), reset.at()), "done"));
+        pipeline_->audit(audit_record(
+            who, "user", fmt::format("aeolis accounts reset: a new password for '{}', {}", reset.user(), reset.at()),
+            "done"));
     }
 }
 
 void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, double pace) {
     const auto detail = fmt::format("serve --scenario {} --seed {} --pace {}", scenario.name, seed, pace);
     desk_->start(std::move(scenario), seed, pace, [this, detail](const Result<v1::RunState>& began) {
-        pipeline_->audit(audit_record(by_command_line(), "rehearsal", detail, began ? "done" : "refused: " + began.error().message));
+        pipeline_->audit(
+            audit_record(by_command_line(), "rehearsal", detail, began ? "done" : "refused: " + began.error().message));
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);
     });
 }
@@ -252,7 +290,8 @@ Result<void> ConsoleBackend::follow(DownlinkFollower::Settings settings) {
     auto follower = DownlinkFollower::start(std::move(settings), *pipeline_, [this](v1::RunState state) {
         server_->post([this, state = std::move(state)]() mutable { hub_->run_state(std::move(state)); });
     });
-    pipeline_->audit(audit_record(by_command_line(), "downlink", detail, follower ? "done" : "refused: " + follower.error().message));
+    pipeline_->audit(audit_record(by_command_line(), "downlink", detail,
+                                  follower ? "done" : "refused: " + follower.error().message));
     if (!follower) return follower.error();
     downlink_ = std::move(*follower);
     return {};
@@ -265,4 +304,4 @@ void ConsoleBackend::stop() {
     server_->stop();
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

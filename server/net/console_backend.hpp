@@ -15,18 +15,19 @@ namespace aeolis::server {
 
 /// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
 ///
-/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three queries, one a rehearsal; a campaign's own
+/// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three queries, one a rehearsal; a
+/// campaign's own
 class ConsoleBackend {
   public:
     struct Settings {
         WebServer::Settings web_server{};
-        std::filesystem::path accounts{}; ///< empty: none, which is possible on loopback only
+        std::filesystem::path accounts{};  ///< empty: none, which is possible on loopback only
         std::filesystem::path archive{}, scenarios{}, web{};
-        const telemetry::OtherMission* other = nullptr; ///< whose dictionary it then is; it must outlive this
+        const telemetry::OtherMission* other = nullptr;  ///< whose dictionary it then is; it must outlive this
     };
     /// Fails with one line that names the archive or the address. The dictionary must outlive this.
     static Result<std::unique_ptr<ConsoleBackend>> open(Settings settings, const dictionary::Dictionary& dictionary);
-    ~ConsoleBackend(); ///< a run that goes on is stopped, and its end is in the archive
+    ~ConsoleBackend();  ///< a run that goes on is stopped, and its end is in the archive
 
     /// Before run(): a rehearsal to start with.
     void start(simulation::Scenario scenario, std::uint64_t seed, double pace);
@@ -34,7 +35,7 @@ class ConsoleBackend {
     Result<void> follow(DownlinkFollower::Settings settings);
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }
     void run();
-    void stop(); ///< from any thread
+    void stop();  ///< from any thread
     std::uint16_t port() const { return server_->port(); }
     bool secure() const { return server_->secure(); }
     /// Of the administrator, when the file of accounts was made just now; else empty.
@@ -65,4 +66,4 @@ class ConsoleBackend {
     std::unique_ptr<Api> api_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

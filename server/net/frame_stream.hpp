@@ -24,22 +24,22 @@ namespace aeolis::server::net {
 inline void append_frame(std::string& frames, std::string_view message, bool binary) {
     const auto octets = message.size();
     const std::size_t wide = octets < 126 ? 0 : octets <= 0xFFFF ? 2 : 8;
-    std::array<char, 10> header{binary ? '\x82' : '\x81', static_cast<char>(wide == 0 ? octets : wide == 2 ? 126 : 127)};
-    for (std::size_t i = 0; i < wide; ++i)
-        header[2 + i] = static_cast<char>(octets >> (8 * (wide - 1 - i)));
+    std::array<char, 10> header{binary ? '\x82' : '\x81', static_cast<char>(wide == 0   ? octets
+                                                                            : wide == 2 ? 126
+                                                                                        : 127)};
+    for (std::size_t i = 0; i < wide; ++i) header[2 + i] = static_cast<char>(octets >> (8 * (wide - 1 - i)));
     frames.append(header.data(), 2 + wide).append(message);
 }
 
-/// Lies between a WebSocket and its socket: our frames of data go past the WebSocket in one system call for as long as the kernel
-/// takes them, and never into the midst of another frame, the WebSocket's own pings, pongs and closes among them.
+/// Lies between a WebSocket and its socket: our frames of data go past the WebSocket in one system call for as long as
+/// the kernel takes them, and never into the midst of another frame, the WebSocket's own pings, pongs and closes among
+/// them.
 ///
 /// In       frames of data by send(); whole control frames by async_write_some()
-/// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not for calling
-/// Order    frames leave in the order in which they were given
-/// Fault    a socket that fails is closed: who reads from it is told
-/// Copies are handles of the same stream.
-/// Thread   the network thread
-/// Memory   the rest of one send(), and the few control frames that a WebSocket has under way
+/// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not
+/// for calling Order    frames leave in the order in which they were given Fault    a socket that fails is closed: who
+/// reads from it is told Copies are handles of the same stream. Thread   the network thread Memory   the rest of one
+/// send(), and the few control frames that a WebSocket has under way
 template <typename Next>
 class FrameStream {
   public:
@@ -79,7 +79,7 @@ class FrameStream {
         bool flushing = false, closing = false;
         std::string kept;
         Next next;
-        Timer drained; ///< cancelled when it happens
+        Timer drained;  ///< cancelled when it happens
         std::function<void()> tell;
         error_code failure;
     };
@@ -95,10 +95,11 @@ template <typename Next>
 std::size_t FrameStream<Next>::give(State& state, std::string_view frames) {
     if constexpr (std::is_same_v<Next, Stream>) {
         // Asked for each time: a closed socket's number may be another client's by now.
-        const auto given = ::send(state.next.socket().native_handle(), frames.data(), frames.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-        return given > 0 ? static_cast<std::size_t>(given) : 0; // what is wrong with the socket, flush() finds
+        const auto given =
+            ::send(state.next.socket().native_handle(), frames.data(), frames.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+        return given > 0 ? static_cast<std::size_t>(given) : 0;  // what is wrong with the socket, flush() finds
     } else {
-        return 0; // TLS makes its own of what is written
+        return 0;  // TLS makes its own of what is written
     }
 }
 
@@ -139,13 +140,13 @@ template <typename Buffers, typename Token>
 auto FrameStream<Next>::async_write_some(const Buffers& buffers, Token&& token) {
     constexpr char close_frame = '\x88';
     const auto octets = beast::buffers_to_string(buffers);
-    state_->closing = state_->closing || octets.starts_with(close_frame); // no data after it
+    state_->closing = state_->closing || octets.starts_with(close_frame);  // no data after it
     state_->kept += octets;
     flush(state_);
     return asio::async_compose<Token, void(error_code, std::size_t)>(
         [state = state_, size = octets.size(), first = true](auto& self, error_code = {}) mutable {
             if (std::exchange(first, false) && !state->flushing)
-                asio::post(state->drained.get_executor(), std::move(self)); // nothing completes within its beginning
+                asio::post(state->drained.get_executor(), std::move(self));  // nothing completes within its beginning
             else if (state->flushing)
                 state->drained.async_wait(std::move(self));
             else
@@ -166,4 +167,4 @@ void async_teardown(beast::role_type role, FrameStream<Next>& stream, Handler&& 
     async_teardown(role, stream.next_layer(), std::forward<Handler>(handler));
 }
 
-} // namespace aeolis::server::net
+}  // namespace aeolis::server::net

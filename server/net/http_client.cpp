@@ -26,7 +26,9 @@ struct Place {
 Result<Place> place_of(const std::string& server) {
     const auto url = boost::urls::parse_uri(boost::urls::string_view{server.data(), server.size()});
     const auto refused = Error{fmt::format("--server {}: http://HOST:PORT or https://HOST:PORT is wanted", server)};
-    if (!url || (url->scheme() != "http" && url->scheme() != "https") || url->host().empty() || url->has_userinfo() || url->has_query()) return refused;
+    if (!url || (url->scheme() != "http" && url->scheme() != "https") || url->host().empty() || url->has_userinfo() ||
+        url->has_query())
+        return refused;
     if (!url->encoded_path().empty() && url->encoded_path() != "/") return refused;
     Place place;
     place.secure = url->scheme() == "https";
@@ -40,7 +42,7 @@ Result<Place> place_of(const std::string& server) {
 struct Outcome {
     const char* what = "";
     error_code error;
-    bool may_have_arrived = false; ///< the request, whole
+    bool may_have_arrived = false;  ///< the request, whole
 };
 
 struct Patience {
@@ -49,14 +51,15 @@ struct Patience {
 
 /// Sends the request and reads its answer; what fails first is the outcome.
 template <typename AnyStream>
-Task<Outcome> exchange(AnyStream& stream, http::request<http::string_body>& request, http::response_parser<http::string_body>& parser,
-                       Patience patience) {
+Task<Outcome> exchange(AnyStream& stream, http::request<http::string_body>& request,
+                       http::response_parser<http::string_body>& parser, Patience patience) {
     auto& lowest = beast::get_lowest_layer(stream);
     Outcome outcome;
     outcome.what = "the request could not be sent";
     lowest.expires_after(patience.each);
     co_await http::async_write(stream, request, asio::redirect_error(awaiting, outcome.error));
-    outcome.may_have_arrived = !outcome.error || outcome.error == beast::error::timeout; // the last octets and the timeout can come together
+    outcome.may_have_arrived =
+        !outcome.error || outcome.error == beast::error::timeout;  // the last octets and the timeout can come together
     if (outcome.error) co_return outcome;
     outcome.what = "no answer";
     beast::flat_buffer buffer;
@@ -71,7 +74,8 @@ Task<Outcome> ask(Place place, asio::ssl::context& tls, http::request<http::stri
     auto executor = co_await asio::this_coro::executor;
     asio::ip::basic_resolver<tcp, Executor> resolver{executor};
     outcome.what = "its address is not found";
-    const auto ends = co_await resolver.async_resolve(place.host, place.port, asio::redirect_error(awaiting, outcome.error));
+    const auto ends =
+        co_await resolver.async_resolve(place.host, place.port, asio::redirect_error(awaiting, outcome.error));
     if (outcome.error) co_return outcome;
     Stream stream{executor};
     stream.expires_after(patience.each);
@@ -90,13 +94,15 @@ Task<Outcome> ask(Place place, asio::ssl::context& tls, http::request<http::stri
     co_return co_await exchange(secure, request, parser, patience);
 }
 
-} // namespace
+}  // namespace
 
 Result<HttpClient::Answer> HttpClient::post(const std::string& path, const std::string& json) const {
     const auto place = place_of(settings_.server);
     if (!place) return place.error();
     if (!settings_.token.empty() && !place->secure && !WebServer::is_loopback(place->host))
-        return Error{fmt::format("--server {}: over http others could read the token: it is sent over https, or to this machine only", settings_.server)};
+        return Error{fmt::format(
+            "--server {}: over http others could read the token: it is sent over https, or to this machine only",
+            settings_.server)};
     asio::ssl::context tls{asio::ssl::context::tls_client};
     SSL_CTX_set_min_proto_version(tls.native_handle(), TLS1_2_VERSION);
     error_code error;
@@ -117,15 +123,18 @@ Result<HttpClient::Answer> HttpClient::post(const std::string& path, const std::
     asio::io_context io{1};
     std::optional<Outcome> outcome;
     const Patience patience{.each = settings_.patience, .answer = settings_.answer_patience};
-    asio::co_spawn(io, ask(*place, tls, request, parser, patience), [&outcome](const std::exception_ptr& broken, Outcome done) {
-        if (!broken) outcome = done;
-    });
+    asio::co_spawn(io, ask(*place, tls, request, parser, patience),
+                   [&outcome](const std::exception_ptr& broken, Outcome done) {
+                       if (!broken) outcome = done;
+                   });
     io.run();
     if (!outcome) return Answer{.lost = fmt::format("{}: the request was broken off", settings_.server)};
-    const auto why = outcome->error ? fmt::format("{}: {}: {}", settings_.server, outcome->what, outcome->error.message()) : std::string{};
+    const auto why = outcome->error
+                         ? fmt::format("{}: {}: {}", settings_.server, outcome->what, outcome->error.message())
+                         : std::string{};
     if (outcome->error && !outcome->may_have_arrived) return Error{why};
     if (outcome->error) return Answer{.lost = why};
     return Answer{.status = parser.get().result_int(), .body = std::move(parser.get().body())};
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

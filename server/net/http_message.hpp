@@ -11,11 +11,12 @@ namespace aeolis::server {
 
 struct HttpRequest {
     std::string method;
-    std::string path;  ///< decoded, without the query
-    std::string query; ///< as it stands after '?', still percent-encoded
+    std::string path;   ///< decoded, without the query
+    std::string query;  ///< as it stands after '?', still percent-encoded
     std::string body;
     Credentials credentials{};
-    std::function<bool()> gone{}; ///< whether who asked has left: what still works on it may stop; from any thread; null: never told
+    std::function<bool()>
+        gone{};  ///< whether who asked has left: what still works on it may stop; from any thread; null: never told
 };
 
 /// The next part of a body, which may be empty; none: that was all.
@@ -26,14 +27,15 @@ struct HttpResponse {
     std::string content_type = "application/json";
     std::string cache_control = "no-store";
     std::string body;
-    std::string set_cookie{}; ///< empty: none
-    std::string next_after{}; ///< of a page: the header Aeolis-Next-After; empty: none
-    /// Null: the body is all. Else it is the first part, and this is called for each further one, when the one before it has been
-    /// taken by the client; the answer may come from any thread. An Error breaks the connection off: the client sees that it has not all.
+    std::string set_cookie{};  ///< empty: none
+    std::string next_after{};  ///< of a page: the header Aeolis-Next-After; empty: none
+    /// Null: the body is all. Else it is the first part, and this is called for each further one, when the one before
+    /// it has been taken by the client; the answer may come from any thread. An Error breaks the connection off: the
+    /// client sees that it has not all.
     std::function<void(std::function<void(BodyPart)>)> more{};
 };
 
 /// To be called once, from any thread.
 using Respond = std::function<void(HttpResponse)>;
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

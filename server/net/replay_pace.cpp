@@ -5,7 +5,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double wait_max_s = 1.0e9; // ours: thirty years; a steady clock's time still holds it, however small the pace
+constexpr double wait_max_s =
+    1.0e9;  // ours: thirty years; a steady clock's time still holds it, however small the pace
 
 /// When all of it had reached Earth; none: it does not say.
 std::optional<Ert> on_earth_at(const v1::Item& item) {
@@ -27,7 +28,7 @@ std::optional<Ert> on_earth_at(const v1::Item& item) {
     return std::nullopt;
 }
 
-} // namespace
+}  // namespace
 
 ReplayPace::Clock::time_point ReplayPace::due(const v1::Item& item, Clock::time_point now) {
     if (!begun_) begun_ = now;
@@ -37,7 +38,8 @@ ReplayPace::Clock::time_point ReplayPace::due(const v1::Item& item, Clock::time_
     }
     if (!latest_) return *begun_;
     const double since_s = static_cast<double>(latest_->microseconds - first_->microseconds) * 1.0e-6;
-    return *begun_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>{std::min(since_s / pace_, wait_max_s)});
+    return *begun_ + std::chrono::duration_cast<Clock::duration>(
+                         std::chrono::duration<double>{std::min(since_s / pace_, wait_max_s)});
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

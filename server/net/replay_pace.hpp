@@ -11,12 +11,13 @@ namespace aeolis::server {
 /// When the items of a run that is over go out again: so many times as fast as they reached Earth.
 ///
 /// In       items in the order of their numbers, and what time it is     Out   when each is due
-/// Rule     the first is due when it is asked for. One that bears no time on Earth has that of the one before it; one that reached
+/// Rule     the first is due when it is asked for. One that bears no time on Earth has that of the one before it; one
+/// that reached
 ///          Earth before the one before it waits no longer than that
 class ReplayPace {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr double pace_max = 10'000.0; ///< ours: six hours of cruise in two seconds
+    static constexpr double pace_max = 10'000.0;  ///< ours: six hours of cruise in two seconds
 
     explicit ReplayPace(double pace) : pace_(pace) {}
 
@@ -29,4 +30,4 @@ class ReplayPace {
     std::optional<Ert> first_, latest_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

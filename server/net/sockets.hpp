@@ -28,4 +28,4 @@ template <typename T = void>
 using Task = asio::awaitable<T, Executor>;
 inline constexpr asio::use_awaitable_t<Executor> awaiting{};
 
-} // namespace aeolis::server::net
+}  // namespace aeolis::server::net

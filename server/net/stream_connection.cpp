@@ -19,15 +19,18 @@ namespace {
 namespace websocket = beast::websocket;
 
 constexpr const char* server_ends = "the server ends";
-constexpr std::size_t turn_octets_max = 64 << 10; // ours: a client that has much to catch up with lets the others have their turn
-/// Ours: that the kernel may hold for a client and has not sent. What waits beyond it waits in the session, where it is thinned; and a ping is
-/// not so far behind other octets that a slow client seems dead.
+constexpr std::size_t turn_octets_max =
+    64 << 10;  // ours: a client that has much to catch up with lets the others have their turn
+/// Ours: that the kernel may hold for a client and has not sent. What waits beyond it waits in the session, where it is
+/// thinned; and a ping is not so far behind other octets that a slow client seems dead.
 using UnsentMax = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
 constexpr int unsent_octets_max = 64 << 10;
-constexpr std::chrono::milliseconds turn_max{20}; // ours: of all writers together (live, a thousand take 8), until whoever asks something else is heard
+constexpr std::chrono::milliseconds turn_max{
+    20};  // ours: of all writers together (live, a thousand take 8), until whoever asks something else is heard
 
-constexpr std::size_t writers_between_looks = 8; // ours, at the clock: what each writes takes microseconds, or a part of a millisecond where it catches up
-constexpr std::size_t writers_ahead = 2; // what theirs is is fetched so far ahead, and they themselves twice as far
+constexpr std::size_t writers_between_looks =
+    8;  // ours, at the clock: what each writes takes microseconds, or a part of a millisecond where it catches up
+constexpr std::size_t writers_ahead = 2;  // what theirs is is fetched so far ahead, and they themselves twice as far
 constexpr std::size_t cache_line_octets = 64;
 
 /// Has the processor fetch the first octets of an object.
@@ -36,12 +39,16 @@ void fetch_octets(const void* object, std::size_t octets) {
         __builtin_prefetch(static_cast<const char*>(object) + at);
 }
 
-/// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the session.
+/// A client's connection. It takes from its session what the kernel takes from it; whatever else is due waits in the
+/// session.
 template <typename AnyStream>
-class Connection final : public WriteTurn::Writer, public OpenStreams::Member, public std::enable_shared_from_this<Connection<AnyStream>> {
+class Connection final : public WriteTurn::Writer,
+                         public OpenStreams::Member,
+                         public std::enable_shared_from_this<Connection<AnyStream>> {
   public:
     Connection(AnyStream stream, StreamService service)
-        : frames_(std::move(stream)), socket_(frames_), service_(std::move(service)), place_(service_.streams, *this), replay_(frames_.get_executor()) {}
+        : frames_(std::move(stream)), socket_(frames_), service_(std::move(service)), place_(service_.streams, *this),
+          replay_(frames_.get_executor()) {}
 
     Task<> serve(UpgradeRequest request, StreamFormat format, std::string_view subprotocol);
     void write() override;
@@ -56,13 +63,13 @@ class Connection final : public WriteTurn::Writer, public OpenStreams::Member, p
     void wait_for_due();
     bool gather(std::string& frames);
 
-    bool open_ = true; ///< for messages of ours
+    bool open_ = true;  ///< for messages of ours
     FrameStream<AnyStream> frames_;
     std::shared_ptr<StreamSession> session_;
-    websocket::stream<FrameStream<AnyStream>> socket_; ///< over frames_
+    websocket::stream<FrameStream<AnyStream>> socket_;  ///< over frames_
     StreamService service_;
     OpenStreams::Place place_;
-    Timer replay_; ///< runs out when the session has something by itself
+    Timer replay_;  ///< runs out when the session has something by itself
 };
 
 template <typename AnyStream>
@@ -75,7 +82,7 @@ Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format,
         if (const auto alive = weak.lock()) alive->due();
     });
     due();
-    if (service_.streams.ending()) end(); // since it was let in
+    if (service_.streams.ending()) end();  // since it was let in
     co_await read();
     open_ = false;
     error_code ignored;
@@ -84,17 +91,19 @@ Task<> Connection<AnyStream>::serve(UpgradeRequest request, StreamFormat format,
 
 template <typename AnyStream>
 Task<bool> Connection<AnyStream>::accept(UpgradeRequest request, std::string_view subprotocol) {
-    beast::get_lowest_layer(socket_).expires_never(); // the WebSocket has time-outs of its own
+    beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has time-outs of its own
     auto timeout = websocket::stream_base::timeout::suggested(beast::role_type::server);
     timeout.idle_timeout = service_.silence_max;
     timeout.keep_alive_pings = true;
     socket_.set_option(timeout);
     socket_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
-        response.set(beast::http::field::sec_websocket_protocol, beast::string_view{subprotocol.data(), subprotocol.size()});
+        response.set(beast::http::field::sec_websocket_protocol,
+                     beast::string_view{subprotocol.data(), subprotocol.size()});
     }));
-    socket_.read_message_max(0); // the limit is kept below: Beast's own closes without a word
+    socket_.read_message_max(0);  // the limit is kept below: Beast's own closes without a word
     error_code error;
-    beast::get_lowest_layer(socket_).socket().set_option(UnsentMax{unsent_octets_max}, error); // without it the stream works, too
+    beast::get_lowest_layer(socket_).socket().set_option(UnsentMax{unsent_octets_max},
+                                                         error);  // without it the stream works, too
     co_await socket_.async_accept(request, asio::redirect_error(awaiting, error));
     co_return !error;
 }
@@ -104,18 +113,21 @@ Task<> Connection<AnyStream>::read() {
     beast::flat_buffer buffer;
     error_code error;
     for (;;) {
-        co_await socket_.async_read_some(buffer, service_.message_octets_max + 1 - buffer.size(), asio::redirect_error(awaiting, error));
+        co_await socket_.async_read_some(buffer, service_.message_octets_max + 1 - buffer.size(),
+                                         asio::redirect_error(awaiting, error));
         if (error) co_return;
         if (buffer.size() > service_.message_octets_max) {
-            spdlog::warn("stream: a client sent more than {} octets in one message and is closed", service_.message_octets_max);
+            spdlog::warn("stream: a client sent more than {} octets in one message and is closed",
+                         service_.message_octets_max);
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
-            const websocket::close_reason reason{websocket::close_code::too_big,
-                                                 fmt::format("a message has at most {} octets", service_.message_octets_max)};
+            const websocket::close_reason reason{
+                websocket::close_code::too_big,
+                fmt::format("a message has at most {} octets", service_.message_octets_max)};
             co_await close(reason);
             co_return;
         }
         if (!socket_.is_message_done()) continue;
-        if (open_) // else it is told to go, and what it still says would wait for answers that nobody takes
+        if (open_)  // else it is told to go, and what it still says would wait for answers that nobody takes
             session_->on_message({static_cast<const char*>(buffer.data().data()), buffer.size()});
         buffer.consume(buffer.size());
     }
@@ -126,12 +138,13 @@ Task<> Connection<AnyStream>::close(websocket::close_reason reason) {
     const auto self = this->shared_from_this();
     open_ = false;
     error_code ignored;
-    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored)); // then read() ends, too
+    co_await socket_.async_close(reason, asio::redirect_error(awaiting, ignored));  // then read() ends, too
 }
 
 template <typename AnyStream>
 void Connection<AnyStream>::end() {
-    if (session_ && open_) asio::co_spawn(socket_.get_executor(), close({websocket::close_code::going_away, server_ends}), asio::detached);
+    if (session_ && open_)
+        asio::co_spawn(socket_.get_executor(), close({websocket::close_code::going_away, server_ends}), asio::detached);
 }
 
 template <typename AnyStream>
@@ -143,7 +156,7 @@ template <typename AnyStream>
 void Connection<AnyStream>::wait_for_due() {
     const auto at = session_->due();
     if (!at) return;
-    replay_.expires_at(*at); // whatever it waited for before
+    replay_.expires_at(*at);  // whatever it waited for before
     replay_.async_wait([weak = this->weak_from_this()](error_code error) {
         const auto alive = weak.lock();
         if (alive && !error) alive->due();
@@ -181,7 +194,7 @@ void Connection<AnyStream>::fetch() const {
     frames_.fetch();
 }
 
-} // namespace
+}  // namespace
 
 OpenStreams::Place::~Place() {
     all_.members_.erase(place_);
@@ -197,8 +210,7 @@ void OpenStreams::end(std::function<void()> gone) {
     ending_ = true;
     if (members_.empty()) return gone();
     gone_ = std::move(gone);
-    for (auto* member : members_)
-        member->end();
+    for (auto* member : members_) member->end();
 }
 
 void WriteTurn::add(std::shared_ptr<Writer> writer) {
@@ -226,14 +238,16 @@ void WriteTurn::write_all() {
     if (!due_.empty()) post();
 }
 
-Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service) {
+Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,
+                    StreamService service) {
     const auto connection = std::make_shared<Connection<Stream>>(std::move(stream), std::move(service));
     co_await connection->serve(std::move(request), format, subprotocol);
 }
 
-Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service) {
+Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,
+                    StreamService service) {
     const auto connection = std::make_shared<Connection<TlsStream>>(std::move(stream), std::move(service));
     co_await connection->serve(std::move(request), format, subprotocol);
 }
 
-} // namespace aeolis::server::net
+}  // namespace aeolis::server::net

@@ -16,15 +16,16 @@
 
 namespace aeolis::server::net {
 
-/// Connections that have something to write. All that comes due while the network thread does one thing is written after it, once
-/// a connection: a client gets eight batches in one message and one system call, not in eight.
+/// Connections that have something to write. All that comes due while the network thread does one thing is written
+/// after it, once a connection: a client gets eight batches in one message and one system call, not in eight.
 class WriteTurn {
   public:
     class Writer {
       public:
         virtual ~Writer() = default;
         virtual void write() = 0;
-        /// Has the processor fetch what write() is about to read: a send leaves nothing of theirs in the nearest memory.
+        /// Has the processor fetch what write() is about to read: a send leaves nothing of theirs in the nearest
+        /// memory.
         virtual void fetch() const = 0;
 
       private:
@@ -41,7 +42,7 @@ class WriteTurn {
 
   private:
     void post();
-    void write_all(); ///< or those that come to it in a turn; the rest after what else the thread has to do
+    void write_all();  ///< or those that come to it in a turn; the rest after what else the thread has to do
 
     Executor executor_;
     std::string frames_;
@@ -93,15 +94,18 @@ class OpenStreams {
 struct StreamService {
     WriteTurn& turn;
     OpenStreams& streams;
-    std::size_t message_octets_max = 0; ///< of one that a client sends
-    std::chrono::milliseconds silence_max{}; ///< a peer that answers no ping for so long is dead
+    std::size_t message_octets_max = 0;       ///< of one that a client sends
+    std::chrono::milliseconds silence_max{};  ///< a peer that answers no ping for so long is dead
     std::function<std::shared_ptr<StreamSession>(StreamFormat, std::function<void()> wake)> open;
 };
 
 using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
 
-/// Accepts the upgrade and serves the session until either side ends. Takes its place of service.streams before anything else.
-Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service);
-Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol, StreamService service);
+/// Accepts the upgrade and serves the session until either side ends. Takes its place of service.streams before
+/// anything else.
+Task<> serve_stream(Stream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,
+                    StreamService service);
+Task<> serve_stream(TlsStream stream, UpgradeRequest request, StreamFormat format, std::string_view subprotocol,
+                    StreamService service);
 
-} // namespace aeolis::server::net
+}  // namespace aeolis::server::net

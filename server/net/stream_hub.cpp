@@ -15,7 +15,7 @@ namespace {
 // Ours.
 constexpr double pace_without_further_thinning = 8.0;
 
-constexpr std::size_t sessions_ahead = 4; // ours
+constexpr std::size_t sessions_ahead = 4;  // ours
 
 double thinning_interval_s(const StreamShape& shape, const v1::RunState& state) {
     if (shape.max_rate_hz <= 0.0) return 0.0;
@@ -59,7 +59,8 @@ std::vector<DueItem> due_of(std::span<const ItemBefore> items, double interval_s
         }
         const double sclk = item->samples().sclk();
         if (interval_s > 0.0 && !begins_interval(sclk, before.previous_sclk, interval_s)) continue;
-        due.push_back({item, interval_s > 0.0 && before.previous_sclk && sclk - *before.previous_sclk < interval_s, before.ascend});
+        due.push_back({item, interval_s > 0.0 && before.previous_sclk && sclk - *before.previous_sclk < interval_s,
+                       before.ascend});
     }
     return due;
 }
@@ -82,7 +83,7 @@ void add_items(const StreamShape& shape, std::span<const DueItem> due, v1::Batch
     }
 }
 
-} // namespace
+}  // namespace
 
 Encoded encode(const v1::ServerMessage& message, StreamFormat format) {
     return std::make_shared<const std::string>(format == StreamFormat::json ? to_json(message)
@@ -110,17 +111,16 @@ StreamHub::StreamHub(std::uint16_t dictionary_id, Services services)
     : dictionary_id_(dictionary_id), services_(std::move(services)) {}
 
 void StreamHub::published(std::shared_ptr<const pipeline::PublishedBatch> batch) {
-    if (batch->run.value != state_.run()) return; // a run's state comes before its first batch
+    if (batch->run.value != state_.run()) return;  // a run's state comes before its first batch
     figures.items += batch->last_seq - batch->first_seq + 1;
     last_seq_ = batch->last_seq;
-    range_.reset(); // what it points to may go
+    range_.reset();  // what it points to may go
     if (!batch->built) {
         forget_items();
     } else {
         Held held{std::move(batch), {}};
         held.samples.reserve(held.batch->items.size());
-        for (const auto& item : held.batch->items)
-            held.samples.push_back(spacing_.next(item));
+        for (const auto& item : held.batch->items) held.samples.push_back(spacing_.next(item));
         held_items_ += held.batch->items.size();
         held_.push_back(std::move(held));
         while (held_items_ > items_max) {
@@ -143,7 +143,7 @@ void StreamHub::run_state(v1::RunState state) {
         before_ = std::move(state_);
         before_.set_last_seq(last_seq_);
         before_version_ = state_version_;
-        last_seq_ = state.last_seq(); // of a run that is over, as the archive has it; of a new one 0
+        last_seq_ = state.last_seq();  // of a run that is over, as the archive has it; of a new one 0
         forget_items();
         cache_.clear();
     }
@@ -173,8 +173,7 @@ void StreamHub::add(StreamSession& session) {
 }
 
 void StreamHub::check_clients() {
-    for (auto* session : sessions_)
-        session->check();
+    for (auto* session : sessions_) session->check();
 }
 
 void StreamHub::remove(StreamSession& session) {
@@ -183,12 +182,14 @@ void StreamHub::remove(StreamSession& session) {
 }
 
 std::size_t StreamHub::sessions_behind() const {
-    return static_cast<std::size_t>(std::ranges::count_if(sessions_, [](const auto* session) { return session->behind(); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(sessions_, [](const auto* session) { return session->behind(); }));
 }
 
 void StreamHub::wake_all() {
     for (std::size_t i = 0; i < sessions_.size(); ++i) {
-        if (i + sessions_ahead < sessions_.size()) __builtin_prefetch(sessions_[i + sessions_ahead]); // sends leave nothing of theirs in the nearest memory
+        if (i + sessions_ahead < sessions_.size())
+            __builtin_prefetch(sessions_[i + sessions_ahead]);  // sends leave nothing of theirs in the nearest memory
         sessions_[i]->wake();
     }
 }
@@ -199,19 +200,22 @@ bool StreamHub::holds(archive::Sequence after) const {
 }
 
 const StreamHub::Range& StreamHub::range_after(archive::Sequence after, double interval_s, bool units) {
-    if (range_ && range_->after == after && range_->last_seq == last_seq_ && range_->interval_s == interval_s && range_->units == units)
+    if (range_ && range_->after == after && range_->last_seq == last_seq_ && range_->interval_s == interval_s &&
+        range_->units == units)
         return *range_;
     std::vector<ItemBefore> items;
     const auto last_of = [](const Held& held) { return held.batch->last_seq; };
-    for (auto held = std::ranges::upper_bound(held_, after, {}, last_of); held != held_.end() && items.size() < message_items_max; ++held) {
+    for (auto held = std::ranges::upper_bound(held_, after, {}, last_of);
+         held != held_.end() && items.size() < message_items_max; ++held) {
         for (std::size_t i = 0; i < held->batch->items.size() && items.size() < message_items_max; ++i)
             if (held->batch->items[i].seq() > after) items.push_back({&held->batch->items[i], held->samples[i]});
     }
-    return range_.emplace(Range{after, last_seq_, items.empty() ? last_seq_ : items.back().item->seq(), interval_s, units, due_of(items, interval_s, units)});
+    return range_.emplace(Range{after, last_seq_, items.empty() ? last_seq_ : items.back().item->seq(), interval_s,
+                                units, due_of(items, interval_s, units)});
 }
 
 StreamHub::Fresh StreamHub::fresh(const StreamShape& shape, archive::Sequence after, archive::Sequence sent_through) {
-    for (const auto& cached : cache_ | std::views::reverse) { // the newest is what most ask for
+    for (const auto& cached : cache_ | std::views::reverse) {  // the newest is what most ask for
         if (cached.after == after && cached.sent_through == sent_through && cached.last_seq == last_seq_ &&
             cached.clocks_version == clocks_version_ && cached.shape == shape) {
             ++figures.shared;
@@ -251,4 +255,4 @@ Encoded StreamHub::encoded_state(StreamFormat format) {
     return encoded;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -29,7 +29,7 @@ Encoded encode(const v1::ServerMessage& message, StreamFormat format);
 struct StreamShape {
     StreamFormat format{};
     bool all_channels = false;
-    std::vector<std::uint32_t> channels; ///< ascending
+    std::vector<std::uint32_t> channels;  ///< ascending
     double max_rate_hz = 0.0;
     bool units = true;
     bool operator==(const StreamShape&) const = default;
@@ -37,8 +37,9 @@ struct StreamShape {
 
 /// What is known of an item's samples before anyone asks for some of them.
 struct SamplesBefore {
-    std::optional<double> previous_sclk; ///< when the same packet's came before: so thinning needs no memory of what one client got
-    bool ascend = false;                 ///< their channels do: some are found without looking at all
+    std::optional<double>
+        previous_sclk;    ///< when the same packet's came before: so thinning needs no memory of what one client got
+    bool ascend = false;  ///< their channels do: some are found without looking at all
 };
 /// A published item.
 struct ItemBefore {
@@ -65,7 +66,7 @@ class SampleSpacing {
   private:
     std::optional<double> previous(const v1::Samples& samples);
 
-    std::vector<std::pair<std::uint64_t, double>> last_; ///< by packet (its first channel) and source
+    std::vector<std::pair<std::uint64_t, double>> last_;  ///< by packet (its first channel) and source
 };
 
 /// What the clients of the stream follow: the run that is going on, its newest items, its clocks.
@@ -75,8 +76,8 @@ class SampleSpacing {
 /// Memory   the newest `items_max` items; older ones a session reads from the archive: a slow client costs no memory
 class StreamHub {
   public:
-    static constexpr std::size_t items_max = 16'384;        ///< ours: some 4 MB; a minute of live data at 1 ×
-    static constexpr std::size_t message_items_max = 2'048; ///< in one Batch: some 300 KiB
+    static constexpr std::size_t items_max = 16'384;         ///< ours: some 4 MB; a minute of live data at 1 ×
+    static constexpr std::size_t message_items_max = 2'048;  ///< in one Batch: some 300 KiB
     static constexpr std::size_t shared_encodings = 32;
 
     /// What a session asks of the rest of the server. Answers come back on the network thread.
@@ -102,24 +103,24 @@ class StreamHub {
     /// Clients that may follow no longer are closed.
     void check_clients();
     std::size_t sessions() const { return sessions_.size(); }
-    std::size_t sessions_behind() const; ///< that have not been given all there is for them
+    std::size_t sessions_behind() const;  ///< that have not been given all there is for them
 
     // ---- for sessions ------------------------------------------------------------------------------------------
     const Services& services() const { return services_; }
     std::uint16_t dictionary_id() const { return dictionary_id_; }
-    std::uint64_t current_run() const { return state_.run(); } ///< 0: none yet
+    std::uint64_t current_run() const { return state_.run(); }  ///< 0: none yet
     const v1::RunState& state() const { return state_; }
     std::uint64_t state_version() const { return state_version_; }
     /// The run before the current one, as it stood last; run 0: none since the server started.
     const v1::RunState& before() const { return before_; }
-    std::uint64_t before_version() const { return before_version_; } ///< of state_version(), when that was told
+    std::uint64_t before_version() const { return before_version_; }  ///< of state_version(), when that was told
     const v1::Clocks& latest_clocks() const { return clocks_; }
     std::uint64_t clocks_version() const { return clocks_version_; }
-    archive::Sequence last_seq() const { return last_seq_; } ///< published, of the current run
-    bool holds(archive::Sequence after) const;               ///< every item with a larger number is still here
+    archive::Sequence last_seq() const { return last_seq_; }  ///< published, of the current run
+    bool holds(archive::Sequence after) const;                ///< every item with a larger number is still here
 
     struct Fresh {
-        Encoded message; ///< null: nothing of this range is for this shape
+        Encoded message;  ///< null: nothing of this range is for this shape
         archive::Sequence through = 0;
     };
     /// The items after `after`, message_items_max at most. Needs holds(after).
@@ -128,14 +129,14 @@ class StreamHub {
 
     struct Figures {
         std::uint64_t items = 0, encodings = 0, shared = 0, archive_pages = 0, refusals = 0;
-        std::uint64_t messages = 0, octets = 0; ///< given to clients
+        std::uint64_t messages = 0, octets = 0;  ///< given to clients
     };
     Figures figures;
 
   private:
     struct Held {
         std::shared_ptr<const pipeline::PublishedBatch> batch;
-        std::vector<SamplesBefore> samples; ///< an item each
+        std::vector<SamplesBefore> samples;  ///< an item each
     };
     struct Cached {
         StreamShape shape;
@@ -143,7 +144,8 @@ class StreamHub {
         std::uint64_t clocks_version = 0;
         Fresh fresh;
     };
-    /// What goes out after `after` at one rate: most clients are as far as the one before them, whatever their channels.
+    /// What goes out after `after` at one rate: most clients are as far as the one before them, whatever their
+    /// channels.
     struct Range {
         archive::Sequence after = 0, last_seq = 0, through = 0;
         double interval_s = 0.0;
@@ -162,14 +164,14 @@ class StreamHub {
     v1::Clocks clocks_;
     std::uint64_t state_version_ = 0, clocks_version_ = 0;
     archive::Sequence last_seq_ = 0;
-    std::deque<Held> held_; ///< without a gap, up to last_seq_
+    std::deque<Held> held_;  ///< without a gap, up to last_seq_
     std::size_t held_items_ = 0;
     SampleSpacing spacing_;
-    std::optional<Range> range_; ///< of what is held; none: as yet
+    std::optional<Range> range_;  ///< of what is held; none: as yet
     std::deque<Cached> cache_;
     std::string archive_fault_;
     std::array<Encoded, 2> state_encoded_;
     std::uint64_t state_encoded_version_ = 0;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -14,7 +14,7 @@ bool is_over(const v1::RunState& run) {
     return run.state() == "finished" || run.state() == "interrupted";
 }
 
-} // namespace
+}  // namespace
 
 StreamSession::Client StreamSession::follower() {
     Client client;
@@ -67,8 +67,7 @@ void StreamSession::on_message(std::string_view payload) {
     if (!refusal_.empty()) return;
     const auto self = weak_from_this();
     switch (message.message_case()) {
-    case v1::ClientMessage::kSubscribe:
-        return subscribe(message.subscribe());
+    case v1::ClientMessage::kSubscribe: return subscribe(message.subscribe());
     case v1::ClientMessage::kCommand:
         return client_.command(message.command(), [self](v1::CommandReply answer) {
             const auto session = self.lock();
@@ -82,8 +81,7 @@ void StreamSession::on_message(std::string_view payload) {
             const auto session = self.lock();
             if (session && !done) session->refuse(done.error().message);
         });
-    case v1::ClientMessage::MESSAGE_NOT_SET:
-        break;
+    case v1::ClientMessage::MESSAGE_NOT_SET: break;
     }
     refuse("the message says nothing: subscribe, command or control is wanted");
 }
@@ -116,7 +114,8 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
     shape_.max_rate_hz = subscribe.max_rate_hz();
     shape_.units = !subscribe.without_units();
     pace_ = subscribe.pace();
-    newest_run_ = subscribe.run() == 0 && pace_ == 0.0; // what is sent again goes on to its end, also when another run begins
+    newest_run_ =
+        subscribe.run() == 0 && pace_ == 0.0;  // what is sent again goes on to its end, also when another run begins
     if (run == 0 || run == hub_.current_run()) {
         older_run_.Clear();
         if (pace_ > 0.0) {
@@ -133,11 +132,14 @@ void StreamSession::subscribe(const v1::Subscribe& subscribe) {
 
 std::string StreamSession::refusal_of_pace(double pace, std::uint64_t run) const {
     if (!std::isfinite(pace) || pace < 0.0 || pace > ReplayPace::pace_max)
-        return fmt::format("pace: {} is none: above 0 and up to {} is wanted, or 0 for as fast as it goes", pace, ReplayPace::pace_max);
+        return fmt::format("pace: {} is none: above 0 and up to {} is wanted, or 0 for as fast as it goes", pace,
+                           ReplayPace::pace_max);
     if (pace == 0.0) return {};
     if (run == 0) return "pace: it is for a run that is over, and there is none yet";
     if (run == hub_.current_run() && !is_over(hub_.state()))
-        return fmt::format("pace: it is for a run that is over, and run {} goes on: name another, or follow this one without a pace", run);
+        return fmt::format(
+            "pace: it is for a run that is over, and run {} goes on: name another, or follow this one without a pace",
+            run);
     return {};
 }
 
@@ -150,7 +152,8 @@ void StreamSession::read_run(std::uint64_t run, archive::Sequence after) {
             session->answered();
             if (session->subscription_ != subscription) return;
             if (!state && state.error().internal)
-                return session->stall(state.error().message, [session = session.get(), run, after] { session->read_run(run, after); });
+                return session->stall(state.error().message,
+                                      [session = session.get(), run, after] { session->read_run(run, after); });
             session->waiting_for_run_ = false;
             if (!state) {
                 session->refuse(state.error().message);
@@ -219,7 +222,8 @@ Encoded StreamSession::welcome() {
 
 bool StreamSession::behind() const {
     if (replay_) return !replies_.empty() || (due_ && *due_ <= hub_.services().now());
-    return !replies_.empty() || (subscribed_ && run_ != 0 && (follows_current() ? cursor_ < hub_.last_seq() : !exhausted_));
+    return !replies_.empty() ||
+           (subscribed_ && run_ != 0 && (follows_current() ? cursor_ < hub_.last_seq() : !exhausted_));
 }
 
 Encoded StreamSession::next_message() {
@@ -241,9 +245,9 @@ Encoded StreamSession::next_due() {
     if (!subscribed_ || waiting_for_run_) return nullptr;
     if (newest_run_ && run_ != hub_.current_run()) {
         if (auto state = last_state_of_run()) return state;
-        const bool from_archive = older_run_.run() == run_; // it is read to its end
+        const bool from_archive = older_run_.run() == run_;  // it is read to its end
         if (!gave_all_of_run() && !from_archive) {
-            ++subscription_; // whatever page is on its way, it is asked for again
+            ++subscription_;  // whatever page is on its way, it is asked for again
             read_run(run_, cursor_);
             return nullptr;
         }
@@ -283,7 +287,8 @@ bool StreamSession::gave_all_of_run() const {
 }
 
 Encoded StreamSession::last_state_of_run() {
-    if (hub_.before().run() != run_ || cursor_ < hub_.before().last_seq() || state_sent_ >= hub_.before_version()) return nullptr;
+    if (hub_.before().run() != run_ || cursor_ < hub_.before().last_seq() || state_sent_ >= hub_.before_version())
+        return nullptr;
     state_sent_ = hub_.before_version();
     v1::ServerMessage message;
     *message.mutable_run_state() = hub_.before();
@@ -351,8 +356,7 @@ Encoded StreamSession::from_page() {
     const auto& page = *taken;
     std::vector<ItemBefore> items;
     items.reserve(page.items.size());
-    for (const auto& item : page.items)
-        items.push_back({&item, page_spacing_.next(item)});
+    for (const auto& item : page.items) items.push_back({&item, page_spacing_.next(item)});
     double interval_s = shape_.max_rate_hz > 0.0 ? 1.0 / shape_.max_rate_hz : 0.0;
     if (was_live_ && follows_current()) interval_s = std::max(interval_s, catching_up_interval_s);
     v1::ServerMessage message;
@@ -381,24 +385,24 @@ void StreamSession::read_page() {
     ++hub_.figures.archive_pages;
     archive::Reader::ItemKinds kinds;
     kinds.samples = shape_.all_channels || !shape_.channels.empty();
-    kinds.units = shape_.units || replay_; // they say when what was in them reached Earth
-    hub_.services().read_items(
-        archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
-        [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
-            const auto session = self.lock();
-            if (!session) return;
-            session->answered();
-            if (session->subscription_ != subscription) return;
-            session->reading_ = false;
-            const auto again = [session = session.get()] { session->ask_archive(); };
-            if (!page) return session->stall(page.error().message, again);
-            if (page->complete_through <= session->cursor_ && session->follows_current())
-                return session->stall(fmt::format("it holds nothing after {}", session->cursor_), again);
-            session->stall_told_ = false;
-            session->page_ = std::move(*page);
-            session->page_taken_ = 0;
-            session->wake_();
-        });
+    kinds.units = shape_.units || replay_;  // they say when what was in them reached Earth
+    hub_.services().read_items(archive::RunId{static_cast<std::uint32_t>(run_)}, cursor_, page_items, kinds,
+                               [self = weak_from_this(), subscription = subscription_](Result<archive::ItemPage> page) {
+                                   const auto session = self.lock();
+                                   if (!session) return;
+                                   session->answered();
+                                   if (session->subscription_ != subscription) return;
+                                   session->reading_ = false;
+                                   const auto again = [session = session.get()] { session->ask_archive(); };
+                                   if (!page) return session->stall(page.error().message, again);
+                                   if (page->complete_through <= session->cursor_ && session->follows_current())
+                                       return session->stall(fmt::format("it holds nothing after {}", session->cursor_),
+                                                             again);
+                                   session->stall_told_ = false;
+                                   session->page_ = std::move(*page);
+                                   session->page_taken_ = 0;
+                                   session->wake_();
+                               });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -36,9 +36,10 @@ using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
 
 constexpr const char* stream_path = "/api/v1/stream";
-constexpr std::size_t slice_octets = 64 << 10;    // ours: of a long body in parts, written at once
-constexpr std::size_t short_octets = 512 << 10;   // ours: of an answer that is given however many long ones wait: the console's files, the dictionary
-constexpr unsigned peers_looked_at_ms = 250; // ours: a question goes on for so long after its client has left
+constexpr std::size_t slice_octets = 64 << 10;  // ours: of a long body in parts, written at once
+constexpr std::size_t short_octets =
+    512 << 10;  // ours: of an answer that is given however many long ones wait: the console's files, the dictionary
+constexpr unsigned peers_looked_at_ms = 250;  // ours: a question goes on for so long after its client has left
 struct Subprotocol {
     std::string_view name;
     StreamFormat format;
@@ -52,7 +53,8 @@ std::string_view plain(beast::string_view text) {
 
 /// The console needs nothing from elsewhere, and nobody may show it in a frame.
 constexpr const char* security_policy =
-    "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src 'self'; "
+    "default-src 'self'; connect-src 'self'; img-src 'self' data:; style-src 'self'; script-src 'self'; worker-src "
+    "'self'; "
     "object-src 'none'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
 
 /// Of "name", "name:port", "[::1]:port".
@@ -93,14 +95,16 @@ struct Peer {
 
 /// Connections whose question is being answered, so that one can stop when its client leaves.
 ///
-/// Looks at all a few times a second, by whether the peer has closed its side: what it sent before, a farewell of TLS too, may lie
-/// unread. Over a network that falls silent nothing is seen; the time-out of a question bounds that.
+/// Looks at all a few times a second, by whether the peer has closed its side: what it sent before, a farewell of TLS
+/// too, may lie unread. Over a network that falls silent nothing is seen; the time-out of a question bounds that.
 class WaitingPeers {
   public:
     /// One of them, for as long as this lives.
     class Waiting {
       public:
-        Waiting(WaitingPeers& all, int descriptor) : all_(all), place_(all.waiting_.insert(all.waiting_.end(), {descriptor, std::make_shared<std::atomic<bool>>(false)})) {}
+        Waiting(WaitingPeers& all, int descriptor)
+            : all_(all), place_(all.waiting_.insert(all.waiting_.end(),
+                                                    {descriptor, std::make_shared<std::atomic<bool>>(false)})) {}
         ~Waiting() { all_.waiting_.erase(place_); }
         Waiting(const Waiting&) = delete;
         Waiting& operator=(const Waiting&) = delete;
@@ -116,7 +120,8 @@ class WaitingPeers {
     void look() {
         for (const auto& peer : waiting_) {
             pollfd asked{peer.descriptor, POLLRDHUP, 0};
-            if (::poll(&asked, 1, 0) > 0) peer.gone->store(true, std::memory_order_relaxed); // POLLERR and POLLHUP come unasked
+            if (::poll(&asked, 1, 0) > 0)
+                peer.gone->store(true, std::memory_order_relaxed);  // POLLERR and POLLHUP come unasked
         }
     }
 
@@ -156,7 +161,8 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
         return Error{"TLS: --tls-certificate and --tls-key are given together"};
     asio::ssl::context context{asio::ssl::context::tls_server};
     SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
-    context.set_password_callback([](std::size_t, asio::ssl::context::password_purpose) { return std::string{}; }); // never asks
+    context.set_password_callback(
+        [](std::size_t, asio::ssl::context::password_purpose) { return std::string{}; });  // never asks
     error_code error;
     context.use_certificate_chain_file(settings.certificate.string(), error);
     if (error) return Error{fmt::format("--tls-certificate {}: {}", settings.certificate.string(), error.message())};
@@ -165,12 +171,12 @@ Result<std::optional<asio::ssl::context>> tls_of(const WebServer::Settings& sett
     return std::optional{std::move(context)};
 }
 
-} // namespace
+}  // namespace
 
 struct WebServer::State {
     explicit State(const Settings& settings)
-        : connections(settings.streams + connections_besides, connections_each_max), streams(settings.streams), names(settings.names),
-          request_max(settings.request_max), silence_max(settings.silence_max) {
+        : connections(settings.streams + connections_besides, connections_each_max), streams(settings.streams),
+          names(settings.names), request_max(settings.request_max), silence_max(settings.silence_max) {
         answers.max = settings.answers_octets_max;
     }
     // What the coroutines of connections know of; they end with io.
@@ -185,7 +191,7 @@ struct WebServer::State {
     std::vector<std::string> names;
     std::chrono::milliseconds request_max{}, silence_max{};
     Handlers handlers;
-    std::deque<Timer> timers; ///< of every()
+    std::deque<Timer> timers;  ///< of every()
     Timer farewell{io.get_executor()};
 
     void end();
@@ -208,7 +214,8 @@ std::string WebServer::State::refusal_of(const Request& request) const {
     if (!is_loopback_name(host_of(host)) && std::ranges::none_of(names, is_this))
         return fmt::format("Host '{}' is not a name of this server: it answers to loopback names{}", host,
                            names.empty() ? " only" : " and to those of --host");
-    // Another program's page on this machine is another origin, too: only our own may command. A program that is no browser sends none.
+    // Another program's page on this machine is another origin, too: only our own may command. A program that is no
+    // browser sends none.
     const auto origin = request.find(http::field::origin);
     const std::string own = fmt::format("{}://{}", tls ? "https" : "http", host);
     if (origin != request.end() && !boost::beast::iequals(plain(origin->value()), own))
@@ -223,19 +230,19 @@ Task<T> WebServer::State::told(Ask ask) {
         [this](auto done, const Ask& asking) {
             auto shared = std::make_shared<decltype(done)>(std::move(done));
             asking([this, shared](T answer) {
-                asio::post(io, [shared, answer = std::move(answer)]() mutable {
-                    std::move (*shared)(std::move(answer));
-                });
+                asio::post(io,
+                           [shared, answer = std::move(answer)]() mutable { std::move (*shared)(std::move(answer)); });
             });
         },
         awaiting, std::move(ask));
 }
 
-/// A body that comes in parts, each asked for when the client has taken the one before it. False: the connection is over.
+/// A body that comes in parts, each asked for when the client has taken the one before it. False: the connection is
+/// over.
 template <typename AnyStream>
 Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decltype(HttpResponse::more) more) {
     auto& lowest = beast::get_lowest_layer(stream);
-    const bool chunked = first.version() >= 11; // before that a body ended with its connection
+    const bool chunked = first.version() >= 11;  // before that a body ended with its connection
     if (!chunked) first.keep_alive(false);
     const bool keep = first.keep_alive();
     BodyPart part{std::optional{std::move(first.body())}};
@@ -246,8 +253,9 @@ Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decl
     lowest.expires_after(request_max);
     co_await http::async_write_header(stream, serializer, asio::redirect_error(awaiting, error));
     while (!error && part && *part) {
-        for (std::string_view rest = **part; !error && !rest.empty(); rest.remove_prefix(std::min(rest.size(), slice_octets))) {
-            lowest.expires_after(request_max); // a slow client needs only to go on
+        for (std::string_view rest = **part; !error && !rest.empty();
+             rest.remove_prefix(std::min(rest.size(), slice_octets))) {
+            lowest.expires_after(request_max);  // a slow client needs only to go on
             const auto octets = asio::buffer(rest.data(), std::min(rest.size(), slice_octets));
             if (chunked) {
                 const auto chunk = http::make_chunk(octets);
@@ -259,7 +267,7 @@ Task<bool> WebServer::State::write_parts(AnyStream& stream, Response first, decl
         lowest.expires_never();
         if (!error) part = co_await told<BodyPart>(more);
     }
-    if (error || !part) { // torn, not ended: without chunks an end would look like the end of the body
+    if (error || !part) {  // torn, not ended: without chunks an end would look like the end of the body
         error_code ignored;
         lowest.socket().set_option(asio::socket_base::linger{true, 0}, ignored);
         lowest.socket().close(ignored);
@@ -289,12 +297,15 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         const auto wanted = plain(parser.get().target());
         const std::size_t octets_max = error || parser.is_done() || !handlers.body_octets
                                            ? body_octets_max
-                                           : handlers.body_octets(credentials, plain(parser.get().method_string()), wanted.substr(0, wanted.find('?')));
+                                           : handlers.body_octets(credentials, plain(parser.get().method_string()),
+                                                                  wanted.substr(0, wanted.find('?')));
         if (!error && octets_max < body_octets_max) {
             parser.body_limit(octets_max);
-            if (parser.content_length().value_or(0) > octets_max) error = http::make_error_code(http::error::body_limit);
+            if (parser.content_length().value_or(0) > octets_max)
+                error = http::make_error_code(http::error::body_limit);
         }
-        if (!error && !parser.is_done()) co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
+        if (!error && !parser.is_done())
+            co_await http::async_read(stream, buffer, parser, asio::redirect_error(awaiting, error));
         if (error == http::error::end_of_stream || error == beast::error::timeout) co_return;
         if (error) {
             // Only what the peer could have meant gets an answer; a broken connection gets none.
@@ -330,7 +341,8 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
                                       [this, credentials](StreamFormat format, std::function<void()> wake) {
                                           return handlers.open_stream(credentials, format, std::move(wake));
                                       }};
-                co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name, std::move(service));
+                co_await serve_stream(std::move(stream), std::move(request), subprotocol->format, subprotocol->name,
+                                      std::move(service));
                 co_return;
             }
             if (admitted.status != 200) {
@@ -338,8 +350,9 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
                 response.set(http::field::content_type, admitted.content_type);
                 response.body() = std::move(admitted.body);
             } else if (subprotocol == nullptr) {
-                response = error_reply(request, http::status::bad_request,
-                            "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
+                response =
+                    error_reply(request, http::status::bad_request,
+                                "the stream speaks the subprotocols aeolis.v1.protobuf and aeolis.v1.json: offer one");
             } else {
                 response = error_reply(request, http::status::service_unavailable, no_place);
             }
@@ -347,8 +360,12 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
             lowest.expires_never();
             waiting_here.emplace(waiting, lowest.socket().native_handle());
             // Named, not made in the call: g++ 12 destroys temporary aggregates of a co_await twice.
-            HttpRequest asked{std::string{plain(request.method_string())}, target->path(), std::string{target->encoded_query()},
-                              std::move(request.body()), std::move(credentials), waiting_here->gone()};
+            HttpRequest asked{std::string{plain(request.method_string())},
+                              target->path(),
+                              std::string{target->encoded_query()},
+                              std::move(request.body()),
+                              std::move(credentials),
+                              waiting_here->gone()};
             const auto ask = [this, &asked](const Respond& respond) { handlers.request(std::move(asked), respond); };
             auto answered = co_await told<HttpResponse>(ask);
             if (!answers.has_room(answered.body.size())) {
@@ -372,7 +389,8 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         response.set("Content-Security-Policy", security_policy);
         response.set("Referrer-Policy", "no-referrer");
         response.set("Cross-Origin-Opener-Policy", "same-origin");
-        if (tls && !is_loopback_name(host_of(plain(request[http::field::host])))) response.set("Strict-Transport-Security", "max-age=31536000");
+        if (tls && !is_loopback_name(host_of(plain(request[http::field::host]))))
+            response.set("Strict-Transport-Security", "max-age=31536000");
         response.keep_alive(request.keep_alive());
         if (more && request.method() != http::verb::head) {
             if (!co_await write_parts(stream, std::move(response), std::move(more))) co_return;
@@ -380,10 +398,10 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         }
         response.prepare_payload();
         if (request.method() == http::verb::head) response.body().clear();
-        if (more) response.erase(http::field::content_length); // nobody knows it
+        if (more) response.erase(http::field::content_length);  // nobody knows it
         http::response_serializer<http::string_body> serializer{response};
         while (!error && !serializer.is_done()) {
-            lowest.expires_after(request_max); // a slow client needs only to go on
+            lowest.expires_after(request_max);  // a slow client needs only to go on
             co_await http::async_write_some(stream, serializer, asio::redirect_error(awaiting, error));
         }
         if (error || !response.keep_alive()) co_return;
@@ -418,7 +436,7 @@ Task<> WebServer::State::serve(Socket socket) {
     lowest.expires_after(request_max);
     error_code error;
     co_await secure.async_handshake(asio::ssl::stream_base::server, asio::redirect_error(awaiting, error));
-    if (error) co_return; // it speaks no TLS, or does not trust us
+    if (error) co_return;  // it speaks no TLS, or does not trust us
     co_await serve_requests(secure, from);
     if (!lowest.socket().is_open()) co_return;
     lowest.expires_after(std::chrono::seconds{1});
@@ -431,7 +449,7 @@ void WebServer::State::end() {
     farewell.expires_after(farewell_max);
     farewell.async_wait([this](error_code asked_again) {
         if (asked_again) return;
-        streams.forget(); // who does not answer goes with io
+        streams.forget();  // who does not answer goes with io
         io.stop();
     });
     streams.end([this] { io.stop(); });
@@ -454,7 +472,7 @@ Task<> WebServer::State::accept() {
         }
         if (error == asio::error::operation_aborted) co_return;
         spdlog::warn("a connection could not be accepted: {}", error.message());
-        Timer pause{io, std::chrono::milliseconds{100}}; // out of file numbers: do not spin
+        Timer pause{io, std::chrono::milliseconds{100}};  // out of file numbers: do not spin
         co_await pause.async_wait(asio::redirect_error(awaiting, error));
     }
 }
@@ -529,4 +547,4 @@ void WebServer::every(unsigned milliseconds, std::function<void()> action) {
                    asio::detached);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

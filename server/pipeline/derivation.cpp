@@ -19,8 +19,8 @@ namespace sqlite = archive::sqlite;
 
 namespace {
 
-constexpr std::size_t batch_units = 4096;  ///< ours: some MB in hand
-constexpr std::size_t faults_a_table = 20; ///< ours: more nobody reads
+constexpr std::size_t batch_units = 4096;   ///< ours: some MB in hand
+constexpr std::size_t faults_a_table = 20;  ///< ours: more nobody reads
 constexpr int first_schema_with_packed_segments = 4;
 constexpr int first_schema_with_audit = 5;
 
@@ -28,11 +28,11 @@ struct RunToDerive {
     RunId run;
     bool finished = false;
     std::uint16_t dictionary = 0;
-    double progress = 0.0; ///< of the recording: the only one of its totals that no unit tells
+    double progress = 0.0;  ///< of the recording: the only one of its totals that no unit tells
 };
 
-/// An archive of derived rows only, beside which the one they are derived from is attached as "archive": one transaction
-/// sees both at one moment. The file goes with it.
+/// An archive of derived rows only, beside which the one they are derived from is attached as "archive": one
+/// transaction sees both at one moment. The file goes with it.
 class Scratch {
   public:
     static Result<Scratch> open(const std::filesystem::path& file, const std::filesystem::path& archive) {
@@ -45,7 +45,8 @@ class Scratch {
             if (auto done = scratch.database_.execute(sql); !done) return done.error();
         if (auto done = archive::prepare_for_writing(scratch.database_); !done) return done.error();
         if (auto done = scratch.database_.attach_read_only(archive, "archive"); !done) return done.error();
-        if (auto done = scratch.database_.execute("INSERT OR REPLACE INTO main.words SELECT * FROM archive.words"); !done)
+        if (auto done = scratch.database_.execute("INSERT OR REPLACE INTO main.words SELECT * FROM archive.words");
+            !done)
             return done.error();
         return scratch;
     }
@@ -59,7 +60,8 @@ class Scratch {
     const std::filesystem::path& file() const { return file_; }
 
   private:
-    Scratch(std::filesystem::path file, sqlite::Database database) : file_(std::move(file)), database_(std::move(database)) {}
+    Scratch(std::filesystem::path file, sqlite::Database database)
+        : file_(std::move(file)), database_(std::move(database)) {}
     static void remove(const std::filesystem::path& file) {
         std::error_code ignored;
         std::filesystem::remove(file, ignored);
@@ -96,9 +98,11 @@ std::string other_words(const RunToDerive& run, const dictionary::Dictionary& di
 }
 
 /// Derived rows of a run, from "archive" into "main". @return its units; none: it was stopped
-Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
+Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunToDerive& run,
+                                          const dictionary::Dictionary& dictionary,
                                           const telemetry::OtherMission* other, const GoesOn& goes_on) {
-    const auto of_units = database.integer_of(("SELECT count(*) FROM archive.units WHERE run = " + std::to_string(run.run.value)).c_str());
+    const auto of_units = database.integer_of(
+        ("SELECT count(*) FROM archive.units WHERE run = " + std::to_string(run.run.value)).c_str());
     if (!of_units) return of_units.error();
     auto writer = archive::RowWriter::open(database);
     if (!writer) return writer.error();
@@ -106,7 +110,9 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
     units_sql.replace(units_sql.find("FROM units"), std::string_view("FROM units").size(), "FROM archive.units");
     auto units = database.prepare(units_sql.c_str());
     if (!units) return units.error();
-    units->bind(1, archive::item_key(run.run, 0)).bind(2, archive::item_key(run.run, archive::sequence_max)).bind(3, std::int64_t{-1});
+    units->bind(1, archive::item_key(run.run, 0))
+        .bind(2, archive::item_key(run.run, archive::sequence_max))
+        .bind(3, std::int64_t{-1});
     const archive::PacketColumns columns(dictionary);
     PacketIntake intake(dictionary, columns, other);
     archive::Batch batch;
@@ -123,7 +129,9 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
         if (other != nullptr)
             intake.take(DownlinkPacket{{octets.begin(), octets.end()}, stored.ert}, numbering, batch);
         else
-            intake.take(simulation::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded}, stored.ert, {octets.begin(), octets.end()}},
+            intake.take(simulation::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
+                                                   stored.ert,
+                                                   {octets.begin(), octets.end()}},
                         numbering, batch, {});
         ++count;
         if (batch.units.size() < batch_units) continue;
@@ -143,7 +151,8 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
 /// What is wrong with one of a run's tables, found by comparing "archive" with "main".
 class Comparison {
   public:
-    Comparison(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary, std::vector<std::string>& faults)
+    Comparison(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
+               std::vector<std::string>& faults)
         : database_(database), run_(run), dictionary_(dictionary), faults_(faults) {}
 
     /// All of its columns but `packed`, whose octets may differ where what is packed does not.
@@ -154,10 +163,12 @@ class Comparison {
             const auto of = [&](const char* schema) {
                 return "SELECT " + *columns + " FROM " + schema + "." + table.name + " WHERE " + table.rows;
             };
-            return std::string("SELECT ") + key + " AS item, " + mark + " AS side FROM (" + of(from) + " EXCEPT " + of(less) + ")";
+            return std::string("SELECT ") + key + " AS item, " + mark + " AS side FROM (" + of(from) + " EXCEPT " +
+                   of(less) + ")";
         };
-        const std::string sql = "SELECT item, max(side = 1) + 2 * max(side = 2) FROM (" + one_way("archive", "main", "1") + " UNION ALL " +
-                                one_way("main", "archive", "2") + ") GROUP BY item ORDER BY item LIMIT " + std::to_string(faults_a_table);
+        const std::string sql = "SELECT item, max(side = 1) + 2 * max(side = 2) FROM (" +
+                                one_way("archive", "main", "1") + " UNION ALL " + one_way("main", "archive", "2") +
+                                ") GROUP BY item ORDER BY item LIMIT " + std::to_string(faults_a_table);
         auto rows = database_.prepare(sql.c_str());
         if (!rows) return rows.error();
         rows->bind(1, std::int64_t{run_.run.value});
@@ -166,9 +177,10 @@ class Comparison {
             if (!found) return found.error();
             if (!*found) return {};
             const auto side = rows->integer(1);
-            add(table.name, named(table.name, *rows), side == 1   ? "is stored, and no unit says it"
-                                                      : side == 2 ? "is missing: a unit says it"
-                                                                  : "is not what its unit says");
+            add(table.name, named(table.name, *rows),
+                side == 1   ? "is stored, and no unit says it"
+                : side == 2 ? "is missing: a unit says it"
+                            : "is not what its unit says");
         }
     }
 
@@ -186,10 +198,12 @@ class Comparison {
             stored.resize(derived.size());
             if (auto fine = codec_.unpack(rows->octets(3), derived); !fine) return fine;
             const auto readable = codec_.unpack(rows->octets(2), stored);
-            const bool same = readable.ok() && std::ranges::equal(stored, derived, {}, std::bit_cast<std::uint64_t, double>,
-                                                                  std::bit_cast<std::uint64_t, double>);
+            const bool same =
+                readable.ok() && std::ranges::equal(stored, derived, {}, std::bit_cast<std::uint64_t, double>,
+                                                    std::bit_cast<std::uint64_t, double>);
             if (same) continue;
-            add(table, named(table, *rows), readable ? "its samples are not those of its units" : "is damaged: " + readable.error().message);
+            add(table, named(table, *rows),
+                readable ? "its samples are not those of its units" : "is damaged: " + readable.error().message);
             ++faults;
         }
         return {};
@@ -197,7 +211,8 @@ class Comparison {
 
   private:
     Result<std::string> columns_of(const char* table, const std::string& left_out) {
-        auto rows = database_.prepare("SELECT group_concat(name, ', ') FROM pragma_table_info(?1, 'main') WHERE name <> ?2");
+        auto rows =
+            database_.prepare("SELECT group_concat(name, ', ') FROM pragma_table_info(?1, 'main') WHERE name <> ?2");
         if (!rows) return rows.error();
         rows->bind(1, std::string_view(table)).bind(2, std::string_view(left_out));
         auto found = rows->step();
@@ -208,15 +223,18 @@ class Comparison {
         if (table == "segments") return "segment " + std::to_string(row.integer(0));
         if (table == "segment_columns" || table == "pyramid_columns") {
             const auto channel = static_cast<std::size_t>(row.integer(0) % 65536);
-            return (table == "segment_columns" ? "segment " : "block ") + std::to_string(row.integer(0) / 65536) + ", channel " +
-                   (channel < dictionary_.channels.size() ? dictionary_.channels[channel].name : std::to_string(channel));
+            return (table == "segment_columns" ? "segment " : "block ") + std::to_string(row.integer(0) / 65536) +
+                   ", channel " +
+                   (channel < dictionary_.channels.size() ? dictionary_.channels[channel].name
+                                                          : std::to_string(channel));
         }
         if (table == "pyramid") return "block " + std::to_string(row.integer(0));
         if (table == "recordings") return "the row";
         return "item " + std::to_string(archive::sequence_of(row.integer(0)));
     }
     void add(std::string_view table, const std::string& item, const std::string& what) {
-        faults_.push_back("run " + std::to_string(run_.run.value) + ": " + std::string(table) + ": " + item + " " + what);
+        faults_.push_back("run " + std::to_string(run_.run.value) + ": " + std::string(table) + ": " + item + " " +
+                          what);
     }
 
     sqlite::Database& database_;
@@ -226,45 +244,53 @@ class Comparison {
     archive::ColumnCodec codec_;
 };
 
-Result<void> compare(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary, Verification& found) {
+Result<void> compare(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
+                     Verification& found) {
     auto plain = database.integer_of(
         ("SELECT count(*) FROM archive.segments WHERE packed = 0 AND run = " + std::to_string(run.run.value)).c_str());
     if (!plain) return plain.error();
     if (*plain > 0)
-        found.notes.push_back("run " + std::to_string(run.run.value) + ": its " + std::to_string(*plain) +
-                              " segments are those of schema 3 and were not compared; aeolis archive rebuild packs them");
+        found.notes.push_back(
+            "run " + std::to_string(run.run.value) + ": its " + std::to_string(*plain) +
+            " segments are those of schema 3 and were not compared; aeolis archive rebuild packs them");
     Comparison comparison(database, run, dictionary, found.faults);
     for (const archive::RunTable& table : archive::run_tables) {
         const std::string_view name = table.name;
         const bool of_segments = name == "segments" || name == "segment_columns" || name.starts_with("pyramid");
         if (!table.derived || (of_segments && *plain > 0)) continue;
-        const std::string key = name == "segments"          ? "segment"
-                                : name == "recordings"      ? "run"
-                                : name == "pyramid"         ? "block"
-                                                            : "key";
-        const std::string packed = name == "segments" ? "sclk" : name == "segment_columns" ? "value" : name == "pyramid" ? "spans" : "";
+        const std::string key = name == "segments"     ? "segment"
+                                : name == "recordings" ? "run"
+                                : name == "pyramid"    ? "block"
+                                                       : "key";
+        const std::string packed = name == "segments"          ? "sclk"
+                                   : name == "segment_columns" ? "value"
+                                   : name == "pyramid"         ? "spans"
+                                                               : "";
         if (auto done = comparison.rows(table, key, packed); !done) return done;
     }
     if (*plain > 0) return {};
-    if (auto done = comparison.packed("segments", "SELECT a.segment, b.samples, a.sclk, b.sclk FROM archive.segments a JOIN main.segments b"
-                                                  " USING (segment) WHERE a.run = ?1 AND a.sclk <> b.sclk");
+    if (auto done = comparison.packed(
+            "segments", "SELECT a.segment, b.samples, a.sclk, b.sclk FROM archive.segments a JOIN main.segments b"
+                        " USING (segment) WHERE a.run = ?1 AND a.sclk <> b.sclk");
         !done)
         return done;
-    if (auto done = comparison.packed("pyramid", "SELECT b.block, 2 * b.nodes, a.spans, b.spans"
-                                                 " FROM archive.pyramid a JOIN main.pyramid b USING (run, packet, source, level, position)"
-                                                 " WHERE run = ?1 AND a.spans <> b.spans");
+    if (auto done = comparison.packed(
+            "pyramid", "SELECT b.block, 2 * b.nodes, a.spans, b.spans"
+                       " FROM archive.pyramid a JOIN main.pyramid b USING (run, packet, source, level, position)"
+                       " WHERE run = ?1 AND a.spans <> b.spans");
         !done)
         return done;
-    return comparison.packed("segment_columns",
-                             "SELECT a.key, s.samples, a.value, b.value FROM main.segments s JOIN main.segment_columns b"
-                             " ON b.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535"
-                             " JOIN archive.segment_columns a ON a.key = b.key WHERE s.run = ?1 AND a.value <> b.value");
+    return comparison.packed(
+        "segment_columns", "SELECT a.key, s.samples, a.value, b.value FROM main.segments s JOIN main.segment_columns b"
+                           " ON b.key BETWEEN s.segment * 65536 AND s.segment * 65536 + 65535"
+                           " JOIN archive.segment_columns a ON a.key = b.key WHERE s.run = ?1 AND a.value <> b.value");
 }
 
-} // namespace
+}  // namespace
 
-Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
-                            const telemetry::OtherMission* other, const std::filesystem::path& scratch_folder, const GoesOn& goes_on) {
+Result<Verification> verify(const std::filesystem::path& file, std::optional<RunId> only,
+                            const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
+                            const std::filesystem::path& scratch_folder, const GoesOn& goes_on) {
     Verification found;
     int schema = 0;
     {
@@ -276,15 +302,15 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
         schema = static_cast<int>(*version);
         auto faults = archive::integrity_faults(*database);
         if (!faults) return faults.error();
-        for (auto& fault : *faults)
-            found.faults.push_back("the file: " + std::move(fault));
-        if (!found.faults.empty()) return found; // what the rest would find is no news
+        for (auto& fault : *faults) found.faults.push_back("the file: " + std::move(fault));
+        if (!found.faults.empty()) return found;  // what the rest would find is no news
         if (schema >= first_schema_with_audit) {
             auto audit = archive::check_audit(*database);
             if (!audit) return audit.error();
             found.faults = std::move(audit->faults);
             if (audit->entries > 0)
-                found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " + audit->last_hash);
+                found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " +
+                                      audit->last_hash);
         }
     }
     auto scratch = Scratch::open(scratch_folder / ("aeolis-verify-" + std::to_string(::getpid()) + ".db"), file);
@@ -308,19 +334,23 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
             continue;
         }
         auto units = derive(database, run, dictionary, other, goes_on);
-        if (!units) return Error{"run " + std::to_string(run.run.value) + ": its units cannot be told again: " + units.error().message};
+        if (!units)
+            return Error{"run " + std::to_string(run.run.value) +
+                         ": its units cannot be told again: " + units.error().message};
         found.stopped = !*units;
         if (found.stopped) return found;
         found.units += **units;
         if (auto done = compare(database, run, dictionary, found); !done) return done.error();
         for (const archive::RunTable& table : archive::run_tables)
-            if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done) return done.error();
+            if (auto done = database.execute((std::string("DELETE FROM main.") + table.name).c_str()); !done)
+                return done.error();
     }
     return found;
 }
 
-Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> only, const dictionary::Dictionary& dictionary,
-                        const telemetry::OtherMission* other, archive::AuditRecord by, const GoesOn& goes_on) {
+Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> only,
+                        const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
+                        archive::AuditRecord by, const GoesOn& goes_on) {
     by.action = "rebuild";
     by.outcome = "done";
     auto archive = archive::Maintenance::open(file);
@@ -364,7 +394,8 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
             if (!transaction) return transaction.error();
             for (const archive::RunTable& table : archive::run_tables) {
                 if (!table.derived) continue;
-                auto taken = database.prepare((std::string("DELETE FROM main.") + table.name + " WHERE " + table.rows).c_str());
+                auto taken =
+                    database.prepare((std::string("DELETE FROM main.") + table.name + " WHERE " + table.rows).c_str());
                 if (!taken) return taken.error();
                 taken->bind(1, std::int64_t{run.run.value});
                 if (auto done = taken->run(); !done) return done.error();
@@ -383,7 +414,9 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
         if (replaced->empty())
             rebuilt.runs.push_back(run.run);
         else
-            rebuilt.left.push_back(of_run + ": its units now say something else, and its items would get other numbers (" + replaced->front() + ")");
+            rebuilt.left.push_back(of_run +
+                                   ": its units now say something else, and its items would get other numbers (" +
+                                   replaced->front() + ")");
     }
     // The whole index: what it should forget of rows that were damaged nobody knows.
     if (!rebuilt.runs.empty())
@@ -391,4 +424,4 @@ Result<Rebuilt> rebuild(const std::filesystem::path& file, std::optional<RunId> 
     return rebuilt;
 }
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

@@ -20,19 +20,19 @@ namespace aeolis::pipeline {
 /// How far it is. Asked for every few thousand units; false ends the work, and what is whole stays.
 struct Work {
     archive::RunId run;
-    std::size_t units = 0, of_units = 0; ///< of this run
+    std::size_t units = 0, of_units = 0;  ///< of this run
 };
 using GoesOn = std::function<bool(const Work&)>;
 
 struct Verification {
     std::size_t runs = 0, units = 0;
-    std::vector<std::string> faults; ///< a line each, naming run, table and item
-    std::vector<std::string> notes;  ///< what could not be compared, and why
-    bool stopped = false;            ///< before all was compared
+    std::vector<std::string> faults;  ///< a line each, naming run, table and item
+    std::vector<std::string> notes;   ///< what could not be compared, and why
+    bool stopped = false;             ///< before all was compared
 };
 
-/// The file's structure, the sequence numbers, and every derived row against the raw units. The archive is only read, as
-/// it is at one moment; a writer may go on.
+/// The file's structure, the sequence numbers, and every derived row against the raw units. The archive is only read,
+/// as it is at one moment; a writer may go on.
 /// @param run      none: all
 /// @param scratch  a folder with room for the derived rows of one run
 /// @param other    the mission whose dictionary that is, where it is not ours
@@ -43,8 +43,8 @@ Result<Verification> verify(const std::filesystem::path& archive, std::optional<
 
 struct Rebuilt {
     std::vector<archive::RunId> runs;
-    std::vector<std::string> left; ///< runs that were left as they are, and why
-    bool stopped = false;          ///< before all of them were looked at
+    std::vector<std::string> left;  ///< runs that were left as they are, and why
+    bool stopped = false;           ///< before all of them were looked at
 };
 
 /// Makes the derived rows of each run again and puts them in place of the old ones, a run a transaction; segments of
@@ -52,7 +52,7 @@ struct Rebuilt {
 /// archive for the derived rows of one run.
 /// @param by  when, who and from where, of an entry in the audit for each run; what was done is added here
 Result<Rebuilt> rebuild(const std::filesystem::path& archive, std::optional<archive::RunId> run,
-                        const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other, archive::AuditRecord by,
-                        const GoesOn& goes_on = {});
+                        const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
+                        archive::AuditRecord by, const GoesOn& goes_on = {});
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

@@ -17,16 +17,19 @@ using telemetry::Standing;
 
 PacketIntake::PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                            const telemetry::OtherMission* other)
-    : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other), alarms_(dictionary),
-      segments_(columns), latest_(dictionary.channels.size()) {
+    : dictionary_(dictionary), columns_(columns), firing_(find_firing_fields(dictionary)), other_(other),
+      alarms_(dictionary), segments_(columns), latest_(dictionary.channels.size()) {
     if (other_ == nullptr) decommutator_.emplace(dictionary);
-    const auto* phase = dictionary.channel("edl_phase"); // none: not of this mission
+    const auto* phase = dictionary.channel("edl_phase");  // none: not of this mission
     const auto tells_phase = [&](const dictionary::Field& field) {
-        return phase != nullptr && (field.channel == phase->id || (!phase->type.name.empty() && field.type.name == phase->type.name));
+        return phase != nullptr &&
+               (field.channel == phase->id || (!phase->type.name.empty() && field.type.name == phase->type.name));
     };
     for (const auto& packet : dictionary.packets) {
         const auto field = std::ranges::find_if(packet.fields, tells_phase);
-        phase_field_.push_back(field == packet.fields.end() ? std::nullopt : std::optional(static_cast<std::size_t>(field - packet.fields.begin())));
+        phase_field_.push_back(field == packet.fields.end()
+                                   ? std::nullopt
+                                   : std::optional(static_cast<std::size_t>(field - packet.fields.begin())));
     }
 }
 
@@ -90,7 +93,7 @@ void PacketIntake::take(const DownlinkPacket& packet, Numbering& numbering, Batc
     unit.ert = packet.ert;
     unit.link = "downlink";
     unit.source = Source::realtime;
-    unit.standing = Standing::unregistered; // what names a unit of ours is not in the packets of others
+    unit.standing = Standing::unregistered;  // what names a unit of ours is not in the packets of others
     unit.octets = {batch.octets.size(), packet.octets.size()};
     batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
     ++downlinked_;
@@ -168,4 +171,4 @@ archive::RecordingTotals PacketIntake::totals() const {
     return totals;
 }
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

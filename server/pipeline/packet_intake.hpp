@@ -19,7 +19,9 @@ namespace aeolis::pipeline {
 class Numbering {
   public:
     /// @param taken  numbers, ascending, of items that are stored already and do not come again
-    explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}) : next_(first), taken_(std::move(taken)) { pass_taken(); }
+    explicit Numbering(Sequence first = 1, std::vector<Sequence> taken = {}) : next_(first), taken_(std::move(taken)) {
+        pass_taken();
+    }
 
     Sequence next(archive::Batch& batch) {
         batch.last_seq = next_++;
@@ -31,8 +33,7 @@ class Numbering {
 
   private:
     void pass_taken() {
-        for (; passed_ < taken_.size() && taken_[passed_] == next_; ++passed_)
-            ++next_;
+        for (; passed_ < taken_.size() && taken_[passed_] == next_; ++passed_) ++next_;
     }
     Sequence next_;
     std::vector<Sequence> taken_;
@@ -60,8 +61,9 @@ class PacketIntake {
 
     archive::RecordingTotals totals() const;
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
-    /// The label of the vehicle's phase, as it was last told in real time by the channel of the phase or by the event of its
-    /// change, whichever is the newer on board: the channel comes every two seconds, when none is lost. Empty: not told.
+    /// The label of the vehicle's phase, as it was last told in real time by the channel of the phase or by the event
+    /// of its change, whichever is the newer on board: the channel comes every two seconds, when none is lost. Empty:
+    /// not told.
     const std::string& phase() const { return phase_; }
 
   private:
@@ -81,10 +83,10 @@ class PacketIntake {
     const dictionary::Dictionary& dictionary_;
     const archive::PacketColumns& columns_;
     std::optional<FiringFields> firing_;
-    std::vector<std::optional<std::size_t>> phase_field_; ///< by packet
+    std::vector<std::optional<std::size_t>> phase_field_;  ///< by packet
     std::string phase_;
     Sclk phase_sclk_{};
-    const telemetry::OtherMission* other_; ///< none: our own
+    const telemetry::OtherMission* other_;  ///< none: our own
     std::optional<telemetry::Decommutator> decommutator_;
     telemetry::Decoded decoded_;
     telemetry::UnitRegister register_;
@@ -97,4 +99,4 @@ class PacketIntake {
     std::uint64_t downlinked_ = 0;
 };
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

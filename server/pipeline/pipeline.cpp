@@ -10,24 +10,25 @@
 namespace aeolis::pipeline {
 
 struct Pipeline::State {
-    State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in, const telemetry::OtherMission* other_in)
+    State(archive::Archive& archive_in, const dictionary::Dictionary& dictionary_in,
+          const telemetry::OtherMission* other_in)
         : archive(archive_in), dictionary(dictionary_in), other(other_in), columns(dictionary_in) {}
 
     /// All that belongs to the run that goes on.
     struct Run {
         Run(RunId id_in, archive::RunStart start_in, const State& state, std::vector<Sequence> taken)
-            : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)), intake(state.dictionary, state.columns, state.other),
-              staleness(state.dictionary) {}
+            : id(id_in), start(std::move(start_in)), numbering(1, std::move(taken)),
+              intake(state.dictionary, state.columns, state.other), staleness(state.dictionary) {}
         RunId id;
         archive::RunStart start;
         Numbering numbering;
         PacketIntake intake;
         telemetry::StalenessMonitor staleness;
         archive::Batch pending;
-        double progress = 0.0, durable_progress = 0.0; ///< of the recording
+        double progress = 0.0, durable_progress = 0.0;  ///< of the recording
         Sequence last_durable = 0;
-        Sequence repeat_until = 0; ///< up to here items are durable already
-        Compare compare;           ///< while items are repeated
+        Sequence repeat_until = 0;  ///< up to here items are durable already
+        Compare compare;            ///< while items are repeated
         std::optional<Error> differs;
 
         bool repeats() const { return compare != nullptr; }
@@ -61,7 +62,8 @@ struct Pipeline::State {
     std::chrono::steady_clock::time_point last_commit{};
 };
 
-Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other)
+Pipeline::Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary,
+                   const telemetry::OtherMission* other)
     : state_(std::make_unique<State>(archive, dictionary, other)) {}
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
@@ -86,7 +88,8 @@ Sequence Pipeline::last_durable() const {
 std::size_t Pipeline::pending_items() const {
     if (!state_->run) return 0;
     const auto& pending = state_->run->pending;
-    return pending.requests.size() + (pending.last_seq == 0 ? 0 : static_cast<std::size_t>(pending.last_seq - pending.first_seq + 1));
+    return pending.requests.size() +
+           (pending.last_seq == 0 ? 0 : static_cast<std::size_t>(pending.last_seq - pending.first_seq + 1));
 }
 
 Result<RunId> Pipeline::begin(const archive::RunStart& start) {
@@ -111,8 +114,9 @@ Result<void> Pipeline::resume(RunId run, const archive::RunStart& start, Sequenc
 /// What waits is durable already: compared and dropped.
 void Pipeline::State::hold_against_archive() {
     if (!run->differs && run->pending.last_seq > run->repeat_until)
-        run->differs = Error{"what came with item " + std::to_string(run->repeat_until) + ", the last that is stored, now has " +
-                             std::to_string(run->pending.last_seq - run->repeat_until) + " more items"};
+        run->differs =
+            Error{"what came with item " + std::to_string(run->repeat_until) + ", the last that is stored, now has " +
+                  std::to_string(run->pending.last_seq - run->repeat_until) + " more items"};
     if (!run->differs && run->pending.last_seq != 0)
         if (auto same = run->compare(*published(run->id, run->pending, true)); !same) run->differs = same.error();
     run->pending.clear();
@@ -162,12 +166,9 @@ Result<void> Pipeline::accept(const simulation::CycleReport& report) {
     if (report.packets.empty() && report.tones.empty() && report.links.empty()) return {};
     // All of the report or none of it: otherwise what is given again would be doubled.
     if (auto room = state_->room(); !room) return room;
-    for (const auto& link : report.links)
-        state_->take(link);
-    for (const auto& packet : report.packets)
-        state_->take(packet);
-    for (const auto& tone : report.tones)
-        state_->take(tone);
+    for (const auto& link : report.links) state_->take(link);
+    for (const auto& packet : report.packets) state_->take(packet);
+    for (const auto& tone : report.tones) state_->take(tone);
     return {};
 }
 
@@ -200,10 +201,12 @@ Result<void> Pipeline::accept(const DownlinkPacket& packet) {
 Result<void> Pipeline::accept(const DownlinkState& state) {
     if (auto room = state_->room(); !room) return room;
     auto& run = *state_->run;
-    run.pending.links.push_back({run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert, !state.up});
+    run.pending.links.push_back(
+        {run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert, !state.up});
     std::vector<telemetry::StalenessChange> changes;
     // Nothing is predicted of another mission: that its packets cannot come is a fault on the ground.
-    run.staleness.link("downlink", state.up ? telemetry::LinkIs::up : telemetry::LinkIs::lost, state.reason, state.ert, changes);
+    run.staleness.link("downlink", state.up ? telemetry::LinkIs::up : telemetry::LinkIs::lost, state.reason, state.ert,
+                       changes);
     state_->add(changes, state.ert);
     return {};
 }
@@ -226,7 +229,9 @@ Result<archive::Annotation> Pipeline::annotate(RunId run, archive::Annotation an
         state_->publish(state_->published(run, batch, true));
         return added;
     }
-    if (state_->run->repeats()) return Error{"run " + std::to_string(run.value) + " is flown again up to where it was cut off: try again when it goes on"};
+    if (state_->run->repeats())
+        return Error{"run " + std::to_string(run.value) +
+                     " is flown again up to where it was cut off: try again when it goes on"};
     if (auto room = state_->room(); !room) return room.error();
     auto& current = *state_->run;
     std::visit([&](auto& record) { record.seq = current.numbering.next(current.pending); }, annotation);
@@ -265,16 +270,21 @@ void Pipeline::State::heard() {
 
 void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, Ert ert) {
     for (const auto& change : changes)
-        run->pending.staleness.push_back({run->numbering.next(run->pending), static_cast<std::uint16_t>(change.packet), change.stale,
-                                          change.silent_s, change.expected_s, change.reason, ert});
+        run->pending.staleness.push_back({run->numbering.next(run->pending), static_cast<std::uint16_t>(change.packet),
+                                          change.stale, change.silent_s, change.expected_s, change.reason, ert});
 }
 
 void Pipeline::State::take(const simulation::LinkState& link) {
-    run->pending.links.push_back({run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert, link.lost});
+    run->pending.links.push_back(
+        {run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert, link.lost});
     if (link.link.recorded) return;
     std::vector<telemetry::StalenessChange> changes;
     using telemetry::LinkIs;
-    run->staleness.link(link.link.name, link.up ? LinkIs::up : link.lost ? LinkIs::lost : LinkIs::down, link.reason, link.ert, changes);
+    run->staleness.link(link.link.name,
+                        link.up     ? LinkIs::up
+                        : link.lost ? LinkIs::lost
+                                    : LinkIs::down,
+                        link.reason, link.ert, changes);
     add(changes, link.ert);
 }
 
@@ -366,7 +376,8 @@ Result<void> Pipeline::finish(const archive::RunEnd& end) {
     return {};
 }
 
-std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const archive::Batch& batch, bool built) const {
+std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const archive::Batch& batch,
+                                                                 bool built) const {
     if (batch.last_seq == 0) return nullptr;
     auto made = std::make_shared<PublishedBatch>();
     made->run = of;
@@ -379,14 +390,12 @@ std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const
         const auto index = static_cast<std::size_t>(item.seq() - batch.first_seq);
         made->items[index] = std::move(item);
     };
-    for (const auto& unit : batch.units)
-        place(to_item(unit, &dictionary));
+    for (const auto& unit : batch.units) place(to_item(unit, &dictionary));
     for (const auto& sample : batch.samples)
         place(to_item(sample, columns.channels(sample.packet),
                       std::span(batch.values).subspan(sample.values.first, sample.values.count)));
     const auto place_all = [&](const auto& records) {
-        for (const auto& record : records)
-            place(archive::to_item(record));
+        for (const auto& record : records) place(archive::to_item(record));
     };
     place_all(batch.events);
     place_all(batch.tones);
@@ -397,9 +406,8 @@ std::shared_ptr<const PublishedBatch> Pipeline::State::published(RunId of, const
     place_all(batch.alarms);
     place_all(batch.alarm_actions);
     place_all(batch.notes);
-    for (const auto& record : batch.staleness)
-        place(archive::to_item(record, &dictionary));
+    for (const auto& record : batch.staleness) place(archive::to_item(record, &dictionary));
     return made;
 }
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

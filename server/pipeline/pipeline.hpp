@@ -26,8 +26,8 @@ using archive::Sequence;
 struct PublishedBatch {
     RunId run;
     Sequence first_seq = 0, last_seq = 0;
-    bool built = true;           ///< false: nobody wanted items; who does now reads them from the archive
-    std::vector<v1::Item> items; ///< in order of seq, first_seq … last_seq without a gap when built
+    bool built = true;            ///< false: nobody wanted items; who does now reads them from the archive
+    std::vector<v1::Item> items;  ///< in order of seq, first_seq … last_seq without a gap when built
 };
 
 /// Sees each packet when it was decoded, before it is durable: for the command path, which must match answers.
@@ -37,13 +37,13 @@ using Publish = std::function<void(std::shared_ptr<const PublishedBatch>)>;
 /// Whether what is flown again is what the archive has of it; an Error names the first item that is not.
 using Compare = std::function<Result<void>(const PublishedBatch& again)>;
 
-inline constexpr std::chrono::milliseconds commit_interval{10}; ///< design.md: group commits at most every 10 ms
-inline constexpr std::size_t commit_items = 8192;               ///< or when so many wait: some 4096 units
-inline constexpr std::size_t pending_octets_max = 32U << 20;    ///< held while the disk fails; then the run must wait
+inline constexpr std::chrono::milliseconds commit_interval{10};  ///< design.md: group commits at most every 10 ms
+inline constexpr std::size_t commit_items = 8192;                ///< or when so many wait: some 4096 units
+inline constexpr std::size_t pending_octets_max = 32U << 20;     ///< held while the disk fails; then the run must wait
 
 /// What has come of a channel.
 struct LatestValue {
-    std::optional<double> value; ///< none: undefined on board
+    std::optional<double> value;  ///< none: undefined on board
     Sclk sclk;
     Ert ert;
 };
@@ -75,9 +75,10 @@ struct EarthTime {
 /// Threads  none, no locks and no clock: one owner calls everything, callbacks come from within its calls
 class Pipeline {
   public:
-    /// Archive and dictionary must outlive this. With `other`, whose dictionary it then is, only packets of that mission
-    /// may come.
-    Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other = nullptr);
+    /// Archive and dictionary must outlive this. With `other`, whose dictionary it then is, only packets of that
+    /// mission may come.
+    Pipeline(archive::Archive& archive, const dictionary::Dictionary& dictionary,
+             const telemetry::OtherMission* other = nullptr);
     Pipeline(Pipeline&&) noexcept;
     Pipeline& operator=(Pipeline&&) noexcept;
     ~Pipeline();
@@ -90,12 +91,14 @@ class Pipeline {
     /// A new run, durable when it returns. One at a time: the last one must have been finished or abandoned.
     Result<RunId> begin(const archive::RunStart& start);
 
-    /// A run that was cut off is flown again from its beginning: items up to `durable` are neither stored nor published again
-    /// but held against the archive by `compare`. After the last of them it goes on as any run. One at a time, as begin().
+    /// A run that was cut off is flown again from its beginning: items up to `durable` are neither stored nor published
+    /// again but held against the archive by `compare`. After the last of them it goes on as any run. One at a time, as
+    /// begin().
     /// @param annotations  numbers of what people added: it does not come again, and keeps its numbers
-    Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare, std::vector<Sequence> annotations = {});
-    /// Compares what waits. True once all that was durable has come again; an Error for good when something else came, or
-    /// the run cannot be marked as running again.
+    Result<void> resume(RunId run, const archive::RunStart& start, Sequence durable, Compare compare,
+                        std::vector<Sequence> annotations = {});
+    /// Compares what waits. True once all that was durable has come again; an Error for good when something else came,
+    /// or the run cannot be marked as running again.
     Result<bool> caught_up();
     /// A controller's request that was taken: stored with the next commit.
     Result<void> accept(archive::RequestRecord request);
@@ -132,8 +135,8 @@ class Pipeline {
 
     std::optional<RunId> run() const;
     Sequence last_durable() const;
-    std::size_t pending_items() const; ///< and requests, which may come while nothing else does
-    std::size_t pending_octets() const; ///< of packets and samples that wait for a commit
+    std::size_t pending_items() const;   ///< and requests, which may come while nothing else does
+    std::size_t pending_octets() const;  ///< of packets and samples that wait for a commit
     archive::RecordingTotals totals() const;
     /// In real time only, by ChannelId; none: never received.
     const std::vector<std::optional<LatestValue>>& latest() const;
@@ -143,4 +146,4 @@ class Pipeline {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

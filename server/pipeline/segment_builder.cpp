@@ -13,7 +13,7 @@ namespace {
 std::size_t index_of(Source source) {
     return source == Source::realtime ? 0 : 1;
 }
-} // namespace
+}  // namespace
 
 SegmentBuilder::SegmentBuilder(const archive::PacketColumns& columns) : columns_(columns), open_(columns.packets()) {}
 
@@ -28,8 +28,7 @@ void SegmentBuilder::add(std::uint16_t packet, Source source, archive::Sequence 
     if (open.sclk_s.empty()) open.first_unit = unit;
     open.last_unit = unit;
     const std::size_t row = open.sclk_s.size();
-    for (std::size_t c = 0; c < values.size(); ++c)
-        open.values[c * segment_samples + row] = values[c];
+    for (std::size_t c = 0; c < values.size(); ++c) open.values[c * segment_samples + row] = values[c];
     open.sclk_s.push_back(sclk.seconds);
     if (open.sclk_s.size() == segment_samples) close(packet, source, open, batch);
 }
@@ -59,4 +58,4 @@ void SegmentBuilder::close(std::size_t packet, Source source, Open& open, archiv
     pyramid_.add(segment, batch.pyramid);
 }
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

@@ -32,14 +32,14 @@ class SegmentBuilder {
         archive::Sequence first_unit = 0, last_unit = 0;
         std::uint64_t position = 0;
         std::vector<double> sclk_s;
-        std::vector<double> values; ///< segment_samples to a channel
+        std::vector<double> values;  ///< segment_samples to a channel
     };
     void close(std::size_t packet, archive::Source source, Open& open, archive::Batch& batch);
 
-    static constexpr std::size_t sources = 2; ///< realtime, recorded
+    static constexpr std::size_t sources = 2;  ///< realtime, recorded
     const archive::PacketColumns& columns_;
-    std::vector<std::array<Open, sources>> open_; ///< by packet
+    std::vector<std::array<Open, sources>> open_;  ///< by packet
     archive::pyramid::Builder pyramid_;
 };
 
-} // namespace aeolis::pipeline
+}  // namespace aeolis::pipeline

@@ -72,8 +72,7 @@ class BoundedQueue {
     template <typename Do>
     void each(Do what) {
         const std::scoped_lock lock{mutex_};
-        for (T& value : values_)
-            what(value);
+        for (T& value : values_) what(value);
     }
 
   private:
@@ -93,4 +92,4 @@ class BoundedQueue {
     bool closed_ = false;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -32,9 +32,8 @@ std::string Digest::text() const {
     AEOLIS_CHECK(copy && EVP_MD_CTX_copy_ex(copy.get(), state_->context.get()) == 1 &&
                  EVP_DigestFinal_ex(copy.get(), hash.data(), nullptr) == 1);
     std::string text;
-    for (const auto octet : hash)
-        fmt::format_to(std::back_inserter(text), "{:02x}", octet);
+    for (const auto octet : hash) fmt::format_to(std::back_inserter(text), "{:02x}", octet);
     return text;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -24,4 +24,4 @@ class Digest {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

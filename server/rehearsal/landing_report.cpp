@@ -29,7 +29,7 @@ std::string nearest_text(const char* body, const std::optional<double>& metres) 
     return metres ? fmt::format("the {} came within {:.1f} m again\n", body, *metres) : "";
 }
 
-} // namespace
+}  // namespace
 
 std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
@@ -96,8 +96,7 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
 
 std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto& landing = rehearsal.landing();
-    std::string text =
-        fmt::format("{} (seed {}, {}): {}", rehearsal.scenario().name, rehearsal.seed(),
+    std::string text = fmt::format("{} (seed {}, {}): {}", rehearsal.scenario().name, rehearsal.seed(),
                                    name_of(rehearsal.scenario().test_venue), rehearsal.outcome());
     if (const auto reason = rehearsal.outcome_reason(); !reason.empty()) text += " - " + reason;
     text += fmt::format("\n\n{:<28}{:>10}{:>14}{:>12}\n", "event", "E+s", "altitude m", "speed m/s");
@@ -120,8 +119,7 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     text += proof.recorded == 0 ? "nothing was recorded\n" : telemetry::text_of(proof) + '\n';
     for (const auto& [identity, product] : rehearsal.products().products())
         text += "product " + telemetry::text_of(identity, product) + '\n';
-    for (const auto& refusal : rehearsal.script_refusals())
-        text += "scripted command refused: " + refusal + '\n';
+    for (const auto& refusal : rehearsal.script_refusals()) text += "scripted command refused: " + refusal + '\n';
     text += fmt::format("digest {} (SHA-256 of the recording)\n{} cycles, {} overruns, {:.2f} s, {:.0f} x real time\n",
                         rehearsal.digest(), rehearsal.cycles(), landing.counters().overruns, wall_s,
                         real_time_factor(rehearsal, wall_s));
@@ -129,4 +127,4 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     return text;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -13,4 +13,4 @@ namespace aeolis::server {
 std::string landing_json(const Rehearsal& rehearsal, double wall_s);
 std::string landing_table(const Rehearsal& rehearsal, double wall_s);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

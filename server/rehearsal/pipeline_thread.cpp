@@ -11,10 +11,10 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::chrono::milliseconds retry_interval{500}; // ours: a full disk does not empty faster
-constexpr std::size_t words_of_difference = 200;         // of an item: enough to see which it is
+constexpr std::chrono::milliseconds retry_interval{500};  // ours: a full disk does not empty faster
+constexpr std::size_t words_of_difference = 200;          // of an item: enough to see which it is
 constexpr std::uint64_t cycles_a_second = 64;
-constexpr int retries_when_closing = 4;                  // then what waits is given up, and said so
+constexpr int retries_when_closing = 4;  // then what waits is given up, and said so
 
 /// Whether a run's items that came again are those that the archive has; an Error names the first that is not.
 Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch& again) {
@@ -26,22 +26,24 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
         if (!page) return page.error();
         for (const auto& before : page->items) {
             if (item == again.items.end()) break;
-            if (item->item_case() == v1::Item::ITEM_NOT_SET) { // someone added what is stored here: it does not come again
+            if (item->item_case() ==
+                v1::Item::ITEM_NOT_SET) {  // someone added what is stored here: it does not come again
                 ++item;
                 continue;
             }
             if (before.SerializeAsString() != item->SerializeAsString())
-                return Error{fmt::format("run {}: flown again, item {} is not what it was ({})", again.run.value, before.seq(),
-                                         item->ShortDebugString().substr(0, words_of_difference))};
+                return Error{fmt::format("run {}: flown again, item {} is not what it was ({})", again.run.value,
+                                         before.seq(), item->ShortDebugString().substr(0, words_of_difference))};
             ++item;
         }
-        if (page->complete_through <= after) return Error{fmt::format("run {}: item {} is not in the archive", again.run.value, after + 1)};
+        if (page->complete_through <= after)
+            return Error{fmt::format("run {}: item {} is not in the archive", again.run.value, after + 1)};
         after = page->complete_through;
     }
     return {};
 }
 
-} // namespace
+}  // namespace
 
 void Delivery::add(const simulation::CycleReport& report) {
     entries.insert(entries.end(), report.packets.begin(), report.packets.end());
@@ -128,14 +130,15 @@ void PipelineThread::audit(archive::AuditRecord record, std::function<void()> ke
             }
         }
     }
-    jobs_.try_push(Action{[] {}}); // wakes it; a full queue keeps it awake
+    jobs_.try_push(Action{[] {}});  // wakes it; a full queue keeps it awake
     if (kept) kept();
 }
 
 bool PipelineThread::within_budget(archive::AuditRecord& record) {
     if (record.who.empty() || !record.outcome.starts_with("refused")) return true;
     const auto left_out = refusals_.take(record.who, std::chrono::steady_clock::now());
-    if (left_out.value_or(0) > 0) record.outcome += fmt::format(" (and {} refusals before it, not noted one by one)", *left_out);
+    if (left_out.value_or(0) > 0)
+        record.outcome += fmt::format(" (and {} refusals before it, not noted one by one)", *left_out);
     return left_out.has_value();
 }
 
@@ -203,7 +206,8 @@ void PipelineThread::note_received(const Delivery& delivery) {
         received.octets += octets;
     };
     for (const auto& entry : delivery.entries) {
-        if (const auto* packet = std::get_if<simulation::ReceivedPacket>(&entry)) add(packet->link.name, packet->octets.size());
+        if (const auto* packet = std::get_if<simulation::ReceivedPacket>(&entry))
+            add(packet->link.name, packet->octets.size());
         if (const auto* packet = std::get_if<pipeline::DownlinkPacket>(&entry)) add("downlink", packet->octets.size());
         if (std::holds_alternative<simulation::ReceivedTone>(entry)) add("tones", 0);
     }
@@ -220,14 +224,16 @@ Result<void> PipelineThread::finish(const archive::RunEnd& end) {
     return done.get();
 }
 
-bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done) {
+bool PipelineThread::annotate(archive::RunId run, archive::Annotation annotation,
+                              std::function<void(Result<archive::Annotation>)> done) {
     return !blocked() && jobs_.try_push(Action{[this, run, annotation = std::move(annotation), done = std::move(done)] {
         auto added = pipeline_.annotate(run, annotation);
         if (!added) return done(std::move(added));
         // Told as a command is, after the commit: a disk that refuses must not hold up what arrives meanwhile.
         answers_.push_back([done, added = std::move(added)](const std::string& fault) {
             if (fault.empty()) return done(added);
-            done(Error{fmt::format("this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault)});
+            done(Error{fmt::format(
+                "this is taken, and stored as soon as the disk takes it; do not send it again. Now: {}", fault)});
         });
     }});
 }
@@ -260,7 +266,8 @@ PipelineThread::Figures PipelineThread::figures() const {
 void PipelineThread::run() {
     for (;;) {
         // Nothing waits for a commit: neither does this thread need to wake for one.
-        auto job = waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
+        auto job =
+            waits() ? jobs_.pop_until(std::chrono::steady_clock::now() + pipeline::commit_interval) : jobs_.pop();
         if (!job && jobs_.closed() && jobs_.size() == 0) {
             if (waits()) insist([&] { return commit(std::nullopt); });
             return;
@@ -300,13 +307,11 @@ void PipelineThread::take(Delivery& delivery) {
     }
     pipeline_.relay_progress(delivery.relay_progress);
     if (!delivery.links.empty()) pipeline_.link_totals(std::move(delivery.links));
-    for (auto& tell : delivery.when_durable)
-        when_durable_.push_back(std::move(tell));
+    for (auto& tell : delivery.when_durable) when_durable_.push_back(std::move(tell));
 }
 
 void PipelineThread::take_answers(Delivery& delivery) {
-    for (auto& answer : std::exchange(delivery.answers, {}))
-        answers_.push_back(std::move(answer));
+    for (auto& answer : std::exchange(delivery.answers, {})) answers_.push_back(std::move(answer));
 }
 
 void PipelineThread::commit_what_is_due() {
@@ -321,13 +326,11 @@ void PipelineThread::commit_what_is_due() {
         return;
     }
     tell_answers("");
-    for (const auto& tell : std::exchange(when_durable_, {}))
-        tell();
+    for (const auto& tell : std::exchange(when_durable_, {})) tell();
 }
 
 void PipelineThread::tell_answers(const std::string& fault) {
-    for (const auto& answer : std::exchange(answers_, {}))
-        answer(fault);
+    for (const auto& answer : std::exchange(answers_, {})) answer(fault);
 }
 
 bool PipelineThread::noted(const Result<void>& result) {
@@ -351,23 +354,23 @@ bool PipelineThread::insist(const std::function<Result<void>()>& attempt) {
     for (int tries_when_closing = 0; !given_up_;) {
         const auto result = attempt();
         if (result) return noted(result);
-        if (fault().empty()) noted(result); // else the disk's own words are known
+        if (fault().empty()) noted(result);  // else the disk's own words are known
         if (faults_ == Faults::give_up || (closing_ && ++tries_when_closing > retries_when_closing)) {
             given_up_ = true;
             break;
         }
         blocked_ = true;
         tell_audit_kept({});
-        jobs_.each([this](Job& job) { // those behind this one wait for the disk no more than it does
+        jobs_.each([this](Job& job) {  // those behind this one wait for the disk no more than it does
             if (auto* delivery = std::get_if<Delivery>(&job)) take_answers(*delivery);
         });
         tell_answers(fault());
         pending_octets_ = pipeline_.pending_octets();
         std::this_thread::sleep_for(retry_interval);
-        const auto committed = pipeline_.commit(); // what waits goes first: accept() can then succeed
+        const auto committed = pipeline_.commit();  // what waits goes first: accept() can then succeed
         (void)committed;
     }
     return false;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

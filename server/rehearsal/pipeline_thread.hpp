@@ -26,10 +26,10 @@ struct Delivery {
                      archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState, pipeline::EarthTime>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
-    std::vector<archive::LinkTotals> links; ///< empty: as told before
-    std::vector<std::function<void()>> when_durable; ///< called on the pipeline thread, after the commit
-    /// Called there, too, after the first attempt at it: with why it is not durable yet, or with nothing when it is. Who waits for an
-    /// answer is not kept waiting by a disk.
+    std::vector<archive::LinkTotals> links;           ///< empty: as told before
+    std::vector<std::function<void()>> when_durable;  ///< called on the pipeline thread, after the commit
+    /// Called there, too, after the first attempt at it: with why it is not durable yet, or with nothing when it is.
+    /// Who waits for an answer is not kept waiting by a disk.
     std::vector<std::function<void(const std::string& fault)>> answers;
 
     void add(const simulation::CycleReport& report);
@@ -43,24 +43,24 @@ struct Delivery {
 /// Out      what the pipeline publishes, on this thread
 /// Faults   a failed commit is told once, and tried again every half second; the run goes on meanwhile, until
 ///          pipeline::pending_octets_max wait: then it waits too. Nothing is lost. With `Faults::give_up` (one landing
-///          without a console) the first failure ends it. Once closing() was said a failing disk has some seconds left, for
-///          nobody waits any longer for one that is never mended
+///          without a console) the first failure ends it. Once closing() was said a failing disk has some seconds left,
+///          for nobody waits any longer for one that is never mended
 class PipelineThread {
   public:
-    static constexpr std::size_t audit_waiting_max = 1'000; ///< ours: some 200 kB
-    static constexpr std::size_t deliveries_max = 64; ///< ours: some 64 × 256 units, about 2 MB
+    static constexpr std::size_t audit_waiting_max = 1'000;  ///< ours: some 200 kB
+    static constexpr std::size_t deliveries_max = 64;        ///< ours: some 64 × 256 units, about 2 MB
 
     enum class Faults { hold, give_up };
     PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
                    pipeline::Publish publish, const telemetry::OtherMission* other = nullptr);
-    ~PipelineThread(); ///< takes what is in the queue, then ends
+    ~PipelineThread();  ///< takes what is in the queue, then ends
 
     /// Waits until the run is in the archive.
     Result<archive::RunId> begin(const archive::RunStart& start);
     /// A run that was cut off, flown again from its beginning: what is stored already is compared and not stored again.
     Result<void> resume(archive::CutOffRun& cut, const archive::RunStart& start);
-    /// Waits until everything delivered was taken: true when the run has caught up with what is stored; an Error when it
-    /// did not come out the same.
+    /// Waits until everything delivered was taken: true when the run has caught up with what is stored; an Error when
+    /// it did not come out the same.
     Result<bool> caught_up();
     /// Gives the run up; in the archive it stays as it is.
     void abandon();
@@ -68,18 +68,20 @@ class PipelineThread {
     bool deliver(Delivery delivery);
     /// Waits until everything delivered is durable and the run is marked finished.
     Result<void> finish(const archive::RunEnd& end);
-    /// All will end soon: while the disk takes it, everything is still stored; when it fails, whoever waits here gets the error
-    /// after some tries, and the run stays as one that was cut off. From any thread.
+    /// All will end soon: while the disk takes it, everything is still stored; when it fails, whoever waits here gets
+    /// the error after some tries, and the run stays as one that was cut off. From any thread.
     void closing() { closing_ = true; }
 
-    /// Stored as soon as the disk takes it; never waits. From any thread. `kept` is told when it is durable, on this object's thread; while
-    /// the disk refuses at once, for what was done must still be answered. Of refusals only those that RefusalBudget takes.
+    /// Stored as soon as the disk takes it; never waits. From any thread. `kept` is told when it is durable, on this
+    /// object's thread; while the disk refuses at once, for what was done must still be answered. Of refusals only
+    /// those that RefusalBudget takes.
     void audit(archive::AuditRecord record, std::function<void()> kept = {});
     /// False while so much of the audit waits for a failing disk that nothing more may be done that belongs into it.
     bool audit_has_room() const;
-    /// Adds to any run what a person says; `done` comes on this thread when it is durable, or with an Error when the disk refuses it
-    /// for now. False, and nothing done, when too much waits.
-    bool annotate(archive::RunId run, archive::Annotation annotation, std::function<void(Result<archive::Annotation>)> done);
+    /// Adds to any run what a person says; `done` comes on this thread when it is durable, or with an Error when the
+    /// disk refuses it for now. False, and nothing done, when too much waits.
+    bool annotate(archive::RunId run, archive::Annotation annotation,
+                  std::function<void(Result<archive::Annotation>)> done);
 
     void want_items(bool wanted) { items_wanted_ = wanted; }
     /// Called on this thread when fault() has changed. Before the first run.
@@ -95,10 +97,10 @@ class PipelineThread {
     struct Figures {
         std::uint64_t deliveries = 0, failed_commits = 0, published_batches = 0, published_items = 0;
         std::size_t waiting = 0, audit_waiting = 0;
-        std::size_t pending_octets = 0; ///< held until the disk takes them
-        std::uint64_t commits = 0; ///< that had something to make durable
-        double commit_s = 0.0, longest_commit_s = 0.0; ///< of all of them; of one
-        std::map<std::string, Received> links; ///< by name: packets and tones that reached Earth
+        std::size_t pending_octets = 0;                 ///< held until the disk takes them
+        std::uint64_t commits = 0;                      ///< that had something to make durable
+        double commit_s = 0.0, longest_commit_s = 0.0;  ///< of all of them; of one
+        std::map<std::string, Received> links;          ///< by name: packets and tones that reached Earth
     };
     Figures figures() const;
 
@@ -154,9 +156,9 @@ class PipelineThread {
     mutable std::mutex audit_mutex_;
     std::vector<archive::AuditRecord> audit_;
     RefusalBudget refusals_;
-    std::vector<std::function<void()>> audit_kept_; ///< one a record; empty: told, or nobody wants to know
-    std::vector<std::function<void()>> when_durable_; ///< of what waits
-    std::vector<std::function<void(const std::string& fault)>> answers_; ///< of what waits for the first attempt
+    std::vector<std::function<void()>> audit_kept_;    ///< one a record; empty: told, or nobody wants to know
+    std::vector<std::function<void()>> when_durable_;  ///< of what waits
+    std::vector<std::function<void(const std::string& fault)>> answers_;  ///< of what waits for the first attempt
     std::chrono::steady_clock::time_point next_attempt_{};
     std::function<void(const std::string&)> on_fault_;
     mutable std::mutex fault_mutex_;
@@ -164,4 +166,4 @@ class PipelineThread {
     std::thread thread_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* firing_packet_name = "TimepointFired";
 
-} // namespace
+}  // namespace
 
 RecordedFirings::RecordedFirings(const dictionary::Dictionary& dictionary)
     : dictionary_(&dictionary), packet_(dictionary.packet(firing_packet_name)), decommutator_(dictionary) {}
@@ -36,4 +36,4 @@ void RecordedFirings::read(std::span<const std::uint8_t> recorded) {
     }
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -15,7 +15,7 @@ struct RecordedFiring {
     std::string name;
     double fired_sclk = 0.0;
     std::string verdict;
-    std::size_t row = 0; ///< of the timeline
+    std::size_t row = 0;  ///< of the timeline
     double triggered_sclk = 0.0;
 };
 
@@ -39,4 +39,4 @@ class RecordedFirings {
     std::vector<RecordedFiring> firings_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -13,7 +13,7 @@ namespace aeolis::server {
 class RefusalBudget {
   public:
     using Clock = std::chrono::steady_clock;
-    static constexpr unsigned each_minute = 60; ///< ours
+    static constexpr unsigned each_minute = 60;  ///< ours
 
     /// One more refusal of `who`. @return how many before it are not noted; none: neither is this one
     std::optional<std::uint64_t> take(const std::string& who, Clock::time_point now) {
@@ -32,11 +32,12 @@ class RefusalBudget {
 
   private:
     struct Minute {
-        std::optional<Clock::time_point> begun{}; ///< none: it is their first
+        std::optional<Clock::time_point> begun{};  ///< none: it is their first
         unsigned noted = 0;
         std::uint64_t left_out = 0;
     };
-    std::map<std::string, Minute> minutes_; ///< by who: users and tokens there are, so no more than the file of accounts has had
+    std::map<std::string, Minute>
+        minutes_;  ///< by who: users and tokens there are, so no more than the file of accounts has had
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -13,15 +13,16 @@
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t cycles_between_silences = 64; // a second: who watches a silence waits no longer
+constexpr std::uint64_t cycles_between_silences = 64;  // a second: who watches a silence waits no longer
 constexpr const char* product_packet_name = "DataProduct";
 
 /// When what leaves the vehicle at the entry that ground predicts is heard on Earth.
 Ert heard_at_entry(const simulation::Scenario& scenario, const simulation::Landing& landing) {
-    return {landing.correlation().scet_of(scenario.entry_sclk).microseconds + static_cast<std::int64_t>(landing.light_time_s() * 1e6)};
+    return {landing.correlation().scet_of(scenario.entry_sclk).microseconds +
+            static_cast<std::int64_t>(landing.light_time_s() * 1e6)};
 }
 
-} // namespace
+}  // namespace
 
 Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                      const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner,
@@ -37,8 +38,8 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
     }
     if (runner != nullptr) flight_.run_prime_by(std::move(runner));
     if (scenario.radio.tones_from_samples.value_or(false))
-        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler_hz(scenario, dictionary.mfsk), seed,
-                                    case_number);
+        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler_hz(scenario, dictionary.mfsk),
+                                    seed, case_number);
 }
 
 const simulation::CycleReport& Rehearsal::step() {
@@ -63,11 +64,11 @@ const simulation::CycleReport& Rehearsal::hear_tones(const simulation::CycleRepo
 
 const simulation::CycleReport& Rehearsal::explain_silences(const simulation::CycleReport& heard) {
     if (heard.links.empty() && cycles_ % cycles_between_silences != 0) return heard;
-    SilenceClassifier::Station at_station{recording_progress(), {}, heard.station_out ? "nothing comes from the station" : ""};
-    for (const auto& link : station().links())
-        at_station.heard.emplace_back(link.link.name, link.heard_at);
+    SilenceClassifier::Station at_station{
+        recording_progress(), {}, heard.station_out ? "nothing comes from the station" : ""};
+    for (const auto& link : station().links()) at_station.heard.emplace_back(link.link.name, link.heard_at);
     auto links = silences_.tell(heard.links, landing().ert_now(), at_station);
-    if (links.empty() && heard.links.empty()) return heard; // else what the simulation says of them would be told
+    if (links.empty() && heard.links.empty()) return heard;  // else what the simulation says of them would be told
     if (&heard != &heard_) heard_ = heard;
     heard_.links = std::move(links);
     return heard_;
@@ -83,7 +84,8 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
 std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file) {
     if (takes_commands()) return flight_.look(file);
     std::vector<v1::CommandReply> refusals;
-    std::ranges::transform(file, std::back_inserter(refusals), [this](const v1::CommandRequest& request) { return submit(request); });
+    std::ranges::transform(file, std::back_inserter(refusals),
+                           [this](const v1::CommandRequest& request) { return submit(request); });
     return refusals;
 }
 
@@ -133,7 +135,7 @@ void Rehearsal::note_product(std::span<const std::uint8_t> packet) {
     if (!header || product_packet_ == nullptr || header->apid != product_packet_->apid) return;
     if (decommutator_.decode(packet, decoded_)) return;
     if (const auto part = telemetry::part_of(dictionary_, decoded_, packet))
-        static_cast<void>(products_.add(*part)); // real time and recording bring most parts twice
+        static_cast<void>(products_.add(*part));  // real time and recording bring most parts twice
 }
 
 std::string Rehearsal::outcome() const {
@@ -152,11 +154,10 @@ std::vector<archive::LinkTotals> Rehearsal::link_totals() const {
 }
 
 telemetry::Proof Rehearsal::proof() const {
-    if (landing().relaying()) return telemetry::prove(units_); // by what came down, be it all or not
+    if (landing().relaying()) return telemetry::prove(units_);  // by what came down, be it all or not
     auto units = units_;
     telemetry::PacketStream recording{landing().recording()};
-    while (const auto packet = recording.next())
-        units.add(*packet, telemetry::Path::recorded);
+    while (const auto packet = recording.next()) units.add(*packet, telemetry::Path::recorded);
     return telemetry::prove(units);
 }
 
@@ -174,8 +175,7 @@ archive::RunStart Rehearsal::run_start(double pace) const {
     start.light_time_s = landing().light_time_s();
     start.tone_model = tones_from_samples_ ? "signal" : "statistical";
     start.scenario_text = scenario_to_text(scenario_);
-    for (const auto& [name, value] : solution_arguments(landing().solution()))
-        start.solution.emplace_back(name, value);
+    for (const auto& [name, value] : solution_arguments(landing().solution())) start.solution.emplace_back(name, value);
     return start;
 }
 
@@ -194,4 +194,4 @@ v1::Clocks Rehearsal::clocks() const {
     return clocks;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

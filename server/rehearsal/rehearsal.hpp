@@ -33,8 +33,8 @@ struct ToneScore {
 /// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
 class Rehearsal {
   public:
-    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive; a `clock` is that of a run
-    /// which was begun before.
+    /// The dictionary must outlive this. A `runner` takes the place of the prime computer's executive; a `clock` is
+    /// that of a run which was begun before.
     Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
               const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {},
               const std::optional<ClockCorrelation>& clock = {});
@@ -55,7 +55,7 @@ class Rehearsal {
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
     bool finished() const { return !broken_.empty() || landing().finished(); }
-    std::string outcome() const; ///< running, touchdown, impact, lost, not_commanded, timeout
+    std::string outcome() const;  ///< running, touchdown, impact, lost, not_commanded, timeout
     std::string outcome_reason() const;
     std::string digest() const { return digest_.text(); }
 
@@ -68,7 +68,7 @@ class Rehearsal {
     const GroundStation& station() const { return flight_.station(); }
     /// What each UHF link has brought so far.
     std::vector<archive::LinkTotals> link_totals() const;
-    double recording_progress() const { return flight_.recording_progress(); } ///< 0 … 1 that has come down
+    double recording_progress() const { return flight_.recording_progress(); }  ///< 0 … 1 that has come down
     std::uint64_t seed() const { return seed_; }
     std::uint64_t cycles() const { return cycles_; }
 
@@ -86,7 +86,9 @@ class Rehearsal {
     }
 
   private:
-    bool takes_commands() const { return scenario_.test_venue != simulation::TestVenue::gnc_alone; } ///< it has a computer
+    bool takes_commands() const {
+        return scenario_.test_venue != simulation::TestVenue::gnc_alone;
+    }  ///< it has a computer
     /// The same with the tones that were decoded from its samples.
     const simulation::CycleReport& hear_tones(const simulation::CycleReport& landed);
     /// The same with ground's own reasons for what links do not bring.
@@ -100,10 +102,10 @@ class Rehearsal {
     const dictionary::Dictionary& dictionary_;
     std::uint64_t seed_ = 0, case_number_ = 0;
     ScriptedLanding flight_;
-    std::shared_ptr<ThreadedExecutive> executive_; ///< of the venue "performance"
+    std::shared_ptr<ThreadedExecutive> executive_;  ///< of the venue "performance"
     Digest digest_;
     std::uint64_t cycles_ = 0;
-    std::string broken_; ///< the condition that failed in the simulation
+    std::string broken_;  ///< the condition that failed in the simulation
 
     const dictionary::Packet* product_packet_ = nullptr;
     telemetry::Decommutator decommutator_;
@@ -113,9 +115,9 @@ class Rehearsal {
     ToneScore tones_;
     telemetry::UnitRegister units_;
     telemetry::ProductAssembler products_;
-    std::optional<ToneStation> tones_from_samples_; ///< where the scenario has them so
+    std::optional<ToneStation> tones_from_samples_;  ///< where the scenario has them so
     SilenceClassifier silences_;
     simulation::CycleReport heard_, nothing_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -38,7 +38,7 @@ std::vector<v1::CommandRequest> timeline_changes(const simulation::Scenario& sce
     return changes;
 }
 
-} // namespace
+}  // namespace
 
 RehearsalDesk::RehearsalDesk(const ScenarioLibrary& scenarios, const dictionary::Dictionary& dictionary,
                              PipelineThread& pipeline, Post post, ReadCutOff read_cut_off, TimelineQuestions timeline,
@@ -84,15 +84,17 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
     if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
     const auto changes = timeline_changes(scenario);
     if (changes.empty()) return fly(std::move(scenario), seed, pace, std::move(began));
-    timeline_.check(archive::RunId{}, changes, false, [this, scenario = std::move(scenario), seed, pace, began = std::move(began), changes](Result<std::string> timeline) {
-        post_([this, scenario, seed, pace, began, changes, timeline = std::move(timeline)] {
-            if (timeline) return fly(scenario, seed, pace, began);
-            std::string names;
-            for (const auto& change : changes)
-                names += (names.empty() ? "" : ", ") + change.command();
-            began(Error{fmt::format("commands: its script sends {}: {}", names, timeline.error().message)});
+    timeline_.check(
+        archive::RunId{}, changes, false,
+        [this, scenario = std::move(scenario), seed, pace, began = std::move(began),
+         changes](Result<std::string> timeline) {
+            post_([this, scenario, seed, pace, began, changes, timeline = std::move(timeline)] {
+                if (timeline) return fly(scenario, seed, pace, began);
+                std::string names;
+                for (const auto& change : changes) names += (names.empty() ? "" : ", ") + change.command();
+                began(Error{fmt::format("commands: its script sends {}: {}", names, timeline.error().message)});
+            });
         });
-    });
 }
 
 void RehearsalDesk::fly(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
@@ -121,7 +123,7 @@ RehearsalRunner::Callbacks RehearsalDesk::callbacks_for(Began began) {
                 begun_ = true;
                 state_ = *state;
                 callbacks_.on_state(state_);
-                look_again(); // a crash may have come in between
+                look_again();  // a crash may have come in between
             }
             began(state);
         });
@@ -152,7 +154,8 @@ void RehearsalDesk::look_again() {
         return;
     }
     const auto run = state_.run();
-    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)}, [this, run](Result<TimelineCheck::Look> look) {
+    timeline_.look_again(archive::RunId{static_cast<std::uint32_t>(run)}, [this,
+                                                                           run](Result<TimelineCheck::Look> look) {
         post_([this, run, look = std::move(look)] {
             looking_again_ = false;
             const bool goes_on = going_on() && begun_ && state_.run() == run;
@@ -161,7 +164,8 @@ void RehearsalDesk::look_again() {
             if (!goes_on) return;
             const std::string not_known = look ? look->not_known : look.error().message;
             not_known_ = !not_known.empty();
-            if (not_known_) spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
+            if (not_known_)
+                spdlog::warn("run {}: what becomes of the timeline by what waits is not known yet: {}", run, not_known);
             if (look) tell_looks(*look);
         });
     });
@@ -174,11 +178,14 @@ void RehearsalDesk::tell_looks(const TimelineCheck::Look& look) {
         said.set_number(each.number);
         said.set_request(look.undone);
         said.set_analysis(each.words);
-        runner_->submit(said, [](const v1::CommandReply&) {}); // of one that nobody doubts it is refused, and that is all it would say
+        runner_->submit(said, [](const v1::CommandReply&) {
+        });  // of one that nobody doubts it is refused, and that is all it would say
     }
 }
 
-std::string RehearsalDesk::not_going_on(std::uint64_t run) const { return fmt::format("run {} is not the one that goes on ({})", run, state_.run()); }
+std::string RehearsalDesk::not_going_on(std::uint64_t run) const {
+    return fmt::format("run {} is not the one that goes on ({})", run, state_.run());
+}
 
 Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began began) {
     if (control.action_case() == v1::RehearsalControl::kStart) {
@@ -188,9 +195,7 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
     if (!going_on()) return Error{"no rehearsal goes on"};
     if (control.run() != 0 && control.run() != state_.run()) return Error{not_going_on(control.run())};
     switch (control.action_case()) {
-    case v1::RehearsalControl::kPause:
-        runner_->pause(control.pause());
-        return {};
+    case v1::RehearsalControl::kPause: runner_->pause(control.pause()); return {};
     case v1::RehearsalControl::kPace: {
         const auto pace = checked_pace(control.pace());
         if (!pace) return pace.error();
@@ -201,13 +206,11 @@ Result<void> RehearsalDesk::control(const v1::RehearsalControl& control, Began b
         if (!control.stop()) return Error{"stop: false asks for nothing"};
         runner_->stop();
         return {};
-    case v1::RehearsalControl::kInject:
-        return runner_->inject(control.inject());
+    case v1::RehearsalControl::kInject: return runner_->inject(control.inject());
     case v1::RehearsalControl::kNote:
         if (auto checked = check_note(control.note().text(), control.note().by()); !checked) return checked;
         return runner_->note(control.note());
-    default:
-        return Error{"the control says nothing: start, pause, pace, stop, inject or note is wanted"};
+    default: return Error{"the control says nothing: start, pause, pace, stop, inject or note is wanted"};
     }
 }
 
@@ -215,30 +218,35 @@ void RehearsalDesk::command(v1::CommandRequest request, const May& may, Rehearsa
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
-    sequence(std::move(one), only_check, may, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+    sequence(std::move(one), only_check, may,
+             [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
-void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may, Replies replies) {
+void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only_check, const May& may,
+                             Replies replies) {
     const auto refuse = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
     if (!going_on() || !begun_) return refuse("no run goes on: nothing listens");
-    if (!only_check && pipeline_.blocked()) return refuse("the run waits until its archive can be written again: " + pipeline_.fault());
+    if (!only_check && pipeline_.blocked())
+        return refuse("the run waits until its archive can be written again: " + pipeline_.fault());
     for (const auto& request : requests)
         if (request.action() == timeline_holds_action || request.action() == timeline_refuted_action)
             return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
     for (const auto& request : requests)
-        if (request.run() != 0 && request.run() != state_.run())
-            return refuse(not_going_on(request.run()));
-    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused. Not who stops
-    // something: that changes no timeline, and nothing may leave while it waits.
-    const bool stops = std::ranges::all_of(requests, [](const v1::CommandRequest& request) { return request.action() == "hold"; });
+        if (request.run() != 0 && request.run() != state_.run()) return refuse(not_going_on(request.run()));
+    // In the order in which they came: what follows a change of the timeline waits until that was taken or refused. Not
+    // who stops something: that changes no timeline, and nothing may leave while it waits.
+    const bool stops =
+        std::ranges::all_of(requests, [](const v1::CommandRequest& request) { return request.action() == "hold"; });
     if (changing_ && !only_check && !stops && later_.size() >= RehearsalRunner::requests_max)
-        return refuse(fmt::format("{} commands wait already, until a change of the timeline is decided", later_.size()));
+        return refuse(
+            fmt::format("{} commands wait already, until a change of the timeline is decided", later_.size()));
     if (changing_ && !only_check && !stops) {
-        for (auto& request : requests) // their numbers and rights are of this run, not of one that begins meanwhile
+        for (auto& request : requests)  // their numbers and rights are of this run, not of one that begins meanwhile
             request.set_run(state_.run());
         return later_.push_back([this, requests = std::move(requests), may, replies = std::move(replies)]() mutable {
             for (const auto& request : requests)
-                if (const auto allowed = may(request); !allowed) return RehearsalRunner::refuse_all(requests, allowed.error().message, replies);
+                if (const auto allowed = may(request); !allowed)
+                    return RehearsalRunner::refuse_all(requests, allowed.error().message, replies);
             sequence(std::move(requests), false, may, std::move(replies));
         });
     }
@@ -248,24 +256,28 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
         replies = [this, replies = std::move(replies)](std::vector<v1::CommandReply> answers) {
             changing_ = false;
             replies(std::move(answers));
-            for (auto& order : std::exchange(later_, {}))
-                order();
+            for (auto& order : std::exchange(later_, {})) order();
         };
     }
-    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check, [this, run, requests, only_check, replies, moves = moves_](Result<std::string> timeline) {
-        post_([this, run, requests, only_check, replies, moves, timeline = std::move(timeline)] {
-            const auto refuse_all = [&](const std::string& reason) { RehearsalRunner::refuse_all(requests, reason, replies); };
-            if (!timeline) return refuse_all(timeline.error().message);
-            if (!going_on() || !begun_ || state_.run() != run) return refuse_all("no run goes on: nothing listens");
-            if (!only_check && !timeline->empty() && moves != moves_)
-                return refuse_all("what it was analysed with has come to nothing meanwhile: look at the timeline, then send it again");
-            runner_->submit(requests, only_check, [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
-                for (auto& answer : answers)
-                    answer.set_timeline(says);
-                post_([replies, answers = std::move(answers)] { replies(answers); });
-            });
-        });
-    });
+    timeline_.check(archive::RunId{static_cast<std::uint32_t>(run)}, requests, only_check,
+                    [this, run, requests, only_check, replies, moves = moves_](Result<std::string> timeline) {
+                        post_([this, run, requests, only_check, replies, moves, timeline = std::move(timeline)] {
+                            const auto refuse_all = [&](const std::string& reason) {
+                                RehearsalRunner::refuse_all(requests, reason, replies);
+                            };
+                            if (!timeline) return refuse_all(timeline.error().message);
+                            if (!going_on() || !begun_ || state_.run() != run)
+                                return refuse_all("no run goes on: nothing listens");
+                            if (!only_check && !timeline->empty() && moves != moves_)
+                                return refuse_all("what it was analysed with has come to nothing meanwhile: look at "
+                                                  "the timeline, then send it again");
+                            runner_->submit(requests, only_check,
+                                            [this, replies, says = *timeline](std::vector<v1::CommandReply> answers) {
+                                                for (auto& answer : answers) answer.set_timeline(says);
+                                                post_([replies, answers = std::move(answers)] { replies(answers); });
+                                            });
+                        });
+                    });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

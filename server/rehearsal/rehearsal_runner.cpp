@@ -17,21 +17,23 @@ namespace {
 using std::chrono::duration;
 using std::chrono::milliseconds;
 
-constexpr milliseconds delivery_interval{5};  // half a commit's: a commit then holds what is 15 ms old at most
-constexpr std::size_t delivery_entries = 256; // or so many, when it goes fast
-constexpr milliseconds clocks_interval{100};  // ten times a second: brief of the stream
+constexpr milliseconds delivery_interval{5};   // half a commit's: a commit then holds what is 15 ms old at most
+constexpr std::size_t delivery_entries = 256;  // or so many, when it goes fast
+constexpr milliseconds clocks_interval{100};   // ten times a second: brief of the stream
 constexpr milliseconds state_interval{1000};
 constexpr milliseconds links_interval{1000};
-constexpr milliseconds shortest_wait{1}; // shorter ones cost more than they pace
-constexpr double behind_s_max = 0.25;    // later than that the pace is not attained; do not rush to catch up
-constexpr std::uint64_t cycles_between_looks = 64; // while flying again: as far as a run may go on before its pace counts
+constexpr milliseconds shortest_wait{1};  // shorter ones cost more than they pace
+constexpr double behind_s_max = 0.25;     // later than that the pace is not attained; do not rush to catch up
+constexpr std::uint64_t cycles_between_looks =
+    64;  // while flying again: as far as a run may go on before its pace counts
 
 constexpr const char* not_stored_yet = "taken, but not in the archive yet, which is lost if the server ends now: ";
 constexpr const char* over_reason = "the run is over: nothing listens on board";
 
-} // namespace
+}  // namespace
 
-void RehearsalRunner::refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const Replies& replies) {
+void RehearsalRunner::refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason,
+                                 const Replies& replies) {
     std::vector<v1::CommandReply> refusals;
     for (const auto& request : requests) {
         auto& refusal = refusals.emplace_back();
@@ -52,9 +54,10 @@ RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, std::uint64_t se
 }
 
 RehearsalRunner::RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
-                                 const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks)
-    : scenario_(std::move(scenario)), seed_(cut.seed), cut_(std::move(cut)), dictionary_(dictionary), pipeline_(pipeline),
-      callbacks_(std::move(callbacks)) {
+                                 const dictionary::Dictionary& dictionary, PipelineThread& pipeline,
+                                 Callbacks callbacks)
+    : scenario_(std::move(scenario)), seed_(cut.seed), cut_(std::move(cut)), dictionary_(dictionary),
+      pipeline_(pipeline), callbacks_(std::move(callbacks)) {
     control_.pace = pace_ = std::clamp(pace, 0.0, pace_max);
     thread_ = std::thread{[this] { run(); }};
 }
@@ -98,7 +101,8 @@ Result<void> RehearsalRunner::note(v1::InstructorNote note) {
     return intervene(std::move(intervention), notes_taken_, notes_max, "notes have been written about");
 }
 
-Result<void> RehearsalRunner::intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most, std::string_view what) {
+Result<void> RehearsalRunner::intervene(v1::Intervention intervention, std::size_t& taken, std::size_t most,
+                                        std::string_view what) {
     const std::scoped_lock lock{mutex_};
     if (over_ || control_.stop) return Error{over_reason};
     if (taken == most) return Error{fmt::format("{} {} this run: no more", most, what)};
@@ -113,7 +117,8 @@ void RehearsalRunner::submit(v1::CommandRequest request, Reply reply) {
     const bool only_check = request.dry_run();
     std::vector<v1::CommandRequest> one;
     one.push_back(std::move(request));
-    submit(std::move(one), only_check, [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
+    submit(std::move(one), only_check,
+           [reply = std::move(reply)](std::vector<v1::CommandReply> replies) { reply(std::move(replies.front())); });
 }
 
 void RehearsalRunner::submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies) {
@@ -166,8 +171,7 @@ void RehearsalRunner::run() {
         over_ = true;
         late.swap(control_.orders);
     }
-    for (const auto& order : late)
-        refuse_all(order.requests, over_reason, order.replies);
+    for (const auto& order : late) refuse_all(order.requests, over_reason, order.replies);
 }
 
 Result<void> RehearsalRunner::begin(Rehearsal& rehearsal) {
@@ -188,7 +192,10 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
     run_id_ = cut_->run;
     start_.started = cut_->started;
     spdlog::info("run {} is flown again up to item {}", run_id_.value, cut_->last_seq);
-    if (!cut_->clock_kept) spdlog::info("run {} has no clock of its own in the archive: it is of before clocks drifted, and goes on without drift", run_id_.value);
+    if (!cut_->clock_kept)
+        spdlog::info(
+            "run {} has no clock of its own in the archive: it is of before clocks drifted, and goes on without drift",
+            run_id_.value);
     if (auto resumed = pipeline_.resume(*cut_, start_); !resumed) return resumed;
     const auto given_up = [&](const std::string& why) {
         pipeline_.abandon();
@@ -207,7 +214,8 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
             const auto caught_up = pipeline_.caught_up();
             if (!caught_up) return given_up(caught_up.error().message);
             if (*caught_up && request == cut_->requests.end()) break;
-            if (rehearsal.finished()) return given_up(fmt::format("flown again it ends before item {}", cut_->last_seq));
+            if (rehearsal.finished())
+                return given_up(fmt::format("flown again it ends before item {}", cut_->last_seq));
         }
         collect(rehearsal, rehearsal.step());
     }
@@ -216,7 +224,7 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
 }
 
 void RehearsalRunner::fly(Rehearsal& rehearsal) {
-    auto anchor = Clock::now(); // the pace counts from here
+    auto anchor = Clock::now();  // the pace counts from here
     auto anchor_cycles = rehearsal.cycles();
     state_told_ = clocks_told_ = delivered_ = anchor;
     while (!rehearsal.finished() && !stopped_ && !archive_gave_up_) {
@@ -284,7 +292,7 @@ void RehearsalRunner::fly(Rehearsal& rehearsal) {
 }
 
 std::vector<v1::CommandReply> RehearsalRunner::look_at(Rehearsal& rehearsal, const Order& order) {
-    if (!order.only_check && order.requests.size() == 1) return {}; // the one look at it comes when it is taken
+    if (!order.only_check && order.requests.size() == 1) return {};  // the one look at it comes when it is taken
     auto replies = rehearsal.look(order.requests);
     if (!order.only_check && std::ranges::all_of(replies, &v1::CommandReply::accepted)) replies.clear();
     return replies;
@@ -300,9 +308,11 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
         bool any = false;
         for (const auto& request : order.requests) {
             auto answer = rehearsal.submit(request);
-            const auto what = request.action().empty() ? request.command() : fmt::format("{} of {}", request.action(), request.number());
+            const auto what = request.action().empty() ? request.command()
+                                                       : fmt::format("{} of {}", request.action(), request.number());
             spdlog::info("run {}: command {} {}", run_id_.value, what,
-                         answer.accepted() ? fmt::format("taken as number {}", answer.command()) : "refused: " + answer.reason());
+                         answer.accepted() ? fmt::format("taken as number {}", answer.command())
+                                           : "refused: " + answer.reason());
             if (answer.accepted()) {
                 any = true;
                 delivery_.entries.emplace_back(archive::RequestRecord{rehearsal.cycles(), archive::kept_text(request)});
@@ -311,11 +321,12 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
             replies.push_back(std::move(answer));
         }
         if (any)
-            delivery_.answers.push_back([give = std::move(order.replies), given = std::move(replies)](const std::string& fault) mutable {
-                for (auto& reply : given)
-                    if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
-                give(std::move(given));
-            });
+            delivery_.answers.push_back(
+                [give = std::move(order.replies), given = std::move(replies)](const std::string& fault) mutable {
+                    for (auto& reply : given)
+                        if (reply.accepted() && !fault.empty()) reply.set_reason(not_stored_yet + fault);
+                    give(std::move(given));
+                });
         else
             order.replies(std::move(replies));
     }
@@ -325,7 +336,8 @@ void RehearsalRunner::carry_out(Rehearsal& rehearsal, std::vector<Order> orders)
 void RehearsalRunner::bring_about(Rehearsal& rehearsal, const std::vector<v1::Intervention>& interventions) {
     for (const auto& intervention : interventions) {
         if (intervention.has_fault()) {
-            if (const auto injected = rehearsal.inject(intervention.fault()); !injected) { // inject() has looked at it already
+            if (const auto injected = rehearsal.inject(intervention.fault());
+                !injected) {  // inject() has looked at it already
                 spdlog::error("run {}: fault not injected: {}", run_id_.value, injected.error().message);
                 continue;
             }
@@ -370,7 +382,8 @@ bool RehearsalRunner::deliver(const Rehearsal& rehearsal, Clock::time_point now)
         links_told_ = now;
         delivery_.links = rehearsal.link_totals();
     }
-    if (std::exchange(timeline_moved_, false) && callbacks_.on_timeline_moved) delivery_.when_durable.push_back(callbacks_.on_timeline_moved);
+    if (std::exchange(timeline_moved_, false) && callbacks_.on_timeline_moved)
+        delivery_.when_durable.push_back(callbacks_.on_timeline_moved);
     return pipeline_.deliver(std::exchange(delivery_, {}));
 }
 
@@ -402,7 +415,7 @@ std::string RehearsalRunner::state_word() const {
 v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     v1::RunState state;
     state.set_run(run_id_.value);
-    if (cut_) state.set_last_seq(cut_->last_seq); // until the stream says what has come since
+    if (cut_) state.set_last_seq(cut_->last_seq);  // until the stream says what has come since
     state.set_scenario(start_.scenario);
     state.set_title(start_.title);
     state.set_venue(start_.venue);
@@ -428,4 +441,4 @@ v1::RunState RehearsalRunner::state(const Rehearsal& rehearsal) const {
     return state;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -30,29 +30,32 @@ class Rehearsal;
 /// Out      deliveries to the pipeline; state on every change and once a second, clocks ten times a second
 /// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
 ///          slower, nothing is skipped, and `attained_pace` says so.
-/// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else drawn
+/// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else
+/// drawn
 ///          from the symbol error: the pace asked for at the start decides, for the whole run, so that none is lost or
 ///          doubled when the pace changes (decision 0019)
-/// Cut off  a run that a crash ended is flown again with the same seed, clock and requests at the same cycles, as fast as it
-///          goes; each item is held against the archive, and after the last that is stored the run goes on as if nothing
-///          had been. When one is not what it was, the run stays interrupted and on_begun gets the error (decision 0021)
+/// Cut off  a run that a crash ended is flown again with the same seed, clock and requests at the same cycles, as fast
+/// as it
+///          goes; each item is held against the archive, and after the last that is stored the run goes on as if
+///          nothing had been. When one is not what it was, the run stays interrupted and on_begun gets the error
+///          (decision 0021)
 /// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error
 class RehearsalRunner {
   public:
     static constexpr double pace_max = 1000.0;
     /// A quarter of what a shared core was measured to sustain, headless (docs/tones.md). Ours
     static constexpr double signal_pace_max = 50.0;
-    static constexpr std::size_t requests_max = 64; ///< commands waiting for the next cycle; ours
-    static constexpr std::size_t faults_max = 100;  ///< injected into one run; ours
-    static constexpr std::size_t notes_max = 1'000; ///< of instructors in one run; ours
+    static constexpr std::size_t requests_max = 64;  ///< commands waiting for the next cycle; ours
+    static constexpr std::size_t faults_max = 100;   ///< injected into one run; ours
+    static constexpr std::size_t notes_max = 1'000;  ///< of instructors in one run; ours
 
     /// Called on the rehearsal's thread.
     struct Callbacks {
-        std::function<void(Result<v1::RunState>)> on_begun; ///< once; after an error nothing else comes
+        std::function<void(Result<v1::RunState>)> on_begun;  ///< once; after an error nothing else comes
         std::function<void(v1::RunState)> on_state;
         std::function<void(v1::Clocks)> on_clocks;
-        /// A command that changes the timeline has come to nothing, and that is durable: what still waits was analysed with it. On the
-        /// pipeline's thread
+        /// A command that changes the timeline has come to nothing, and that is durable: what still waits was analysed
+        /// with it. On the pipeline's thread
         std::function<void()> on_timeline_moved;
     };
     using Reply = std::function<void(v1::CommandReply)>;
@@ -66,9 +69,9 @@ class RehearsalRunner {
     RehearsalRunner(simulation::Scenario scenario, std::uint64_t seed, double pace,
                     const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
     /// Goes on with a run that was cut off; `scenario` is the one in its row.
-    RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace, const dictionary::Dictionary& dictionary,
-                    PipelineThread& pipeline, Callbacks callbacks);
-    ~RehearsalRunner(); ///< stops the run and waits for its thread
+    RehearsalRunner(simulation::Scenario scenario, archive::CutOffRun cut, double pace,
+                    const dictionary::Dictionary& dictionary, PipelineThread& pipeline, Callbacks callbacks);
+    ~RehearsalRunner();  ///< stops the run and waits for its thread
 
     void pause(bool paused);
     void set_pace(double pace);
@@ -79,15 +82,17 @@ class RehearsalRunner {
     Result<void> note(v1::InstructorNote note);
     /// The reply comes on the pipeline's thread once the command's stages are durable; a refusal at once.
     void submit(v1::CommandRequest request, Reply reply);
-    /// A command file: all are checked before the first is taken, and when one is refused none is. Replies as of submit(); with
-    /// `only_check`, and when one is refused, they are those of a dry run.
+    /// A command file: all are checked before the first is taken, and when one is refused none is. Replies as of
+    /// submit(); with `only_check`, and when one is refused, they are those of a dry run.
     using Replies = std::function<void(std::vector<v1::CommandReply>)>;
     void submit(std::vector<v1::CommandRequest> sequence, bool only_check, Replies replies);
     /// Gives each the same refusal.
-    static void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason, const Replies& replies);
-    bool over() const; ///< the thread has nothing more to do
-    std::size_t waiting() const; ///< commands, and command files, for the next cycle
-    /// Of those that were taken: what has not left the queue, and what the uplink has and has not radiated. As of the last delivery.
+    static void refuse_all(const std::vector<v1::CommandRequest>& requests, const std::string& reason,
+                           const Replies& replies);
+    bool over() const;            ///< the thread has nothing more to do
+    std::size_t waiting() const;  ///< commands, and command files, for the next cycle
+    /// Of those that were taken: what has not left the queue, and what the uplink has and has not radiated. As of the
+    /// last delivery.
     std::size_t queued() const { return queued_; }
     std::size_t at_uplink() const { return at_uplink_; }
     /// Of the command with this number; none: there is none yet.
@@ -104,7 +109,7 @@ class RehearsalRunner {
         bool paused = false, stop = false, changed = false;
         double pace = 1.0;
         std::vector<Order> orders;
-        std::vector<v1::Intervention> interventions; ///< for the next cycle
+        std::vector<v1::Intervention> interventions;  ///< for the next cycle
     };
 
     void run();
@@ -126,7 +131,7 @@ class RehearsalRunner {
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);
     v1::RunState state(const Rehearsal& rehearsal) const;
     std::string state_word() const;
-    std::string outcome(const Rehearsal& rehearsal) const; ///< "stopped" when it was cut short
+    std::string outcome(const Rehearsal& rehearsal) const;  ///< "stopped" when it was cut short
 
     simulation::Scenario scenario_;
     std::uint64_t seed_;
@@ -137,10 +142,10 @@ class RehearsalRunner {
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    Control control_; ///< under mutex_
+    Control control_;  ///< under mutex_
     bool over_ = false;
-    std::size_t faults_taken_ = 0, notes_taken_ = 0; ///< under mutex_; in this sitting
-    std::map<std::uint64_t, std::string> names_;     ///< under mutex_; of the run's commands, by number
+    std::size_t faults_taken_ = 0, notes_taken_ = 0;  ///< under mutex_; in this sitting
+    std::map<std::uint64_t, std::string> names_;      ///< under mutex_; of the run's commands, by number
 
     std::atomic<std::size_t> queued_{0}, at_uplink_{0};
 
@@ -148,7 +153,7 @@ class RehearsalRunner {
     archive::RunId run_id_;
     archive::RunStart start_;
     Delivery delivery_;
-    bool timeline_moved_ = false; ///< by what is in delivery_
+    bool timeline_moved_ = false;  ///< by what is in delivery_
     bool paused_ = false, finished_ = false, stopped_ = false, archive_gave_up_ = false;
     double pace_ = 1.0, attained_pace_ = 0.0;
     std::string digest_;
@@ -158,4 +163,4 @@ class RehearsalRunner {
     std::thread thread_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -21,11 +21,14 @@ std::vector<simulation::EventReportName> event_reports(const dictionary::Diction
     return reports;
 }
 
-/// The clock on board as ground knows it by the dictionary, where that is the scenario's clock; else as the scenario has it.
+/// The clock on board as ground knows it by the dictionary, where that is the scenario's clock; else as the scenario
+/// has it.
 ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
-    constexpr std::int64_t same_us = 1000; // ours: what a day-of-year text can tell
+    constexpr std::int64_t same_us = 1000;  // ours: what a day-of-year text can tell
     const auto* known = dictionary.clock_at(scenario.entry_sclk);
-    if (known != nullptr && std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us) return *known;
+    if (known != nullptr &&
+        std::abs(known->scet_of(scenario.entry_sclk).microseconds - scenario.entry_scet.microseconds) < same_us)
+        return *known;
     ClockCorrelation own;
     own.sclk = scenario.entry_sclk;
     own.scet = scenario.entry_scet;
@@ -33,7 +36,9 @@ ClockCorrelation clock_of(const simulation::Scenario& scenario, const dictionary
 }
 
 commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
-    const auto ert = [&](double after_entry_s) { return Ert{scenario.entry_scet.microseconds + static_cast<std::int64_t>(after_entry_s * 1.0e6)}; };
+    const auto ert = [&](double after_entry_s) {
+        return Ert{scenario.entry_scet.microseconds + static_cast<std::int64_t>(after_entry_s * 1.0e6)};
+    };
     std::vector<commands::TrackingPass> passes;
     passes.reserve(scenario.radio.tracking_passes.size());
     for (const auto& pass : scenario.radio.tracking_passes)
@@ -41,21 +46,22 @@ commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
     return commands::TrackingSchedule{std::move(passes)};
 }
 
-} // namespace
+}  // namespace
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
-    : entry_(scenario.entry_sclk), landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)), station_(landing_.light_time_s()),
-      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person, stations_of(scenario),
-               landing_.correlation().scet_of(scenario.entry_sclk)),
+    : entry_(scenario.entry_sclk),
+      landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
+      station_(landing_.light_time_s()),
+      gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
+               stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk)),
       script_(scenario.commands), dispersed_(landing_.dispersed()) {}
 
 const simulation::CycleReport& ScriptedLanding::step() {
     send_script();
     const auto& landed = landing_.step();
     const auto& report = station_.receive(landed, landing_.ert_now());
-    for (const auto& pltu : station_.take_forward())
-        landing_.forward(pltu);
+    for (const auto& pltu : station_.take_forward()) landing_.forward(pltu);
     ++cycles_;
     if (landing_.dispersed() && !std::exchange(dispersed_, true))
         gateway_.renew_solution(solution_arguments(landing_.solution()));
@@ -103,8 +109,7 @@ v1::CommandReply ScriptedLanding::submit(const v1::CommandRequest& request) {
 }
 
 void ScriptedLanding::radiate() {
-    for (const auto& cltu : gateway_.take_uplinks())
-        landing_.uplink(cltu);
+    for (const auto& cltu : gateway_.take_uplinks()) landing_.uplink(cltu);
 }
 
 double ScriptedLanding::recording_progress() const {
@@ -124,4 +129,4 @@ std::vector<archive::StageRecord> ScriptedLanding::take_stages() {
     return std::exchange(stages_, {});
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -24,8 +24,8 @@ namespace aeolis::server {
 /// A value: copy it and the landing is forked, with what ground knows of it.
 class ScriptedLanding {
   public:
-    /// The dictionary must outlive this and its copies. `clock`: of a run that was begun before; else that of the dictionary, where it is
-    /// the scenario's.
+    /// The dictionary must outlive this and its copies. `clock`: of a run that was begun before; else that of the
+    /// dictionary, where it is the scenario's.
     ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                     const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock = {});
 
@@ -41,7 +41,9 @@ class ScriptedLanding {
 
     v1::CommandReply submit(const v1::CommandRequest& request);
     /// See CommandGateway::look.
-    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file) { return gateway_.look(file, landing_.ert_now()); }
+    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file) {
+        return gateway_.look(file, landing_.ert_now());
+    }
 
     void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 
@@ -54,7 +56,7 @@ class ScriptedLanding {
     const simulation::Landing& landing() const { return landing_; }
     const CommandGateway& gateway() const { return gateway_; }
     const GroundStation& station() const { return station_; }
-    double recording_progress() const; ///< 0 … 1 of the recording that has come down
+    double recording_progress() const;  ///< 0 … 1 of the recording that has come down
 
   private:
     void send_script();
@@ -64,7 +66,7 @@ class ScriptedLanding {
     simulation::Landing landing_;
     GroundStation station_;
     CommandGateway gateway_;
-    std::vector<simulation::ScriptedCommand> script_; ///< not sent yet
+    std::vector<simulation::ScriptedCommand> script_;  ///< not sent yet
     std::vector<archive::StageRecord> stages_;
     std::vector<std::string> script_refusals_;
     bool dispersed_;
@@ -74,4 +76,4 @@ class ScriptedLanding {
 /// What is told of a landing that a bug has ended.
 std::string text_of_bug(const CheckFailed& bug);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

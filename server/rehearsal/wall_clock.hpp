@@ -12,4 +12,4 @@ inline std::string wall_clock_text() {
                        fmt::gmtime(std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now())));
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

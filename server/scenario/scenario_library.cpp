@@ -20,7 +20,7 @@ std::vector<std::string> names_in(const std::filesystem::path& directory) {
     return names;
 }
 
-} // namespace
+}  // namespace
 
 v1::ScenarioList ScenarioLibrary::list() const {
     v1::ScenarioList list;
@@ -42,9 +42,8 @@ Result<simulation::Scenario> ScenarioLibrary::scenario(const std::string& name) 
     const auto names = names_in(directory_);
     if (std::ranges::binary_search(names, name)) return scenario_from_file(directory_ / (name + extension));
     std::string known;
-    for (const auto& each : names)
-        known += (known.empty() ? "" : ", ") + each;
+    for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
     return Error{"scenario '" + name + "': there is none of this name; there are: " + known};
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -23,4 +23,4 @@ class ScenarioLibrary {
     std::filesystem::path directory_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

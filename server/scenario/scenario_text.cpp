@@ -16,20 +16,19 @@ namespace {
 using google::protobuf::Message;
 using simulation::Scenario;
 
-constexpr std::size_t scenario_octets_max = 1 << 20; // ours: ours are under 2 KiB
-constexpr int like_chain_max = 8;                    // ours
+constexpr std::size_t scenario_octets_max = 1 << 20;  // ours: ours are under 2 KiB
+constexpr int like_chain_max = 8;                     // ours
 
 /// A field of the message and the member of the struct that carry the same number under the same name.
 template <typename Struct>
 struct Bound {
     const char* field;
-    double Struct::*member;
+    double Struct::* member;
 };
 template <typename Struct>
 using Bindings = std::initializer_list<Bound<Struct>>;
 
-#define AEOLIS_BIND(Struct, member)                                                                                    \
-    { #member, &simulation::Struct::member }
+#define AEOLIS_BIND(Struct, member) {#member, &simulation::Struct::member}
 
 const Bindings<simulation::EntryState> entry_fields = {
     AEOLIS_BIND(EntryState, radius_m),        AEOLIS_BIND(EntryState, latitude_deg),
@@ -66,12 +65,9 @@ const Bindings<simulation::Gyration> gyration_fields = {
     AEOLIS_BIND(Gyration, stage_along_m),
 };
 const Bindings<simulation::Stations> station_fields = {
-    AEOLIS_BIND(Stations, rover_m),
-    AEOLIS_BIND(Stations, heatshield_m),
-    AEOLIS_BIND(Stations, backshell_m),
-    AEOLIS_BIND(Stations, cruise_stage_m),
-    AEOLIS_BIND(Stations, balances_m),
-    AEOLIS_BIND(Stations, balances_off_axis_m),
+    AEOLIS_BIND(Stations, rover_m),     AEOLIS_BIND(Stations, heatshield_m),
+    AEOLIS_BIND(Stations, backshell_m), AEOLIS_BIND(Stations, cruise_stage_m),
+    AEOLIS_BIND(Stations, balances_m),  AEOLIS_BIND(Stations, balances_off_axis_m),
 };
 const Bindings<simulation::Dispersions> dispersion_fields = {
     AEOLIS_BIND(Dispersions, delivery_flight_path_deg),
@@ -144,8 +140,8 @@ const Bindings<simulation::DeviceFault> device_fault_fields = {
     AEOLIS_BIND(DeviceFault, late_s),
 };
 const Bindings<simulation::RelayPass> pass_fields = {
-    AEOLIS_BIND(RelayPass, rise_after_entry_s),  AEOLIS_BIND(RelayPass, set_after_entry_s),
-    AEOLIS_BIND(RelayPass, horizon_km),          AEOLIS_BIND(RelayPass, nearest_km),
+    AEOLIS_BIND(RelayPass, rise_after_entry_s),   AEOLIS_BIND(RelayPass, set_after_entry_s),
+    AEOLIS_BIND(RelayPass, horizon_km),           AEOLIS_BIND(RelayPass, nearest_km),
     AEOLIS_BIND(RelayPass, delivery_after_set_s), AEOLIS_BIND(RelayPass, delivery_rate_bps),
 };
 const Bindings<simulation::TrackingPass> tracking_fields = {
@@ -203,8 +199,7 @@ void collect_not_finite(const Message& message, const std::string& prefix, std::
 
 std::string joined(const std::vector<std::string>& lines, const std::string& prefix) {
     std::string text;
-    for (const auto& line : lines)
-        text += (text.empty() ? "" : "\n") + prefix + line;
+    for (const auto& line : lines) text += (text.empty() ? "" : "\n") + prefix + line;
     return text;
 }
 
@@ -259,13 +254,15 @@ Result<simulation::DeviceFault> device_fault_from_message(const v1::DeviceFault&
 Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
     switch (message.fault_case()) {
     case v1::FaultInjection::kDeviceFault: {
-        if (message.device_fault().begin_before_entry_s() != 0.0) return Error{"device_fault.begin_before_entry_s: it begins now"};
+        if (message.device_fault().begin_before_entry_s() != 0.0)
+            return Error{"device_fault.begin_before_entry_s: it begins now"};
         auto fault = device_fault_from_message(message.device_fault(), "device_fault");
         if (!fault) return fault.error();
         return simulation::Fault{*fault};
     }
     case v1::FaultInjection::kSystemFault: {
-        if (message.system_fault().begin_before_entry_s() != 0.0) return Error{"system_fault.begin_before_entry_s: it begins now"};
+        if (message.system_fault().begin_before_entry_s() != 0.0)
+            return Error{"system_fault.begin_before_entry_s: it begins now"};
         simulation::SystemFault fault;
         read(message.system_fault(), fault_fields, fault);
         return simulation::Fault{fault};
@@ -274,13 +271,13 @@ Result<simulation::Fault> read_fault(const v1::FaultInjection& message) {
         if (!message.computer_reset()) return Error{"computer_reset: false asks for nothing"};
         return simulation::Fault{simulation::ComputerReset{}};
     case v1::FaultInjection::kStationOutage: {
-        if (message.station_outage().begin_before_entry_s() != 0.0) return Error{"station_outage.begin_before_entry_s: it begins now"};
+        if (message.station_outage().begin_before_entry_s() != 0.0)
+            return Error{"station_outage.begin_before_entry_s: it begins now"};
         simulation::StationOutage outage;
         read(message.station_outage(), outage_fields, outage);
         return simulation::Fault{outage};
     }
-    case v1::FaultInjection::FAULT_NOT_SET:
-        break;
+    case v1::FaultInjection::FAULT_NOT_SET: break;
     }
     return Error{"the injection says nothing: device_fault, system_fault, computer_reset or station_outage is wanted"};
 }
@@ -301,8 +298,7 @@ void read_links(const v1::Radio& message, simulation::Radio& radio) {
         read(row, pass_fields, pass);
         pass.orbiter = row.orbiter();
         pass.stored = row.stored();
-        for (const auto& rate : row.rates())
-            pass.rates.push_back({rate.after_rise_s(), rate.bps()});
+        for (const auto& rate : row.rates()) pass.rates.push_back({rate.after_rise_s(), rate.bps()});
     }
     for (const auto& row : message.tracking_passes()) {
         auto& pass = radio.tracking_passes.emplace_back();
@@ -346,7 +342,7 @@ void write_links(const simulation::Radio& radio, v1::Radio& message) {
         message.add_delivery_restarts_after_touchdown_s(restart);
 }
 
-} // namespace
+}  // namespace
 
 Result<Scenario> scenario_from_message(const v1::Scenario& message) {
     std::vector<std::string> faults;
@@ -394,21 +390,17 @@ Result<Scenario> scenario_from_message(const v1::Scenario& message) {
         command.send_before_entry_s = row.send_before_entry_s();
         command.command = row.command();
         command.from_solution = row.from_solution();
-        for (const auto& argument : row.arguments())
-            command.arguments.emplace_back(argument.name(), argument.value());
+        for (const auto& argument : row.arguments()) command.arguments.emplace_back(argument.name(), argument.value());
         scenario.commands.push_back(std::move(command));
     }
-    for (const auto& row : message.system_faults())
-        read(row, fault_fields, scenario.system_faults.emplace_back());
+    for (const auto& row : message.system_faults()) read(row, fault_fields, scenario.system_faults.emplace_back());
     for (int i = 0; i < message.device_faults_size(); ++i) {
         auto fault = device_fault_from_message(message.device_faults(i), fmt::format("device_faults[{}]", i));
         if (!fault) return fault.error();
         scenario.device_faults.push_back(*fault);
     }
-    for (const auto& row : message.computer_resets())
-        read(row, reset_fields, scenario.computer_resets.emplace_back());
-    for (const auto& row : message.station_outages())
-        read(row, outage_fields, scenario.station_outages.emplace_back());
+    for (const auto& row : message.computer_resets()) read(row, reset_fields, scenario.computer_resets.emplace_back());
+    for (const auto& row : message.station_outages()) read(row, outage_fields, scenario.station_outages.emplace_back());
     const auto impossible = simulation::impossible_values(scenario);
     if (!impossible.empty()) return Error{joined(impossible, "")};
     return scenario;
@@ -447,13 +439,11 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
     write(scenario.dispersions, dispersion_fields, *message.mutable_dispersions());
     write_links(scenario.radio, *message.mutable_radio());
     write(scenario, trigger_fields, *message.mutable_triggers());
-    for (const auto& scale : scenario.density_scale)
-        write(scale, density_fields, *message.add_density_scale());
+    for (const auto& scale : scenario.density_scale) write(scale, density_fields, *message.add_density_scale());
     message.set_test_venue(static_cast<v1::TestVenue>(static_cast<int>(scenario.test_venue) + 1));
     message.set_telemetry_plan(scenario.telemetry_plan == flight::Plan::wideband ? v1::TELEMETRY_PLAN_WIDEBAND
                                                                                  : v1::TELEMETRY_PLAN_MISSION);
-    for (const auto& name : scenario.second_person)
-        message.add_second_person(name);
+    for (const auto& name : scenario.second_person) message.add_second_person(name);
     for (const auto& command : scenario.commands) {
         auto& row = *message.add_commands();
         row.set_send_before_entry_s(command.send_before_entry_s);
@@ -465,14 +455,10 @@ v1::Scenario scenario_to_message(const Scenario& scenario) {
             argument.set_value(value);
         }
     }
-    for (const auto& fault : scenario.system_faults)
-        write(fault, fault_fields, *message.add_system_faults());
-    for (const auto& fault : scenario.device_faults)
-        write_device_fault(fault, *message.add_device_faults());
-    for (const auto& reset : scenario.computer_resets)
-        write(reset, reset_fields, *message.add_computer_resets());
-    for (const auto& outage : scenario.station_outages)
-        write(outage, outage_fields, *message.add_station_outages());
+    for (const auto& fault : scenario.system_faults) write(fault, fault_fields, *message.add_system_faults());
+    for (const auto& fault : scenario.device_faults) write_device_fault(fault, *message.add_device_faults());
+    for (const auto& reset : scenario.computer_resets) write(reset, reset_fields, *message.add_computer_resets());
+    for (const auto& outage : scenario.station_outages) write(outage, outage_fields, *message.add_station_outages());
     return message;
 }
 
@@ -499,8 +485,7 @@ Result<Scenario> checked(const v1::Scenario& message, const std::string& file) {
     if (scenario) return scenario;
     std::istringstream lines{scenario.error().message};
     std::vector<std::string> faulty;
-    for (std::string line; std::getline(lines, line);)
-        faulty.push_back(line);
+    for (std::string line; std::getline(lines, line);) faulty.push_back(line);
     return Error{joined(faulty, file + ": ")};
 }
 
@@ -538,13 +523,13 @@ Result<v1::Scenario> whole(const std::filesystem::path& file, int further) {
     if (further == 0) return refused("too many are like one another: is it a circle?");
     auto base = whole(file.parent_path() / (like + file.extension().string()), further - 1);
     if (!base) return refused(base.error().message);
-    base->clear_name(); // a name is nobody else's
+    base->clear_name();  // a name is nobody else's
     clear_lists_of(*message, *base);
     base->MergeFrom(*message);
     return base;
 }
 
-} // namespace
+}  // namespace
 
 Result<Scenario> scenario_from_text(std::string_view text, const std::string& file) {
     const auto message = parsed(text, file);
@@ -558,4 +543,4 @@ Result<Scenario> scenario_from_file(const std::filesystem::path& file) {
     return checked(*message, file.string());
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -32,4 +32,4 @@ Result<simulation::Fault> fault_from_message(const v1::FaultInjection& message, 
 /// UTC "2012-08-06T05:10:47.4" or by day of year "2012-219T05:10:47.4"; up to microseconds.
 Result<Scet> scet_from_text(std::string_view text);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -66,7 +66,7 @@ bool parse(std::string_view rest, Scet& scet) {
     return true;
 }
 
-} // namespace
+}  // namespace
 
 Result<Scet> scet_from_text(std::string_view text) {
     Scet scet;
@@ -75,4 +75,4 @@ Result<Scet> scet_from_text(std::string_view text) {
     return scet;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

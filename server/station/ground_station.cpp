@@ -8,12 +8,11 @@ namespace aeolis::server {
 
 const simulation::CycleReport& GroundStation::receive(const simulation::CycleReport& landed, Ert now) {
     report_ = landed;
-    for (const simulation::LinkState& state : landed.links)
-        note(state);
-    for (const simulation::ReceivedOctets& piece : landed.octets)
-        receive(piece);
+    for (const simulation::LinkState& state : landed.links) note(state);
+    for (const simulation::ReceivedOctets& piece : landed.octets) receive(piece);
     for (LinkReceiver& link : links_)
-        if (link.waits && static_cast<double>(now.microseconds - link.heard_at.microseconds) * 1e-6 > quiet_s) search_to_the_end(link, now);
+        if (link.waits && static_cast<double>(now.microseconds - link.heard_at.microseconds) * 1e-6 > quiet_s)
+            search_to_the_end(link, now);
     recording_.pass(now, relay_up_);
     return report_;
 }
@@ -64,10 +63,11 @@ void GroundStation::take_file(std::span<const std::uint8_t> octets, Ert ert) {
     while (const auto size = space_packet_octets(octets)) {
         if (*size > octets.size()) break;
         const auto packet = octets.first(*size);
-        report_.packets.push_back({.link = simulation::relay_link, .ert = ert, .octets = {packet.begin(), packet.end()}});
+        report_.packets.push_back(
+            {.link = simulation::relay_link, .ert = ert, .octets = {packet.begin(), packet.end()}});
         octets = octets.subspan(*size);
     }
     unreadable_file_octets_ += octets.size();
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -10,17 +10,17 @@
 
 namespace aeolis::server {
 
-/// Where what comes down is decoded, as it would be from a real spacecraft: octets of each UHF link into frames, those into
-/// packets, and the files of the recording into the packets that are in it.
+/// Where what comes down is decoded, as it would be from a real spacecraft: octets of each UHF link into frames, those
+/// into packets, and the files of the recording into the packets that are in it.
 ///
-/// In       what reaches Earth in a cycle            Out   the same, with the packets that were found in it; PLTUs for the rover
-/// Memory   some kilobytes a link: a frame that is not whole yet; files of the recording that are not
-/// Faults   what is no good frame is counted, and the next good one is decoded. A damaged length holds the frames behind it back
+/// In       what reaches Earth in a cycle            Out   the same, with the packets that were found in it; PLTUs for
+/// the rover Memory   some kilobytes a link: a frame that is not whole yet; files of the recording that are not Faults
+/// what is no good frame is counted, and the next good one is decoded. A damaged length holds the frames behind it back
 ///          no longer than quiet_s after the last octet: a frame leaves the vehicle without a pause
 /// A value, as the landing is whose links it hears.
 class GroundStation {
   public:
-    static constexpr double quiet_s = 0.5; ///< ours: at the link's rate an octet comes each cycle
+    static constexpr double quiet_s = 0.5;  ///< ours: at the link's rate an octet comes each cycle
 
     explicit GroundStation(double light_time_s) : recording_(light_time_s) {}
 
@@ -33,13 +33,15 @@ class GroundStation {
         telemetry::PltuReceiver pltus{};
         telemetry::ProximityPackets packets{};
         telemetry::RateMeter rate{};
-        Ert heard_at{};    ///< its last octet
-        bool waits = false; ///< something came since it was last searched to the end
+        Ert heard_at{};      ///< its last octet
+        bool waits = false;  ///< something came since it was last searched to the end
     };
     /// In the order in which they were first heard.
     const std::vector<LinkReceiver>& links() const { return links_; }
     const RecordingReceiver& recording() const { return recording_; }
-    std::uint64_t unreadable_file_octets() const { return unreadable_file_octets_; } ///< of whole files, behind the last packet
+    std::uint64_t unreadable_file_octets() const {
+        return unreadable_file_octets_;
+    }  ///< of whole files, behind the last packet
 
     /// What the station is to send to the rover now.
     std::vector<std::vector<std::uint8_t>> take_forward() { return recording_.take_pltus(); }
@@ -59,4 +61,4 @@ class GroundStation {
     simulation::CycleReport report_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

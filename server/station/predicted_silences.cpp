@@ -11,9 +11,10 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double flown_step_s = 0.25, longest_entry_s = 900.0; // ours
-constexpr double held_bank_rad = 50.0 * simulation::degree_rad; // ours: near the nominal reference's; the blackout ends soon after it begins
-constexpr double earth_step_s = 1.0, earth_looked_for_s = 900.0; // ours
+constexpr double flown_step_s = 0.25, longest_entry_s = 900.0;  // ours
+constexpr double held_bank_rad =
+    50.0 * simulation::degree_rad;  // ours: near the nominal reference's; the blackout ends soon after it begins
+constexpr double earth_step_s = 1.0, earth_looked_for_s = 900.0;  // ours
 
 /// The nominal entry down to the speed at which the parachute opens.
 struct NominalEntry {
@@ -30,36 +31,43 @@ NominalEntry fly_entry(const simulation::Scenario& scenario) {
         const double speed_mps = at.v_MB_M.norm();
         entry.parachute_s = t;
         entry.parachute_altitude_m = flight.altitude_m(at);
-        if (speed_mps <= scenario.parachute_speed_mps || entry.parachute_altitude_m <= scenario.backshell_altitude_m) break;
-        const bool begun = entry.parachute_altitude_m < radio.blackout_start_altitude_m || speed_mps < radio.blackout_start_speed_mps;
+        if (speed_mps <= scenario.parachute_speed_mps || entry.parachute_altitude_m <= scenario.backshell_altitude_m)
+            break;
+        const bool begun =
+            entry.parachute_altitude_m < radio.blackout_start_altitude_m || speed_mps < radio.blackout_start_speed_mps;
         if (!entry.blackout && begun && speed_mps >= radio.blackout_end_speed_mps) entry.blackout = {t, t};
         if (entry.blackout && speed_mps >= radio.blackout_end_speed_mps) entry.blackout->to_s = t + flown_step_s;
         // Only the upright part of lift is flown: reversals turn the rest from side to side.
         const double upright = std::cos(simulation::reference_bank_rad(speed_mps, held_bank_rad));
-        at = simulation::runge_kutta_step(at, flown_step_s, [&](double, const simulation::Vector3& p, const simulation::Vector3& v) -> simulation::Vector3 {
-            const simulation::Sensed by = flight.sensed({p, v});
-            return -by.drag_mps2 * v.normalized() + upright * by.lift_mps2 * simulation::lift_direction(p, v, 0.0);
-        });
+        at = simulation::runge_kutta_step(
+            at, flown_step_s,
+            [&](double, const simulation::Vector3& p, const simulation::Vector3& v) -> simulation::Vector3 {
+                const simulation::Sensed by = flight.sensed({p, v});
+                return -by.drag_mps2 * v.normalized() + upright * by.lift_mps2 * simulation::lift_direction(p, v, 0.0);
+            });
     }
     return entry;
 }
 
-/// Over the target, from where the parachute opens evenly down to where the backshell goes, and to the ground as evenly.
+/// Over the target, from where the parachute opens evenly down to where the backshell goes, and to the ground as
+/// evenly.
 /// @param backshell_s  0: nobody predicts it
 std::optional<double> earth_set_s(const simulation::Scenario& scenario, const NominalEntry& entry, double backshell_s) {
     if (scenario.radio.earth_set_after_entry_s) return scenario.radio.earth_set_after_entry_s;
     if (backshell_s <= entry.parachute_s) return {};
-    const double sink_mps = (entry.parachute_altitude_m - scenario.backshell_altitude_m) / (backshell_s - entry.parachute_s);
+    const double sink_mps =
+        (entry.parachute_altitude_m - scenario.backshell_altitude_m) / (backshell_s - entry.parachute_s);
     for (double t = entry.parachute_s; t < earth_looked_for_s; t += earth_step_s) {
         const double altitude_m = std::max(0.0, entry.parachute_altitude_m - sink_mps * (t - entry.parachute_s));
-        const auto p_MoB_M = simulation::place(scenario.target.latitude_deg * simulation::degree_rad, scenario.target.longitude_deg * simulation::degree_rad,
+        const auto p_MoB_M = simulation::place(scenario.target.latitude_deg * simulation::degree_rad,
+                                               scenario.target.longitude_deg * simulation::degree_rad,
                                                scenario.target.radius_m + altitude_m);
         if (!simulation::earth_is_up(p_MoB_M, t, scenario.target.radius_m)) return t;
     }
     return {};
 }
 
-} // namespace
+}  // namespace
 
 PredictedSilences predict_silences(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
     const auto timepoints = archive::predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, {});
@@ -83,4 +91,4 @@ PredictedSilences predict_silences(const simulation::Scenario& scenario, const d
     return silences;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -19,7 +19,7 @@ bool ended(const telemetry::Reception& reception) {
     return reception.outcome != Outcome::under_way && reception.outcome_acknowledged;
 }
 
-} // namespace
+}  // namespace
 
 RecordingReceiver::File* RecordingReceiver::file_of(const cfdp::Header& header) {
     const auto known = files_.find({header.source, header.sequence});
@@ -27,7 +27,8 @@ RecordingReceiver::File* RecordingReceiver::file_of(const cfdp::Header& header) 
     auto reception = telemetry::reception_of(header);
     if (!reception || files_.size() >= files_max) return nullptr;
     if (files_under_way() >= files_under_way_max) forget_the_most_silent();
-    return &files_.emplace(FileName{header.source, header.sequence}, File{telemetry::CfdpReceiver{std::move(*reception)}})
+    return &files_
+                .emplace(FileName{header.source, header.sequence}, File{telemetry::CfdpReceiver{std::move(*reception)}})
                 .first->second;
 }
 
@@ -49,12 +50,13 @@ std::uint64_t RecordingReceiver::refused() const {
 /// A file is as long as the octets that it is said to have: what says too many is not believed.
 bool RecordingReceiver::fits(const cfdp::Pdu& pdu) {
     const cfdp::Header& header = pdu.header;
-    if (header.source != spacecraft_id || header.destination != flight::RecordingDelivery::ground_entity || header.sequence == 0 ||
-        header.sequence > files_max)
+    if (header.source != spacecraft_id || header.destination != flight::RecordingDelivery::ground_entity ||
+        header.sequence == 0 || header.sequence > files_max)
         return false;
     if (const auto* data = std::get_if<cfdp::FileData>(&pdu.content))
         return data->offset <= file_octets_max && data->octets.size() <= file_octets_max - data->offset;
-    if (const auto* metadata = std::get_if<cfdp::Metadata>(&pdu.content)) return metadata->file_octets <= file_octets_max;
+    if (const auto* metadata = std::get_if<cfdp::Metadata>(&pdu.content))
+        return metadata->file_octets <= file_octets_max;
     const auto* eof = std::get_if<cfdp::Eof>(&pdu.content);
     return eof == nullptr || eof->file_octets <= file_octets_max;
 }
@@ -113,11 +115,9 @@ void RecordingReceiver::answer(File& file) {
         packet_count_ = (packet_count_ + 1) & 0x3FFF;
         packet.insert(packet.end(), pdu->begin(), pdu->end());
         auto& pltu = pltus_.emplace_back(pltu_octets_max);
-        pltu.resize(write_pltu({.expedited = false,
-                                .spacecraft = spacecraft_id,
-                                .to_spacecraft = true,
-                                .sequence = frame_sequence_++},
-                               packet, pltu));
+        pltu.resize(write_pltu(
+            {.expedited = false, .spacecraft = spacecraft_id, .to_spacecraft = true, .sequence = frame_sequence_++},
+            packet, pltu));
     }
 }
 
@@ -132,4 +132,4 @@ std::size_t RecordingReceiver::files_whole() const {
         files_, [](const auto& each) { return each.second.receiver.state().outcome == Outcome::complete; }));
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

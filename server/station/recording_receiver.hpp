@@ -16,11 +16,14 @@ namespace aeolis::server {
 ///
 /// In       PDUs as they come, over any orbiter, in any order; Earth's clock; whether a bent pipe is up
 /// Out      each file, once, when all of it is here and its checksum holds; PLTUs for the rover
-/// Rule     what is missing is asked for when the end of a file is announced, and again each time that an answer is overdue:
+/// Rule     what is missing is asked for when the end of a file is announced, and again each time that an answer is
+/// overdue:
 ///          both light times and 30 s (ours). Without a bent pipe once, until something has come again
 /// Memory   at most `files_under_way_max` files of `file_octets_max` that are not whole; of whole ones some octets
-/// Faults   what is no PDU, or is of no file of this vehicle, is counted. A file that failed is forgotten, and received anew:
-///          the rover sends again what was not delivered. When too many are under way the one longest silent is forgotten
+/// Faults   what is no PDU, or is of no file of this vehicle, is counted. A file that failed is forgotten, and received
+/// anew:
+///          the rover sends again what was not delivered. When too many are under way the one longest silent is
+///          forgotten
 class RecordingReceiver {
   public:
     using OnFile = std::function<void(std::span<const std::uint8_t>)>;
@@ -34,14 +37,14 @@ class RecordingReceiver {
     void pass(Ert now, bool bent_pipe_up);
     std::vector<std::vector<std::uint8_t>> take_pltus() { return std::exchange(pltus_, {}); }
 
-    std::uint64_t received_octets() const; ///< of the recording, each counted once
+    std::uint64_t received_octets() const;  ///< of the recording, each counted once
     std::size_t files_whole() const;
     std::size_t files_under_way() const { return files_.size() - files_whole(); }
-    std::uint64_t asked() const { return asked_; }     ///< PDUs that asked for something again
-    std::uint64_t refused() const;    ///< what was no PDU, belonged to no file, or contradicted what is known of one
+    std::uint64_t asked() const { return asked_; }  ///< PDUs that asked for something again
+    std::uint64_t refused() const;  ///< what was no PDU, belonged to no file, or contradicted what is known of one
 
   private:
-    static constexpr std::size_t files_max = 4096; ///< ours: of 256 KiB each a gigabyte
+    static constexpr std::size_t files_max = 4096;  ///< ours: of 256 KiB each a gigabyte
 
     static bool fits(const cfdp::Pdu& pdu);
     struct File {
@@ -50,7 +53,7 @@ class RecordingReceiver {
         bool given_out = false;
         Ert heard{};
     };
-    using FileName = std::pair<std::uint64_t, std::uint64_t>; ///< source, sequence
+    using FileName = std::pair<std::uint64_t, std::uint64_t>;  ///< source, sequence
 
     File* file_of(const cfdp::Header& header);
     void forget_the_most_silent();
@@ -65,4 +68,4 @@ class RecordingReceiver {
     std::uint8_t frame_sequence_ = 0;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

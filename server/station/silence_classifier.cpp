@@ -18,11 +18,13 @@ bool holds(const PredictedSilences::Window& window, double e_s) {
     return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
 }
 
-} // namespace
+}  // namespace
 
 const char* name_of(SilenceClass silence) {
-    static constexpr std::array names{"light time",      "switched off",    "plasma blackout",  "antenna hand-over", "no orbiter in view", "orbiter records",
-                                      "Earth set",       "carrier too weak", "delivered",        "recording complete", "ground fault",       "unexplained"};
+    static constexpr std::array names{"light time",         "switched off",       "plasma blackout",
+                                      "antenna hand-over",  "no orbiter in view", "orbiter records",
+                                      "Earth set",          "carrier too weak",   "delivered",
+                                      "recording complete", "ground fault",       "unexplained"};
     static_assert(names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
     return names[static_cast<std::size_t>(silence)];
 }
@@ -42,13 +44,16 @@ double SilenceClassifier::e_s(Ert ert) const {
     return static_cast<double>(ert.microseconds - entry_ert_.microseconds) * 1e-6;
 }
 
-std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<simulation::LinkState>& changes, Ert now, const Station& station) {
+std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<simulation::LinkState>& changes, Ert now,
+                                                           const Station& station) {
     std::vector<simulation::LinkState> all;
     if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
         const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
         for (const simulation::Link& link : {simulation::uhf_live_link, simulation::x_band_link})
             all.push_back(told(silent_.emplace_back(Silence{link, false, {}}),
-                               {SilenceClass::light_time, "what leaves the vehicle at the start is here at " + day_of_year_text(first)}, start_ert_, station));
+                               {SilenceClass::light_time,
+                                "what leaves the vehicle at the start is here at " + day_of_year_text(first)},
+                               start_ert_, station));
     }
     for (const simulation::LinkState& change : changes) {
         const auto known = std::ranges::find(silent_, change.link, &Silence::link);
@@ -64,31 +69,39 @@ std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<sim
     }
     for (Silence& silence : silent_) {
         const Explanation why = explain(silence, e_s(now), station);
-        const bool begins = silence.told == SilenceClass::light_time && now.microseconds - start_ert_.microseconds < static_cast<std::int64_t>(predicted_.light_time_s * 1e6);
+        const bool begins =
+            silence.told == SilenceClass::light_time &&
+            now.microseconds - start_ert_.microseconds < static_cast<std::int64_t>(predicted_.light_time_s * 1e6);
         if (why.silence != silence.told && !begins) all.push_back(told(silence, why, now, station));
     }
     return all;
 }
 
-simulation::LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const {
+simulation::LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert,
+                                              const Station& station) const {
     silence.told = why.silence;
     std::string sentence = why.sentence;
     if (why.silence == SilenceClass::unexplained) {
-        const auto last = std::ranges::find(station.heard, silence.link.name, [](const auto& heard) { return heard.first; });
-        if (last != station.heard.end()) sentence += fmt::format("; its last octet left at {}", after_entry(e_s(last->second)));
+        const auto last =
+            std::ranges::find(station.heard, silence.link.name, [](const auto& heard) { return heard.first; });
+        if (last != station.heard.end())
+            sentence += fmt::format("; its last octet left at {}", after_entry(e_s(last->second)));
     }
     return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence)};
 }
 
-SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s, const Station& station) const {
+SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s,
+                                                          const Station& station) const {
     auto why = explain_by_link(silence.link, e_s, station);
     // An orbiter whose delivery breaks off with the station has not delivered.
-    const bool predicted = why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
+    const bool predicted =
+        why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
     if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
     return why;
 }
 
-SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const simulation::Link& link, double e_s, const Station& station) const {
+SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const simulation::Link& link, double e_s,
+                                                                  const Station& station) const {
     if (link == simulation::x_band_link) return explain_x_band(e_s);
     if (link == simulation::relay_link) return explain_relay(e_s, station);
     if (link == simulation::uhf_live_link) return explain_uhf(e_s);
@@ -100,13 +113,21 @@ std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_pass
     if (predicted_.passes.empty()) return {};
     const simulation::RelayPass *recording = nullptr, *next = nullptr;
     for (const simulation::RelayPass& pass : predicted_.passes) {
-        const bool in_view = e_s >= pass.rise_after_entry_s + pass_margin_s && e_s < pass.set_after_entry_s - pass_margin_s;
+        const bool in_view =
+            e_s >= pass.rise_after_entry_s + pass_margin_s && e_s < pass.set_after_entry_s - pass_margin_s;
         if (in_view && !pass.stored) return {};
         if (in_view) recording = &pass;
-        if (pass.rise_after_entry_s > e_s && !pass.stored && (next == nullptr || pass.rise_after_entry_s < next->rise_after_entry_s)) next = &pass;
+        if (pass.rise_after_entry_s > e_s && !pass.stored &&
+            (next == nullptr || pass.rise_after_entry_s < next->rise_after_entry_s))
+            next = &pass;
     }
-    if (recording != nullptr) return Explanation{SilenceClass::orbiter_records, fmt::format("{} delivers from {}", recording->orbiter, after_entry(recording->set_after_entry_s + recording->delivery_after_set_s))};
-    if (next != nullptr) return Explanation{SilenceClass::no_orbiter, fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_after_entry_s))};
+    if (recording != nullptr)
+        return Explanation{SilenceClass::orbiter_records,
+                           fmt::format("{} delivers from {}", recording->orbiter,
+                                       after_entry(recording->set_after_entry_s + recording->delivery_after_set_s))};
+    if (next != nullptr)
+        return Explanation{SilenceClass::no_orbiter,
+                           fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_after_entry_s))};
     return Explanation{SilenceClass::no_orbiter, "no further pass is planned"};
 }
 
@@ -115,8 +136,11 @@ SilenceClassifier::Explanation SilenceClassifier::explain_uhf(double e_s) const 
     const auto hand_over_s = predicted_.hand_over_s, stop_s = predicted_.uhf_stop_s;
     if (stop_s && e_s >= *stop_s - margin_s) return {SilenceClass::switched_off, "planned at " + after_entry(*stop_s)};
     if (const auto why = explain_by_passes(e_s)) return *why;
-    if (blackout && holds(*blackout, e_s)) return {SilenceClass::blackout, fmt::format("predicted from {} to {}", after_entry(blackout->from_s), after_entry(blackout->to_s))};
-    if (hand_over_s && holds({*hand_over_s, *hand_over_s}, e_s)) return {SilenceClass::hand_over, "planned at " + after_entry(*hand_over_s)};
+    if (blackout && holds(*blackout, e_s))
+        return {SilenceClass::blackout,
+                fmt::format("predicted from {} to {}", after_entry(blackout->from_s), after_entry(blackout->to_s))};
+    if (hand_over_s && holds({*hand_over_s, *hand_over_s}, e_s))
+        return {SilenceClass::hand_over, "planned at " + after_entry(*hand_over_s)};
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
 }
 
@@ -127,9 +151,11 @@ SilenceClassifier::Explanation SilenceClassifier::explain_relay(double e_s, cons
 }
 
 SilenceClassifier::Explanation SilenceClassifier::explain_x_band(double e_s) const {
-    if (predicted_.earth_set_s && e_s >= *predicted_.earth_set_s - margin_s) return {SilenceClass::earth_set, "predicted at " + after_entry(*predicted_.earth_set_s)};
-    if (predicted_.carrier_weak) return {SilenceClass::weak_carrier, "the link's budget has it below what a lock needs"};
+    if (predicted_.earth_set_s && e_s >= *predicted_.earth_set_s - margin_s)
+        return {SilenceClass::earth_set, "predicted at " + after_entry(*predicted_.earth_set_s)};
+    if (predicted_.carrier_weak)
+        return {SilenceClass::weak_carrier, "the link's budget has it below what a lock needs"};
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

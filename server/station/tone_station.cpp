@@ -10,17 +10,17 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double listening_rate_hz = 16384.0; // ours: holds the tones and half of it the predict's error
+constexpr double listening_rate_hz = 16384.0;  // ours: holds the tones and half of it the predict's error
 constexpr int cycle_samples = static_cast<int>(listening_rate_hz * seconds_per_tick);
 constexpr std::size_t push_samples = 16384;
-constexpr double same_symbol_s = 5.0;   // ours: a decision and a symbol that begin nearer are of one another
-constexpr double waits_after_end_s = 30.0; // ours: the receiver decides within 20 s
+constexpr double same_symbol_s = 5.0;       // ours: a decision and a symbol that begin nearer are of one another
+constexpr double waits_after_end_s = 30.0;  // ours: the receiver decides within 20 s
 
 std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
 }
 
-} // namespace
+}  // namespace
 
 ToneStation::ToneStation(const MfskWaveform& waveform, const simulation::Radio& radio, TimeTable predict_hz,
                          std::uint64_t seed, std::uint64_t case_number)
@@ -29,11 +29,10 @@ ToneStation::ToneStation(const MfskWaveform& waveform, const simulation::Radio& 
 
 void ToneStation::receive(const simulation::CycleReport& landed, std::vector<simulation::ReceivedTone>& tones) {
     undecided_.insert(undecided_.end(), landed.symbols.begin(), landed.symbols.end());
-    for (const simulation::XBandField& field : landed.x_band)
-        sample(field);
+    for (const simulation::XBandField& field : landed.x_band) sample(field);
     if (!receiver_ || ended_) return;
     if (landed.x_band.empty()) {
-        ended_ = true; // the transmitter is off for good
+        ended_ = true;  // the transmitter is off for good
         receiver_->push(samples_);
         samples_.clear();
         receiver_->finish();
@@ -99,10 +98,11 @@ void ToneStation::decide(double now_e_s, std::vector<simulation::ReceivedTone>& 
     }
     // What the receiver did not notice at all.
     while (!undecided_.empty() &&
-           static_cast<double>(undecided_.front().end.microseconds - entry_ert_us_) * 1.0e-6 + waits_after_end_s < now_e_s) {
+           static_cast<double>(undecided_.front().end.microseconds - entry_ert_us_) * 1.0e-6 + waits_after_end_s <
+               now_e_s) {
         tones.push_back(undecided_.front());
         undecided_.pop_front();
     }
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

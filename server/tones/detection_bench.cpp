@@ -15,8 +15,8 @@ namespace {
 using telemetry::ToneSums;
 
 constexpr int baseband_hops = 80;
-constexpr double baseband_rate_hz = 1200.0; // ours: just above twice the highest tone
-constexpr int frequency_steps = 2, rate_steps = 4; // to either side of the middle; ours
+constexpr double baseband_rate_hz = 1200.0;         // ours: just above twice the highest tone
+constexpr int frequency_steps = 2, rate_steps = 4;  // to either side of the middle; ours
 constexpr double full_turn_rad = 2.0 * std::numbers::pi;
 
 double power_ratio(double db) {
@@ -39,8 +39,9 @@ int likeliest(const std::vector<ToneSums>& hops, double hop_s, const BasebandTri
                 const auto turn = static_cast<std::complex<float>>(
                     std::polar(1.0, -full_turn_rad * (frequency_hz * t + 0.5 * rate_hzps * t * t)));
                 for (std::size_t tone = 0; tone < total.size(); ++tone)
-                    total[tone] += std::complex<float>{turn.real() * hops[i][tone].real() - turn.imag() * hops[i][tone].imag(),
-                                                       turn.real() * hops[i][tone].imag() + turn.imag() * hops[i][tone].real()};
+                    total[tone] +=
+                        std::complex<float>{turn.real() * hops[i][tone].real() - turn.imag() * hops[i][tone].imag(),
+                                            turn.real() * hops[i][tone].imag() + turn.imag() * hops[i][tone].real()};
             }
             for (std::size_t tone = 0; tone < total.size(); ++tone)
                 if (std::norm(total[tone]) > most) {
@@ -51,24 +52,25 @@ int likeliest(const std::vector<ToneSums>& hops, double hop_s, const BasebandTri
     return best;
 }
 
-} // namespace
+}  // namespace
 
 RateInterval interval_of(const ErrorCount& count) {
     if (count.trials == 0) return {};
     constexpr double z = 1.959964;
     const auto n = static_cast<double>(count.trials);
     const double middle = (count.rate() + 0.5 * z * z / n) / (1.0 + z * z / n);
-    const double aside = z / (1.0 + z * z / n) * std::sqrt(count.rate() * (1.0 - count.rate()) / n + 0.25 * z * z / (n * n));
+    const double aside =
+        z / (1.0 + z * z / n) * std::sqrt(count.rate() * (1.0 - count.rate()) / n + 0.25 * z * z / (n * n));
     return {std::max(middle - aside, 0.0), std::min(middle + aside, 1.0)};
 }
 
 double loss_db(double tone_c_n0_dbhz, double symbol_s, double error_rate) {
-    const double energy =
-        telemetry::energy_for_symbol_error(std::clamp(error_rate, 1e-9, 0.99), MfskWaveform::tones);
+    const double energy = telemetry::energy_for_symbol_error(std::clamp(error_rate, 1e-9, 0.99), MfskWaveform::tones);
     return tone_c_n0_dbhz - 10.0 * std::log10(energy / symbol_s);
 }
 
-ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& trial, std::uint64_t symbols, std::uint64_t seed) {
+ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& trial, std::uint64_t symbols,
+                           std::uint64_t seed) {
     const int samples = static_cast<int>(baseband_rate_hz * waveform.symbol_s) / baseband_hops;
     const double hop_s = samples / baseband_rate_hz;
     const telemetry::ToneCorrelator correlator{waveform, baseband_rate_hz, samples};
@@ -88,8 +90,7 @@ ErrorCount baseband_errors(const MfskWaveform& waveform, const BasebandTrial& tr
             const double begin_s = h * hop_s;
             const double from_middle_s = begin_s - 0.5 * waveform.symbol_s;
             // Within a hop the drift is a step of frequency: 0.02 Hz/s bends the phase by 1e-3 rad.
-            const double frequency_hz =
-                waveform.tone_hz(sent) + offset_hz + rate_hzps * (from_middle_s + 0.5 * hop_s);
+            const double frequency_hz = waveform.tone_hz(sent) + offset_hz + rate_hzps * (from_middle_s + 0.5 * hop_s);
             const double begin_rad =
                 phase_rad + full_turn_rad * (waveform.tone_hz(sent) * begin_s + offset_hz * from_middle_s +
                                              0.5 * rate_hzps * from_middle_s * from_middle_s);
@@ -113,7 +114,8 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
     // The index at which both powers are as asked for.
     MfskWaveform split = waveform;
     constexpr double first_sidebands = 8.0 / (std::numbers::pi * std::numbers::pi);
-    split.modulation_index_rad = std::atan(std::sqrt(power_ratio(tone_c_n0_dbhz - carrier_c_n0_dbhz) / first_sidebands));
+    split.modulation_index_rad =
+        std::atan(std::sqrt(power_ratio(tone_c_n0_dbhz - carrier_c_n0_dbhz) / first_sidebands));
 
     const telemetry::HopLayout layout{4096.0};
     const auto symbol_hops = static_cast<std::uint64_t>(std::lround(waveform.symbol_s / layout.hop_s()));
@@ -148,8 +150,7 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
         for (const telemetry::CarrierHop& hop : hops) {
             if (hop.found) {
                 correlator.correlate(hop.quadrature, static_cast<double>(hop.first_sample) / layout.rate_hz, sums);
-                for (std::size_t tone = 0; tone < total.size(); ++tone)
-                    total[tone] += sums[tone];
+                for (std::size_t tone = 0; tone < total.size(); ++tone) total[tone] += sums[tone];
             }
             if (++gathered < symbol_hops || count.trials == symbols) continue;
             const auto most = std::ranges::max_element(total, {}, [](const auto& sum) { return std::norm(sum); });
@@ -163,4 +164,4 @@ ErrorCount carrier_aided_errors(const MfskWaveform& waveform, double carrier_c_n
     return count;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,8 +12,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double written_row_s = 0.25; // ours: between them a cubic holds the entry's Doppler to some hertz
-constexpr std::size_t rows_max = 10'000'000; // ours: days at 64 a second
+constexpr double written_row_s = 0.25;        // ours: between them a cubic holds the entry's Doppler to some hertz
+constexpr std::size_t rows_max = 10'000'000;  // ours: days at 64 a second
 
 std::vector<std::string> cells_of(std::string line) {
     if (!line.empty() && line.back() == '\r') line.pop_back();
@@ -58,7 +58,8 @@ Result<Columns> read_columns(const std::filesystem::path& file, const std::strin
         const auto a = number_in(cells[0]);
         const auto b = cells.size() > second ? number_in(cells[second]) : std::nullopt;
         if (!a || !b) return Error{fmt::format("{}:{}: no number for time or {}", file.string(), number, wanted)};
-        if (columns.first.size() == rows_max) return Error{fmt::format("{}: more than {} rows", file.string(), rows_max)};
+        if (columns.first.size() == rows_max)
+            return Error{fmt::format("{}: more than {} rows", file.string(), rows_max)};
         columns.first.push_back(*a);
         columns.second.push_back(*b);
     }
@@ -66,7 +67,7 @@ Result<Columns> read_columns(const std::filesystem::path& file, const std::strin
     return columns;
 }
 
-} // namespace
+}  // namespace
 
 Result<TimeTable> read_doppler(const std::filesystem::path& file) {
     auto columns = read_columns(file, "doppler_hz",
@@ -77,7 +78,8 @@ Result<TimeTable> read_doppler(const std::filesystem::path& file) {
     return table;
 }
 
-Result<TimeTable> write_doppler(const std::filesystem::path& file, const TimeTable& doppler_hz, double from_s, double to_s) {
+Result<TimeTable> write_doppler(const std::filesystem::path& file, const TimeTable& doppler_hz, double from_s,
+                                double to_s) {
     std::ofstream stream{file};
     stream << "time_s,doppler_hz\n";
     const auto rows = static_cast<std::size_t>(std::ceil(std::max(0.0, to_s - from_s) / written_row_s)) + 1;
@@ -106,4 +108,4 @@ Result<std::vector<simulation::SentTone>> read_tones_to_send(const std::filesyst
     return tones;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

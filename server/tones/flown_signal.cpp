@@ -16,12 +16,12 @@ void add_outages(const simulation::Radio& radio, std::string_view event, double 
         if (outage.event == event) flown.outages.push_back({outage.name, at_s + outage.from_s, at_s + outage.to_s});
 }
 
-} // namespace
+}  // namespace
 
 FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary, double from_before_entry_s) {
     FlownSignal flown;
-    scenario.radio.tones_from_samples = true; // what reaches Earth, as it is
+    scenario.radio.tones_from_samples = true;  // what reaches Earth, as it is
     ScriptedLanding landing{scenario, seed, case_number, dictionary};
     std::vector<double> time_s, doppler_hz, gain_db;
     bool set = false;
@@ -49,4 +49,4 @@ FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::u
     return flown;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -14,9 +14,9 @@ namespace aeolis::server {
 /// What a landing sends on X-band, and how it moves while it does. Times are seconds from entry interface.
 struct FlownSignal {
     std::vector<simulation::SentTone> tones;
-    TimeTable doppler_hz;         ///< one way at the carrier, 16 rows a second
-    TimeTable gain_db;            ///< of the antenna towards Earth, with the attitude; likewise
-    double earth_set_s = 0.0;     ///< nothing is heard after that
+    TimeTable doppler_hz;      ///< one way at the carrier, 16 rows a second
+    TimeTable gain_db;         ///< of the antenna towards Earth, with the attitude; likewise
+    double earth_set_s = 0.0;  ///< nothing is heard after that
     /// The scenario's, of events that came: tones that are sent then may be lost.
     struct Outage {
         std::string name;
@@ -29,4 +29,4 @@ struct FlownSignal {
 FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::uint64_t case_number,
                        const dictionary::Dictionary& dictionary, double from_before_entry_s = 900.0);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

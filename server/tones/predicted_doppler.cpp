@@ -12,8 +12,8 @@
 namespace aeolis::server {
 namespace {
 
-constexpr double light_mps = 299792458.0; // [bipm-si]
-constexpr double flown_from_before_entry_s = 700.0, coast_row_s = 10.0; // ours
+constexpr double light_mps = 299792458.0;                                // [bipm-si]
+constexpr double flown_from_before_entry_s = 700.0, coast_row_s = 10.0;  // ours
 constexpr std::int64_t flight_row_ticks = 4;
 
 struct DopplerRows {
@@ -26,7 +26,7 @@ struct DopplerRows {
     }
 };
 
-} // namespace
+}  // namespace
 
 TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskWaveform& waveform) {
     simulation::Scenario expected = simulation::undispersed(scenario);
@@ -37,7 +37,8 @@ TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskW
     expected.start_before_entry_s = std::min(scenario.start_before_entry_s, flown_from_before_entry_s);
 
     DopplerRows rows{waveform.carrier_hz};
-    const simulation::InitialState start = simulation::state_before_entry(expected, scenario.start_before_entry_s, 0, 0);
+    const simulation::InitialState start =
+        simulation::state_before_entry(expected, scenario.start_before_entry_s, 0, 0);
     simulation::PointMass at = start.truth;
     for (double e_s = -scenario.start_before_entry_s; e_s < -expected.start_before_entry_s; e_s += coast_row_s) {
         rows.add(e_s, at.p_MoB_M, at.v_MB_M);
@@ -56,4 +57,4 @@ TimeTable predicted_doppler_hz(const simulation::Scenario& scenario, const MfskW
     return *table;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

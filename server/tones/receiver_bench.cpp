@@ -24,12 +24,12 @@ double cpu_s() {
 
 struct Heard {
     std::vector<telemetry::ToneReception> receptions;
-    double cpu_s = 0.0; ///< of the receiver alone
+    double cpu_s = 0.0;  ///< of the receiver alone
 };
 
 /// `length_s` of a channel through a receiver, a second at a time.
-Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path, const std::vector<simulation::SentTone>& tones,
-           double length_s, std::uint64_t seed) {
+Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path,
+           const std::vector<simulation::SentTone>& tones, double length_s, std::uint64_t seed) {
     simulation::XBandChannel channel{waveform, path, tones, seed, 2};
     auto receiver = telemetry::ToneReceiver::make(waveform, path.rate_hz, path.predict_hz, path.start_s);
     AEOLIS_CHECK(receiver.ok());
@@ -39,18 +39,17 @@ Heard hear(const MfskWaveform& waveform, const simulation::XBandPath& path, cons
         channel.next(block);
         const double before_s = cpu_s();
         receiver->push(block);
-        for (auto& reception : receiver->take())
-            heard.receptions.push_back(reception);
+        for (auto& reception : receiver->take()) heard.receptions.push_back(reception);
         heard.cpu_s += cpu_s() - before_s;
     }
     receiver->finish();
-    for (auto& reception : receiver->take())
-        heard.receptions.push_back(reception);
+    for (auto& reception : receiver->take()) heard.receptions.push_back(reception);
     return heard;
 }
 
 /// What was received in the place of a sent tone: the nearest, begun within half a symbol of it.
-const telemetry::ToneReception* in_place_of(const simulation::SentTone& sent, const std::vector<telemetry::ToneReception>& all) {
+const telemetry::ToneReception* in_place_of(const simulation::SentTone& sent,
+                                            const std::vector<telemetry::ToneReception>& all) {
     const auto apart_s = [&](const telemetry::ToneReception& each) { return std::abs(each.start_s - sent.start_s); };
     const auto nearest = std::ranges::min_element(all, {}, apart_s);
     return nearest == all.end() || apart_s(*nearest) > 5.0 ? nullptr : &*nearest;
@@ -73,8 +72,7 @@ SignalLanding signal_landing(simulation::Scenario scenario, const dictionary::Di
     scenario.radio.tones_from_samples = true;
     const auto began = Clock::now();
     Rehearsal rehearsal{scenario, 1, 0, dictionary};
-    while (!rehearsal.finished())
-        rehearsal.step();
+    while (!rehearsal.finished()) rehearsal.step();
     const double wall_s = std::chrono::duration<double>{Clock::now() - began}.count();
     const double flown_s = static_cast<double>(rehearsal.cycles()) * seconds_per_tick;
     return {flown_s, flown_s / wall_s, rehearsal.tones()};
@@ -84,14 +82,15 @@ double theory_dbhz(const MfskWaveform& waveform, double error) {
     return 10.0 * std::log10(telemetry::energy_for_symbol_error(error, MfskWaveform::tones) / waveform.symbol_s);
 }
 
-} // namespace
+}  // namespace
 
 std::string ToneFigure::text() const {
-    return fmt::format("{:<40} {:9.4g}   goal {:<7.4g} {:<24} {}   {}", name, value, goal, unit, met ? "met   " : "MISSED",
-                       evidence);
+    return fmt::format("{:<40} {:9.4g}   goal {:<7.4g} {:<24} {}   {}", name, value, goal, unit,
+                       met ? "met   " : "MISSED", evidence);
 }
 
-ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols, std::uint64_t seed) {
+ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz, std::uint64_t symbols,
+                           std::uint64_t seed) {
     constexpr double acquired_s = 20.0, strong_dbhz = 26.0;
     simulation::Random random{seed, 2, simulation::Stream::x_band};
     std::vector<simulation::SentTone> tones;
@@ -105,7 +104,8 @@ ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz,
     path.total_c_n0_dbhz = total_c_n0_dbhz;
     path.doppler_hz = TimeTable::make({0.0, at_s}, {100.0, 100.0 + 0.02 * at_s}).value();
     path.gain_db = TimeTable::make({0.0, acquired_s, acquired_s + 20.0, at_s + 100.0},
-                                   {strong_dbhz - total_c_n0_dbhz, strong_dbhz - total_c_n0_dbhz, 0.0, 0.0}).value();
+                                   {strong_dbhz - total_c_n0_dbhz, strong_dbhz - total_c_n0_dbhz, 0.0, 0.0})
+                       .value();
     const Heard heard = hear(waveform, path, tones, at_s + 20.0, seed);
     ErrorCount count;
     for (const simulation::SentTone& sent : tones) {
@@ -116,7 +116,8 @@ ErrorCount receiver_errors(const MfskWaveform& waveform, double total_c_n0_dbhz,
     return count;
 }
 
-AcquisitionCount acquisitions(const MfskWaveform& waveform, double carrier_c_n0_dbhz, std::uint64_t windows, std::uint64_t seed) {
+AcquisitionCount acquisitions(const MfskWaveform& waveform, double carrier_c_n0_dbhz, std::uint64_t windows,
+                              std::uint64_t seed) {
     constexpr double rate_hz = 100e3, rate_max_hzps = 1200.0;
     simulation::Random random{seed, 3, simulation::Stream::x_band};
     std::vector<std::complex<float>> samples(static_cast<std::size_t>(rate_hz));
@@ -149,8 +150,7 @@ ErrorCount false_alarms(std::uint64_t windows, std::uint64_t seed) {
     telemetry::CarrierSearch search{rate_hz};
     ErrorCount count;
     for (; count.trials < windows; ++count.trials) {
-        for (auto& sample : samples)
-            sample = {noise(), noise()};
+        for (auto& sample : samples) sample = {noise(), noise()};
         if (search.push(samples)) ++count.errors;
     }
     return count;
@@ -215,7 +215,8 @@ bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulatio
     const auto add_loss = [&](const std::string& name, double tone_dbhz, double goal_db, const ErrorCount& count) {
         const double loss = loss_db(tone_dbhz, mfsk.symbol_s, count.rate());
         const RateInterval rates = interval_of(count);
-        const double least = loss_db(tone_dbhz, mfsk.symbol_s, rates.low), most = loss_db(tone_dbhz, mfsk.symbol_s, rates.high);
+        const double least = loss_db(tone_dbhz, mfsk.symbol_s, rates.low),
+                     most = loss_db(tone_dbhz, mfsk.symbol_s, rates.high);
         add({name, loss, goal_db, "dB from theory", loss <= goal_db,
              fmt::format("at {:.2f} dB-Hz, {}; loss [{:.2f}, {:.2f}] dB", tone_dbhz, counted(count), least, most)});
     };
@@ -234,21 +235,24 @@ bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulatio
     add_loss("carrier-aided, carrier at 20.5 dB-Hz", theory_dbhz(mfsk, full ? 1e-2 : 3e-2), 0.3,
              carrier_aided_errors(mfsk, 20.5, theory_dbhz(mfsk, full ? 1e-2 : 3e-2), full ? 40'000 : 8'000, 5));
 
-    for (const auto& [name, error, total_dbhz] : {std::tuple{"the whole receiver, 1e-1", 1e-1, 11.3},
-                                                  std::tuple{"the whole receiver, 3e-2", 3e-2, 12.3}}) {
+    for (const auto& [name, error, total_dbhz] :
+         {std::tuple{"the whole receiver, 1e-1", 1e-1, 11.3}, std::tuple{"the whole receiver, 3e-2", 3e-2, 12.3}}) {
         const ErrorCount count = receiver_errors(mfsk, total_dbhz, full ? 6'000 : 1'000, 6);
         const double tone_dbhz = total_dbhz + 10.0 * std::log10(mfsk.tone_fraction());
         const double loss = loss_db(tone_dbhz, mfsk.symbol_s, count.rate());
-        add({name, loss, 0.0, "dB from theory, no goal", true, fmt::format("at {:.2f} dB-Hz total, {}", total_dbhz, counted(count))});
+        add({name, loss, 0.0, "dB from theory, no goal", true,
+             fmt::format("at {:.2f} dB-Hz total, {}", total_dbhz, counted(count))});
     }
 
     const AcquisitionCount found = acquisitions(mfsk, 20.5, full ? 10'000 : 1'000, 7);
     add({"acquisition, carrier at 20.5 dB-Hz: Pd", 1.0 - found.missed.rate(), 0.99, "", found.missed.rate() <= 0.01,
          "missed " + counted(found.missed)});
-    add({"acquisition over 100 kHz", found.cpu_ms_a_second, 10.0, "ms of CPU a second", found.cpu_ms_a_second <= 10.0, ""});
+    add({"acquisition over 100 kHz", found.cpu_ms_a_second, 10.0, "ms of CPU a second", found.cpu_ms_a_second <= 10.0,
+         ""});
     const ErrorCount alarms = false_alarms(full ? 30'000 : 1'000, 8);
     add({"acquisition in noise: Pfa", alarms.rate(), telemetry::CarrierSearch::false_alarm, "a window",
-         interval_of(alarms).low <= telemetry::CarrierSearch::false_alarm, counted(alarms) + ", a bound by construction"});
+         interval_of(alarms).low <= telemetry::CarrierSearch::false_alarm,
+         counted(alarms) + ", a bound by construction"});
 
     constexpr double total_dbhz = 22.0, low_rate_hz = 16384.0, whole_band_hz = 100e3;
     const FlownSignal nominal = fly_signal(landing, 1, 0, dictionary);
@@ -269,15 +273,16 @@ bool tell_tone_figures(const dictionary::Dictionary& dictionary, const simulatio
          fmt::format("{} landings; of {} in outages {}; the predict is wrong by up to {:.0f} Hz", seeds, sum.in_outage,
                      sum.in_outage_decoded, sum.predict_error_hz)});
     add({"OD137 at 22 dB-Hz total: wrong", static_cast<double>(sum.wrong), 0.0, "tones", sum.wrong == 0, ""});
-    add({"receiver, samples at 16 kHz", sum.cpu_ms_a_second, 15.0, "ms of CPU a second", sum.cpu_ms_a_second <= 15.0, ""});
-    const double wide_ms =
-        landing_tones(nominal, dispersed, dictionary, total_dbhz, whole_band_hz, 1).cpu_ms_a_second;
+    add({"receiver, samples at 16 kHz", sum.cpu_ms_a_second, 15.0, "ms of CPU a second", sum.cpu_ms_a_second <= 15.0,
+         ""});
+    const double wide_ms = landing_tones(nominal, dispersed, dictionary, total_dbhz, whole_band_hz, 1).cpu_ms_a_second;
     add({"receiver, samples at 100 kHz", wide_ms, 15.0, "ms of CPU a second", wide_ms <= 15.0, ""});
     const SignalLanding whole = signal_landing(landing, dictionary);
-    add({"a landing with its tones from samples", whole.real_time_factor, 20.0, "x real time", whole.real_time_factor >= 20.0,
+    add({"a landing with its tones from samples", whole.real_time_factor, 20.0, "x real time",
+         whole.real_time_factor >= 20.0,
          fmt::format("{:.0f} s flown; tones {} sent, {} decoded, {} wrong, {} missed", whole.flown_s, whole.tones.sent,
                      whole.tones.decoded, whole.tones.wrong, whole.tones.missed)});
     return all_met;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -12,9 +12,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "sample files are little-endian");
 
-constexpr double noise_in_ci16 = 2000.0 * std::numbers::sqrt2; // ours: 16 deviations before it clips
+constexpr double noise_in_ci16 = 2000.0 * std::numbers::sqrt2;  // ours: 16 deviations before it clips
 
-} // namespace
+}  // namespace
 
 Result<SampleFormat> sample_format(std::string_view name) {
     if (name == "cf32") return SampleFormat::cf32;
@@ -79,7 +79,8 @@ Result<void> SampleWriter::add(std::span<const std::complex<float>> samples) {
             std::memcpy(octets_.data() + i * sizeof parts, parts, sizeof parts);
         } else {
             const auto to_integer = [](float part) {
-                return static_cast<std::int16_t>(std::lround(std::clamp(static_cast<double>(part) * noise_in_ci16, -32768.0, 32767.0)));
+                return static_cast<std::int16_t>(
+                    std::lround(std::clamp(static_cast<double>(part) * noise_in_ci16, -32768.0, 32767.0)));
             };
             const std::int16_t parts[2]{to_integer(samples[i].real()), to_integer(samples[i].imag())};
             std::memcpy(octets_.data() + i * sizeof parts, parts, sizeof parts);
@@ -94,4 +95,4 @@ Result<void> SampleWriter::close() {
     return state();
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

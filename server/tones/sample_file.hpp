@@ -14,8 +14,8 @@ namespace aeolis::server {
 
 /// How complex samples lie in a file: in-phase then quadrature, little-endian, nothing else.
 enum class SampleFormat {
-    cf32, ///< two 32-bit floats
-    ci16, ///< two 16-bit integers
+    cf32,  ///< two 32-bit floats
+    ci16,  ///< two 16-bit integers
 };
 Result<SampleFormat> sample_format(std::string_view name);
 std::size_t octets_a_sample(SampleFormat format);
@@ -58,4 +58,4 @@ class SampleWriter {
     std::vector<char> octets_;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -16,7 +16,7 @@ namespace name_detail {
 constexpr std::string_view argument_in(std::string_view signature) {
     signature = signature.substr(signature.find(" = ") + 3);
     signature = signature.substr(0, signature.find_first_of(";]"));
-    return signature.substr(signature.rfind(':') + 1); // all of it where there is none
+    return signature.substr(signature.rfind(':') + 1);  // all of it where there is none
 }
 template <typename Message>
 constexpr std::string_view type_name() {
@@ -35,7 +35,7 @@ constexpr std::array<std::string_view, sizeof...(I)> module_names(std::index_seq
     return {module_name<static_cast<flight::ModuleId>(I)>()...};
 }
 
-} // namespace name_detail
+}  // namespace name_detail
 
 inline constexpr std::size_t message_type_count = std::variant_size_v<flight::Message>;
 
@@ -48,4 +48,4 @@ constexpr std::string_view name_of(flight::ModuleId id) {
     return module_names[static_cast<std::size_t>(id)];
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

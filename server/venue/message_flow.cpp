@@ -21,7 +21,7 @@ constexpr ModuleId module_at(std::size_t place) {
     return static_cast<ModuleId>(place);
 }
 
-} // namespace
+}  // namespace
 
 void MessageFlow::cycle(flight::ComputerState& state, const flight::DeviceInputs& in, flight::DeviceOutputs& out) {
     if (cycles_ == 0) look_at(state);
@@ -60,11 +60,12 @@ std::string MessageFlow::handled_text(std::size_t module) const {
 
 std::string MessageFlow::document(const std::string& landing) const {
     const double flown_s = static_cast<double>(cycles_) * seconds_per_tick;
-    std::string text = "# The flight software: modules, messages, rates, priorities\n\n"
-                       "Made by `aeolis modules`. What a module handles is what the compiler finds in it; messages are counted over "
-                       "a landing.\n\n## Modules\n\n"
-                       "| priority | module | rate group | deadline after the tick | budget a cycle | handles |\n"
-                       "|---|---|---|---|---|---|\n";
+    std::string text =
+        "# The flight software: modules, messages, rates, priorities\n\n"
+        "Made by `aeolis modules`. What a module handles is what the compiler finds in it; messages are counted over "
+        "a landing.\n\n## Modules\n\n"
+        "| priority | module | rate group | deadline after the tick | budget a cycle | handles |\n"
+        "|---|---|---|---|---|---|\n";
     for (std::size_t i = 0; i < flight::module_count; ++i) {
         const auto limits = flight::limits_of(module_at(i));
         text += fmt::format("| {} | `{}` | {} | {:.1f} ms | {:.0f} us | {} |\n", i + 1, module_names[i],
@@ -72,8 +73,10 @@ std::string MessageFlow::document(const std::string& landing) const {
                             limits.budget_us, handled_text(i));
     }
 
-    text += "\n## Who talks to whom\n\nSolid: a type of message in every second cycle or more often, in the seconds in which there "
-            "is one. Dotted: less often. Records to `edl_comm`, which every module sends, are left out.\n\n```mermaid\nflowchart LR\n";
+    text += "\n## Who talks to whom\n\nSolid: a type of message in every second cycle or more often, in the seconds in "
+            "which there "
+            "is one. Dotted: less often. Records to `edl_comm`, which every module sends, are left "
+            "out.\n\n```mermaid\nflowchart LR\n";
     std::string rates;
     for (std::size_t from = 0; from <= flight::module_count; ++from) {
         for (std::size_t to = 0; to < flight::module_count; ++to) {
@@ -95,11 +98,13 @@ std::string MessageFlow::document(const std::string& landing) const {
                                 most_hz >= 32.0 ? "-->" : "-.->", module_names[to]);
         }
     }
-    return text + fmt::format("```\n\n## Messages\n\nPrime over {}: {} cycles, {:.0f} s of flight. `tick`: came with the clock's "
-                              "tick, from the clock or a device. The rate is the mean over the seconds in which there was at "
-                              "least one.\n\n| from | to | message | messages | in so many seconds | rate, Hz |\n"
-                              "|---|---|---|---|---|---|\n{}",
-                              landing, cycles_, flown_s, rates);
+    return text +
+           fmt::format(
+               "```\n\n## Messages\n\nPrime over {}: {} cycles, {:.0f} s of flight. `tick`: came with the clock's "
+               "tick, from the clock or a device. The rate is the mean over the seconds in which there was at "
+               "least one.\n\n| from | to | message | messages | in so many seconds | rate, Hz |\n"
+               "|---|---|---|---|---|---|\n{}",
+               landing, cycles_, flown_s, rates);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

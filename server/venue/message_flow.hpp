@@ -28,8 +28,9 @@ class MessageFlow final : public flight::CycleRunner, private flight::MessageTap
         return counts_[place(outside, to, message_type)].messages;
     }
 
-    /// Markdown, once a cycle was run: modules with priority, deadline, budget and what they handle, as the compiler knows it;
-    /// a diagram of who talks to whom; each message with its number and its rate. `landing` says which landing that was.
+    /// Markdown, once a cycle was run: modules with priority, deadline, budget and what they handle, as the compiler
+    /// knows it; a diagram of who talks to whom; each message with its number and its rate. `landing` says which
+    /// landing that was.
     std::string document(const std::string& landing) const;
 
   private:
@@ -55,4 +56,4 @@ class MessageFlow final : public flight::CycleRunner, private flight::MessageTap
     std::uint64_t cycles_ = 0;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -27,23 +27,25 @@ void add_times(JsonObject& object, std::string_view counted, const Durations& ti
         .number("worst_us", times.worst_us());
 }
 
-} // namespace
+}  // namespace
 
 std::string task_table(const MeasuredTimes& times) {
-    std::string text = fmt::format("{:<26} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7}\n", "task, its messages",
-                                   "times", "least us", "mean", "99.9 %", "worst", "budget", "ratio", "uneven", "stack");
+    std::string text =
+        fmt::format("{:<26} {:>9} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>7} {:>7}\n", "task, its messages", "times",
+                    "least us", "mean", "99.9 %", "worst", "budget", "ratio", "uneven", "stack");
     for (const TaskTimes& task : times.tasks) {
         const double budget_us = flight::limits_of(task.module).budget_us;
-        text += fmt::format("{:<26} {} {:>8.0f} {:>6.2f} {:>7.1f} {:>7}\n", name_of(task.module), times_text(task.cycle),
-                            budget_us, task.cycle.p999_us() / budget_us, unevenness(task), task.stack_used_octets);
+        text +=
+            fmt::format("{:<26} {} {:>8.0f} {:>6.2f} {:>7.1f} {:>7}\n", name_of(task.module), times_text(task.cycle),
+                        budget_us, task.cycle.p999_us() / budget_us, unevenness(task), task.stack_used_octets);
         for (std::size_t type = 0; type < task.by_message.size(); ++type)
             if (task.by_message[type].count() > 0)
                 text += fmt::format("  {:<24} {}\n", message_names[type], times_text(task.by_message[type]));
     }
     const double worst_us = times.all_tasks.worst_us();
     text += fmt::format("{:<26} {}\n", "all tasks together", times_text(times.all_tasks));
-    return text + fmt::format("worst cycle of all tasks together {:.0f} us of {:.0f} us, ratio {:.2f}\n", worst_us, cycle_us,
-                              worst_us / cycle_us);
+    return text + fmt::format("worst cycle of all tasks together {:.0f} us of {:.0f} us, ratio {:.2f}\n", worst_us,
+                              cycle_us, worst_us / cycle_us);
 }
 
 std::string task_json(const MeasuredTimes& times) {
@@ -81,4 +83,4 @@ bool within_budgets(const MeasuredTimes& times) {
            });
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

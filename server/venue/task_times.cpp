@@ -9,7 +9,7 @@ namespace {
 
 constexpr int first_doubling = 6;
 
-} // namespace
+}  // namespace
 
 std::size_t Durations::bin_of(std::uint64_t ns) {
     if (ns < (1U << first_doubling)) return 0;
@@ -56,4 +56,4 @@ double unevenness(const TaskTimes& times) {
     return types == 0 || sum_us == 0.0 ? 1.0 : largest_us / (sum_us / types);
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -30,8 +30,8 @@ class Durations {
     std::uint64_t count_ = 0, sum_ns_ = 0, least_ns_ = UINT64_MAX, worst_ns_ = 0;
 };
 
-/// Processor time of one task: of all that it did in a cycle, over the cycles in which it ran, however often it was woken
-/// in one; and of each message by its type. R8
+/// Processor time of one task: of all that it did in a cycle, over the cycles in which it ran, however often it was
+/// woken in one; and of each message by its type. R8
 struct TaskTimes {
     flight::ModuleId module{};
     Durations cycle;
@@ -48,4 +48,4 @@ struct MeasuredTimes {
 /// R8: messages of one task should cost about the same. The largest mean over message types against their mean.
 double unevenness(const TaskTimes& times);
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -18,7 +18,7 @@ namespace aeolis::server {
 namespace {
 
 constexpr std::uint8_t paint = 0xA5;
-constexpr int lowest_priority = 10; // ours: above everything ordinary, below the kernel's own
+constexpr int lowest_priority = 10;  // ours: above everything ordinary, below the kernel's own
 
 std::uint64_t thread_cpu_ns() {
     timespec time{};
@@ -26,16 +26,15 @@ std::uint64_t thread_cpu_ns() {
     return static_cast<std::uint64_t>(time.tv_sec) * 1'000'000'000U + static_cast<std::uint64_t>(time.tv_nsec);
 }
 
-/// How much of a painted stack is painted still. Its thread is idle, but not ended: the thread sanitizer would call that a
-/// race on what the thread's own start has written there.
+/// How much of a painted stack is painted still. Its thread is idle, but not ended: the thread sanitizer would call
+/// that a race on what the thread's own start has written there.
 __attribute__((no_sanitize("thread"))) std::size_t untouched_octets(const std::uint8_t* stack, std::size_t octets) {
     std::size_t untouched = 0;
-    while (untouched < octets && stack[untouched] == paint)
-        ++untouched;
+    while (untouched < octets && stack[untouched] == paint) ++untouched;
     return untouched;
 }
 
-} // namespace
+}  // namespace
 
 /// One module's thread. It waits at one place, for its mailbox; a module of the rate group is woken by its turn alone.
 class ThreadedExecutive::Task {
@@ -44,7 +43,8 @@ class ThreadedExecutive::Task {
         times_.module = id;
         // Below the stack a page that nobody may touch: an overflow ends the program instead of writing elsewhere.
         guard_octets_ = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-        void* room = mmap(nullptr, guard_octets_ + stack_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        void* room =
+            mmap(nullptr, guard_octets_ + stack_octets, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         AEOLIS_CHECK(room != MAP_FAILED);
         AEOLIS_CHECK(mprotect(room, guard_octets_, PROT_NONE) == 0);
         stack_ = static_cast<std::uint8_t*>(room) + guard_octets_;
@@ -107,8 +107,7 @@ class ThreadedExecutive::Task {
         int failed = EPERM;
         if (house_.options_.clock == Clock::real_time) {
             sched_param priority{};
-            priority.sched_priority =
-                lowest_priority + static_cast<int>(flight::module_count) - static_cast<int>(id_);
+            priority.sched_priority = lowest_priority + static_cast<int>(flight::module_count) - static_cast<int>(id_);
             pthread_attr_setinheritsched(&attributes, PTHREAD_EXPLICIT_SCHED);
             pthread_attr_setschedpolicy(&attributes, SCHED_FIFO);
             pthread_attr_setschedparam(&attributes, &priority);
@@ -142,8 +141,7 @@ class ThreadedExecutive::Task {
         const std::uint64_t began_ns = house_.options_.measure ? thread_cpu_ns() : 0;
         try {
             if (house_.options_.before_mail) house_.options_.before_mail(id_, house_.now_);
-            while (const auto message = next())
-                handle(*message);
+            while (const auto message = next()) handle(*message);
         } catch (const CheckFailed& bug) {
             const std::lock_guard lock{house_.mutex_};
             if (!house_.failed_) house_.failed_ = bug;
@@ -162,9 +160,8 @@ class ThreadedExecutive::Task {
     void handle(const flight::Message& message) {
         const std::uint64_t began_ns = house_.options_.measure ? thread_cpu_ns() : 0;
         outbox_.begin(id_, house_.now_, *house_.out_);
-        const bool expected = flight::with_module(*house_.state_, id_, [&](auto& module) {
-            return flight::handle(module, message, outbox_);
-        });
+        const bool expected = flight::with_module(
+            *house_.state_, id_, [&](auto& module) { return flight::handle(module, message, outbox_); });
         if (house_.options_.measure) times_.by_message[message.index()].add(thread_cpu_ns() - began_ns);
         if (!expected) ++house_.unexpected_;
         house_.overflows_ += outbox_.dropped();
@@ -220,8 +217,7 @@ void ThreadedExecutive::cycle(flight::ComputerState& state, const flight::Device
     const auto deliver = [&](flight::ModuleId to, const flight::Message& message) {
         if (post(to, message)) awake |= flight::bit_of(to);
     };
-    for (const flight::Envelope& envelope : state.next_cycle)
-        deliver(envelope.to, envelope.message);
+    for (const flight::Envelope& envelope : state.next_cycle) deliver(envelope.to, envelope.message);
     state.next_cycle.clear();
     flight::post_interrupts(in, deliver);
     for (std::size_t id = 0; id < flight::module_count; ++id)
@@ -259,13 +255,11 @@ void ThreadedExecutive::collect(flight::ComputerState& state) {
     state.unexpected_messages += unexpected_.exchange(0);
     if (options_.measure) {
         std::uint64_t together_ns = 0;
-        for (auto& one : tasks_)
-            together_ns += one->take_cycle_ns().value_or(0);
+        for (auto& one : tasks_) together_ns += one->take_cycle_ns().value_or(0);
         all_tasks_.add(together_ns);
     }
     if (failed_) {
-        for (auto& one : tasks_)
-            one->later().clear(); // mailboxes go with the computer's state
+        for (auto& one : tasks_) one->later().clear();  // mailboxes go with the computer's state
         const CheckFailed bug = *failed_;
         failed_.reset();
         throw CheckFailed{bug};
@@ -295,16 +289,14 @@ void ThreadedExecutive::report_times(flight::ComputerState& state) {
         .task_unevenness = f(unevenness(times)),
         .task_stack_octets = static_cast<std::uint32_t>(times.stack_used_octets),
     });
-    for (const flight::Envelope& envelope : state.outbox.sent())
-        (void)state.next_cycle.try_push_back(envelope);
+    for (const flight::Envelope& envelope : state.outbox.sent()) (void)state.next_cycle.try_push_back(envelope);
 }
 
 MeasuredTimes ThreadedExecutive::times() const {
     MeasuredTimes measured{{}, all_tasks_};
     measured.tasks.reserve(tasks_.size());
-    for (const auto& one : tasks_)
-        measured.tasks.push_back(one->times());
+    for (const auto& one : tasks_) measured.tasks.push_back(one->times());
     return measured;
 }
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

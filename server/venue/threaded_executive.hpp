@@ -16,15 +16,16 @@
 
 namespace aeolis::server {
 
-/// The threaded executive: each module a task with a thread of its own and one blocking wait, its mailbox; priorities by
-/// deadline (flight/kernel/deadlines.hpp), SCHED_FIFO where the system permits. R4, R8
+/// The threaded executive: each module a task with a thread of its own and one blocking wait, its mailbox; priorities
+/// by deadline (flight/kernel/deadlines.hpp), SCHED_FIFO where the system permits. R4, R8
 ///
 /// In       one tick's inputs, by cycle()                 Out   the same bits as the deterministic executive gives
 /// Clock    virtual: cycle() returns when every task is idle, however long that took. Real: a cycle that is not done
 ///          within 1/64 s gets the next tick all the same, as from the clock's interrupt: sync finds its group still
 ///          running, reports the overrun and skips that cycle; take_ticks_skipped() says how many, SCLK goes on
 /// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
-/// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the state that failed
+/// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the
+/// state that failed
 class ThreadedExecutive final : public flight::CycleRunner {
   public:
     enum class Clock { virtual_time, real_time };
@@ -78,8 +79,8 @@ class ThreadedExecutive final : public flight::CycleRunner {
     std::optional<CheckFailed> failed_;
     int ticks_skipped_ = 0;    ///< in the cycle that runs
     int ticks_not_taken_ = 0;  ///< in cycles before, not told yet
-    Durations all_tasks_;  ///< of each cycle
+    Durations all_tasks_;      ///< of each cycle
     std::size_t next_reported_ = 0;
 };
 
-} // namespace aeolis::server
+}  // namespace aeolis::server

@@ -11,12 +11,12 @@ namespace aeolis::simulation {
 /// One command on its way to a remote terminal.
 struct BusCommand {
     enum class Kind : std::uint8_t { pyro, device_switch, thrusters };
-    flight::Device device{}; ///< addressed, with its unit
+    flight::Device device{};  ///< addressed, with its unit
     flight::Unit unit{};
     Kind kind{};
     flight::PyroId pyro{};
     flight::SwitchId switch_id{};
-    flight::Unit switched{}; ///< the unit that is powered or not
+    flight::Unit switched{};  ///< the unit that is powered or not
     bool on = false;
     std::uint8_t tries = 0;
 };
@@ -44,7 +44,7 @@ class Bus {
     /// The commands' part of a frame; `execute(command)` says whether the terminal answered.
     template <typename Execute>
     void send(const Execute& execute) {
-        unsigned held_up = 0; // devices whose earlier command has to come first
+        unsigned held_up = 0;  // devices whose earlier command has to come first
         std::size_t kept = 0;
         for (std::size_t i = 0; i < waiting_.size(); ++i) {
             BusCommand command = waiting_[i];
@@ -57,8 +57,7 @@ class Bus {
             held_up |= device;
             waiting_[kept++] = command;
         }
-        while (waiting_.size() > kept)
-            waiting_.erase_at(waiting_.size() - 1);
+        while (waiting_.size() > kept) waiting_.erase_at(waiting_.size() - 1);
     }
 
     /// One message, with its repetition: whether it got through.
@@ -76,9 +75,9 @@ class Bus {
 
     struct Counters {
         std::uint64_t messages = 0;
-        std::uint64_t repeated = 0; ///< garbled once
-        std::uint64_t failed = 0;   ///< garbled twice in a frame
-        std::uint64_t given_up = 0; ///< commands that nobody will carry out
+        std::uint64_t repeated = 0;  ///< garbled once
+        std::uint64_t failed = 0;    ///< garbled twice in a frame
+        std::uint64_t given_up = 0;  ///< commands that nobody will carry out
     };
     const Counters& counters() const { return counters_; }
 
@@ -95,4 +94,4 @@ class Bus {
     Counters counters_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

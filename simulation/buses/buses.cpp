@@ -6,15 +6,15 @@ namespace {
 using flight::Device;
 using Kind = DeviceFault::Kind;
 
-constexpr std::int64_t hold_ticks = 128;         // 2 s [facts] Second Chance
-constexpr std::size_t replies_of_a_kind_max = 8; // of DeviceInputs
+constexpr std::int64_t hold_ticks = 128;          // 2 s [facts] Second Chance
+constexpr std::size_t replies_of_a_kind_max = 8;  // of DeviceInputs
 
 constexpr bool on_64_hz(Device device) {
     return device == Device::radar || device == Device::pyro || device == Device::descent_engines ||
            device == Device::thrusters;
 }
 
-} // namespace
+}  // namespace
 
 Buses::Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number)
     : bus_64_hz_(1, scenario.bus_message_error_fraction, Random{seed, case_number, Stream::bus_64_hz}),
@@ -76,7 +76,7 @@ void Buses::frame(Sclk now) {
     fired_.clear();
     fetched_.clear();
     radar_was_read_ = engines_were_read_ = false;
-    thrusters_ = {}; // a pulse is told anew each tick or not given
+    thrusters_ = {};  // a pulse is told anew each tick or not given
     if (commanded_) {
         run(bus_64_hz_, tick);
         run_cyclic(tick);
@@ -138,9 +138,7 @@ void Buses::fetch(Bus& bus, std::int64_t tick) {
 void Buses::reply(flight::DeviceInputs& in) const {
     for (const Avionics::Reply& reply : fetched_) {
         switch (reply.kind) {
-        case BusCommand::Kind::pyro:
-            in.pyro_replies.push_back({reply.pyro, reply.on, reply.unit});
-            break;
+        case BusCommand::Kind::pyro: in.pyro_replies.push_back({reply.pyro, reply.on, reply.unit}); break;
         case BusCommand::Kind::device_switch:
             in.switch_replies.push_back({reply.switch_id, reply.on, reply.unit, reply.refused});
             break;
@@ -171,4 +169,4 @@ bool Buses::imu_sample_arrives() {
     return !faults_.has(Kind::dropout, Device::imu, imu) || imu_link_.uniform() < 0.5;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -18,7 +18,8 @@ namespace aeolis::simulation {
 /// Out      what is done, and replies for the computer
 /// Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz with the
 ///          next multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
-/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, and radar and engines are read in it. Thrusters
+/// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, and radar and engines are read in it.
+/// Thrusters
 ///          that hear nothing close at once; engines keep their last throttles for 2 s and then go safe. [facts]
 class Buses {
   public:
@@ -47,7 +48,7 @@ class Buses {
     bool engines_were_read() const { return engines_were_read_; }
     bool uhf_radiates() const;
     bool parachute_antenna_on() const { return devices_.on(flight::SwitchId::parachute_antenna); }
-    std::optional<XBandAntenna> x_band_antenna() const; ///< the one selected
+    std::optional<XBandAntenna> x_band_antenna() const;  ///< the one selected
     /// Whether the sample that the IMU's link carries now arrives.
     bool imu_sample_arrives();
     flight::Unit unit(flight::Device device) const { return addressed_[device]; }
@@ -94,4 +95,4 @@ class Buses {
     bool engines_were_read_ = false;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -17,4 +17,4 @@ void DeviceFaults::at(Sclk now) {
     }
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -48,4 +48,4 @@ class DeviceFaults {
     std::array<std::array<State, 2>, flight::device_count> states_{};
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

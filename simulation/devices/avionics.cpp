@@ -5,40 +5,32 @@ namespace {
 
 using flight::SwitchId;
 
-constexpr std::int64_t jitter_ticks = 3; // 0 … 2
+constexpr std::int64_t jitter_ticks = 3;  // 0 … 2
 constexpr std::int64_t pyro_ticks = 2;
 constexpr std::int64_t thruster_ticks = 3;
 
 constexpr std::int64_t switch_ticks(SwitchId id) {
     switch (id) {
-    case SwitchId::radar:
-        return 12;
-    case SwitchId::uhf:
-        return 32;
-    case SwitchId::descent_imu:
-        return 8;
+    case SwitchId::radar: return 12;
+    case SwitchId::uhf: return 32;
+    case SwitchId::descent_imu: return 8;
     case SwitchId::entry_antenna:
-    case SwitchId::parachute_antenna:
-        return 6;
-    case SwitchId::thruster_heaters:
-        return 4;
+    case SwitchId::parachute_antenna: return 6;
+    case SwitchId::thruster_heaters: return 4;
     }
     return 1;
 }
 
 std::int64_t work_ticks(const BusCommand& command) {
     switch (command.kind) {
-    case BusCommand::Kind::pyro:
-        return pyro_ticks;
-    case BusCommand::Kind::thrusters:
-        return thruster_ticks;
-    case BusCommand::Kind::device_switch:
-        return switch_ticks(command.switch_id);
+    case BusCommand::Kind::pyro: return pyro_ticks;
+    case BusCommand::Kind::thrusters: return thruster_ticks;
+    case BusCommand::Kind::device_switch: return switch_ticks(command.switch_id);
     }
     return 1;
 }
 
-} // namespace
+}  // namespace
 
 bool Avionics::execute(const BusCommand& command, std::int64_t tick, const DeviceFaults& faults) {
     bool first_firing = false;
@@ -67,9 +59,7 @@ Avionics::Reply Avionics::obey(const BusCommand& command, bool& first_firing) {
         if (command.on && command.switch_id == SwitchId::parachute_antenna)
             on_[static_cast<std::size_t>(SwitchId::entry_antenna)] = {};
         break;
-    case BusCommand::Kind::thrusters:
-        thrusters_enabled_ = command.on;
-        break;
+    case BusCommand::Kind::thrusters: thrusters_enabled_ = command.on; break;
     }
     return {0, command.device, command.unit, command.kind, command.pyro, command.switch_id, command.on, false};
 }
@@ -81,4 +71,4 @@ Avionics::Reply Avionics::refuse(const BusCommand& command) const {
     return {0, command.device, command.unit, command.kind, command.pyro, command.switch_id, as_it_is, true};
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

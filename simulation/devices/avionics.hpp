@@ -35,7 +35,7 @@ class Avionics {
         BusCommand::Kind kind{};
         flight::PyroId pyro{};
         flight::SwitchId switch_id{};
-        bool on = false; ///< fired, on, enabled
+        bool on = false;  ///< fired, on, enabled
         bool refused = false;
     };
     /// Oldest command first. Their owner takes out what the bus fetched.
@@ -55,4 +55,4 @@ class Avionics {
     Random random_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

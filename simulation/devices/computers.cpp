@@ -11,7 +11,7 @@ flight::Load load_of(flight::Load load, flight::String string) {
     return load;
 }
 
-} // namespace
+}  // namespace
 
 Computers::Computers(const flight::Load& load, Sclk start)
     : computers_{flight::Computer{load_of(load, flight::String::a), start},
@@ -32,8 +32,7 @@ void Computers::step(flight::DeviceInputs& in, bool with_prime) {
     beside_.now = in.now;
     beside_.imu = in.imu;
     beside_.uplink.clear();
-    for (const flight::UplinkPacket& packet : in.uplink)
-        beside_.uplink.push_back(packet);
+    for (const flight::UplinkPacket& packet : in.uplink) beside_.uplink.push_back(packet);
     beside_.nvm_used_octets = in.nvm_used_octets;
     beside_.nvm_capacity_octets = in.nvm_capacity_octets;
 
@@ -68,13 +67,11 @@ const flight::gnc::Configuration& Computers::gnc_configuration() {
 }
 
 void Computers::replace_gnc(const flight::gnc::Output& told) {
-    for (flight::Computer& computer : computers_)
-        computer.replace_gnc(told);
+    for (flight::Computer& computer : computers_) computer.replace_gnc(told);
 }
 
 void Computers::shift_navigation(const flight::NavigationShift& by) {
-    for (flight::Computer& computer : computers_)
-        computer.shift_navigation(by);
+    for (flight::Computer& computer : computers_) computer.shift_navigation(by);
 }
 
 void Computers::choose_commander() {
@@ -89,4 +86,4 @@ flight::Computer::Counters Computers::counters() const {
             a.unexpected_messages + b.unexpected_messages, a.resets + b.resets};
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

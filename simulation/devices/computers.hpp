@@ -25,9 +25,11 @@ class Computers {
 
     /// One cycle of both. `in` is completed with what only the computers give each other.
     void step(flight::DeviceInputs& in);
-    /// Ticks that passed in that cycle beyond its own, because prime's executive took so long by a clock that does not wait.
+    /// Ticks that passed in that cycle beyond its own, because prime's executive took so long by a clock that does not
+    /// wait.
     int take_ticks_skipped() { return runner_ ? runner_->take_ticks_skipped() : 0; }
-    /// Such a tick: the other computer has its cycle; of prime there are the commands that hold, what came for it is lost.
+    /// Such a tick: the other computer has its cycle; of prime there are the commands that hold, what came for it is
+    /// lost.
     void step_without_prime(flight::DeviceInputs& in);
 
     /// The test venue "all but GNC": both computers take what stands in for GNC as their own.
@@ -57,11 +59,11 @@ class Computers {
 
     std::array<flight::Computer, 2> computers_;
     std::array<flight::DeviceOutputs, 2> out_;
-    flight::DeviceInputs beside_; ///< of the computer that is not in command
+    flight::DeviceInputs beside_;  ///< of the computer that is not in command
     std::size_t commander_ = 0;
     flight::StateOctets restart_record_;
     std::shared_ptr<flight::CycleRunner> runner_;
     bool prime_is_b_ = false;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

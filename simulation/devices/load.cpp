@@ -17,4 +17,4 @@ flight::Load load_for(const Scenario& scenario) {
     return load;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

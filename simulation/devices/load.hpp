@@ -8,4 +8,4 @@ namespace aeolis::simulation {
 /// What is loaded into the vehicle's computers before the landing of a scenario begins.
 flight::Load load_for(const Scenario& scenario);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -21,4 +21,4 @@ std::span<const std::uint8_t> take_packet(std::span<const std::uint8_t>& octets)
     return packet;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -27,4 +27,4 @@ class Recorder {
 /// Takes the first whole packet off `octets`; empty when there is none or what stands there is no packet.
 std::span<const std::uint8_t> take_packet(std::span<const std::uint8_t>& octets);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

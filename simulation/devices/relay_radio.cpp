@@ -11,7 +11,8 @@ std::int64_t RelayRadio::cycles_for_answer(double light_time_s) {
     return static_cast<std::int64_t>((2.0 * light_time_s + 10.0) / seconds_per_tick);
 }
 
-std::span<const std::uint8_t> RelayRadio::cycle(const flight::RecordingDelivery::Recording& recording, double rate_bps) {
+std::span<const std::uint8_t> RelayRadio::cycle(const flight::RecordingDelivery::Recording& recording,
+                                                double rate_bps) {
     sent_.clear();
     const bool begins = rate_bps > 0.0 && !in_pass_;
     in_pass_ = rate_bps > 0.0;
@@ -26,7 +27,7 @@ std::span<const std::uint8_t> RelayRadio::cycle(const flight::RecordingDelivery:
     while (credit_octets_ > 0.0) {
         const std::size_t octets = delivery_.next(recording, pltu);
         if (octets == 0) {
-            credit_octets_ = 0.0; // idle time is not saved up
+            credit_octets_ = 0.0;  // idle time is not saved up
             break;
         }
         sent_.insert(sent_.end(), pltu.begin(), pltu.begin() + static_cast<std::ptrdiff_t>(octets));
@@ -36,4 +37,4 @@ std::span<const std::uint8_t> RelayRadio::cycle(const flight::RecordingDelivery:
     return sent_;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

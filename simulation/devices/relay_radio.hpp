@@ -12,15 +12,16 @@ namespace aeolis::simulation {
 /// The rover's UHF radio after landing, with the delivery of files that runs on it.
 ///
 /// In       the recording; PLTUs from ground; the rate of the pass, cycle by cycle     Out   PLTUs, as octets
-/// When nothing is left to send, and answers have not come in both light times and 10 s (ours), or a pass begins, the ends
-/// of the files on their way are announced again.
+/// When nothing is left to send, and answers have not come in both light times and 10 s (ours), or a pass begins, the
+/// ends of the files on their way are announced again.
 class RelayRadio {
   public:
     explicit RelayRadio(double light_time_s) : answer_cycles_(cycles_for_answer(light_time_s)) {}
 
     void receive(std::span<const std::uint8_t> pltu) { delivery_.on(pltu); }
 
-    /// One cycle at `rate_bps`, 0 without a pass: what is sent, good until the next. PLTUs go whole; a part of a cycle is saved up.
+    /// One cycle at `rate_bps`, 0 without a pass: what is sent, good until the next. PLTUs go whole; a part of a cycle
+    /// is saved up.
     std::span<const std::uint8_t> cycle(const flight::RecordingDelivery::Recording& recording, double rate_bps);
 
     /// A fault: it forgets what it was doing.
@@ -38,4 +39,4 @@ class RelayRadio {
     bool in_pass_ = false;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

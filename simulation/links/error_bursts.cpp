@@ -26,8 +26,7 @@ double ErrorBursts::drawn(double mean_octets) {
 void ErrorBursts::spoil(std::span<std::uint8_t> octets) {
     if (good_octets_ <= 0.0) return;
     for (std::uint8_t& octet : octets) {
-        while (left_octets_ < 1.0)
-            turn();
+        while (left_octets_ < 1.0) turn();
         left_octets_ -= 1.0;
         if (bad_) octet = static_cast<std::uint8_t>(random_.bits());
     }
@@ -35,8 +34,7 @@ void ErrorBursts::spoil(std::span<std::uint8_t> octets) {
 
 void ErrorBursts::idle(double octets) {
     if (good_octets_ <= 0.0 || octets <= 0.0) return;
-    while (left_octets_ < octets)
-        turn();
+    while (left_octets_ < octets) turn();
     left_octets_ -= octets;
 }
 
@@ -45,4 +43,4 @@ void ErrorBursts::turn() {
     left_octets_ += drawn(bad_ ? bad_octets_ : good_octets_);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -7,8 +7,8 @@
 
 namespace aeolis::simulation {
 
-/// Errors of a link come in bursts: within one an octet is anything, between them all arrive as they were sent. Lengths of
-/// bursts, and of the times between, are exponential ([gilbert-1960], with mean lengths in place of probabilities).
+/// Errors of a link come in bursts: within one an octet is anything, between them all arrive as they were sent. Lengths
+/// of bursts, and of the times between, are exponential ([gilbert-1960], with mean lengths in place of probabilities).
 class ErrorBursts {
   public:
     /// `fraction` of all octets are in bursts, 0 … below 1, of `mean_octets` on average, above 0.
@@ -26,10 +26,10 @@ class ErrorBursts {
     void turn();
     static double good_octets(double fraction, double bad_octets);
 
-    double bad_octets_, good_octets_; ///< means; no good_octets_: no bursts at all
+    double bad_octets_, good_octets_;  ///< means; no good_octets_: no bursts at all
     Random random_;
     bool bad_ = false;
-    double left_octets_ = 0.0; ///< of the state it is in
+    double left_octets_ = 0.0;  ///< of the state it is in
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

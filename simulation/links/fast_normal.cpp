@@ -36,7 +36,7 @@ const std::vector<float>& quantiles() {
     return once;
 }
 
-} // namespace
+}  // namespace
 
 FastNormal::FastNormal(std::uint64_t seed, std::uint64_t case_number, Stream stream)
     : random_(seed, case_number, stream), quantiles_(quantiles().data()) {}
@@ -50,4 +50,4 @@ void FastNormal::draw() {
     next_ = 0;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

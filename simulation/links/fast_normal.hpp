@@ -25,9 +25,9 @@ class FastNormal {
     void draw();
 
     Random random_;
-    const float* quantiles_; ///< static
+    const float* quantiles_;  ///< static
     std::array<float, 4> quartet_{};
     std::size_t next_ = 4;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

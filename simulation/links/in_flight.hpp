@@ -27,4 +27,4 @@ class InFlight {
     std::deque<std::pair<std::int64_t, T>> queue_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -8,8 +8,8 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double worst_loss_fraction = 0.9; // ours: more would be no link
-constexpr double forward_burst_octets = 32.0; // ours, as of the uplink
+constexpr double worst_loss_fraction = 0.9;    // ours: more would be no link
+constexpr double forward_burst_octets = 32.0;  // ours, as of the uplink
 
 double octets_of_burst(const Radio& radio, Traffic traffic) {
     return radio.uhf_burst_s * (traffic == Traffic::realtime ? radio.uhf_rate_bps : radio.relay_rate_bps) / 8.0;
@@ -19,7 +19,7 @@ Random drawn(Random& from) {
     return {from.bits(), 0, Stream::relay};
 }
 
-} // namespace
+}  // namespace
 
 RelayPass OrbiterPass::always() {
     RelayPass row;
@@ -83,4 +83,4 @@ void OrbiterPass::spoil_forward(std::span<std::uint8_t> octets, double e_s) {
     errors_.back().spoil(octets);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -34,8 +34,8 @@ class OrbiterPass {
     double loss_fraction(double e_s) const;
     double file_rate_bps(double e_s) const;
 
-    /// What is sent in one cycle, of a bent pipe what Earth receives of it, good until the next call; an orbiter that records keeps
-    /// it. Bursts of errors last by the clock, also while the vehicle has nothing to send in real time.
+    /// What is sent in one cycle, of a bent pipe what Earth receives of it, good until the next call; an orbiter that
+    /// records keeps it. Bursts of errors last by the clock, also while the vehicle has nothing to send in real time.
     std::span<const std::uint8_t> hear(Traffic traffic, std::span<const std::uint8_t> octets, double e_s);
     /// What an orbiter that records delivers in this cycle, files after all else; good until the next call.
     std::span<const std::uint8_t> deliver(Traffic traffic, double e_s);
@@ -61,10 +61,10 @@ class OrbiterPass {
     RelayPass row_;
     double loss_, loss_range_km_, default_rate_bps_;
     double realtime_octets_a_cycle_;
-    std::array<ErrorBursts, 3> errors_; ///< of both kinds of traffic, and of the forward link
+    std::array<ErrorBursts, 3> errors_;  ///< of both kinds of traffic, and of the forward link
     std::array<Store, 2> stores_;
     std::vector<std::uint8_t> heard_;
     double delivery_credit_octets_ = 0.0;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -11,7 +11,7 @@
 namespace aeolis::simulation {
 
 ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Random& random) {
-    const double energy = std::pow(10.0, 0.1 * tone_c_n0_dbhz) * symbol_s; // E/N0
+    const double energy = std::pow(10.0, 0.1 * tone_c_n0_dbhz) * symbol_s;  // E/N0
     const double amplitude = std::sqrt(2.0 * energy);
     std::array<double, 256> envelope{};
     for (int tone = 0; tone < 256; ++tone) {
@@ -27,8 +27,7 @@ ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Rando
     const auto log_likelihood = [&](std::size_t tone) { return log_bessel_i0(amplitude * envelope[tone]); };
     const double largest = log_likelihood(order[0]);
     double sum = 0.0;
-    for (std::size_t tone = 0; tone < envelope.size(); ++tone)
-        sum += std::exp(log_likelihood(tone) - largest);
+    for (std::size_t tone = 0; tone < envelope.size(); ++tone) sum += std::exp(log_likelihood(tone) - largest);
     for (std::size_t i = 0; i < decision.best.size(); ++i)
         decision.best[i] = {order[i], std::exp(log_likelihood(order[i]) - largest) / sum};
     const double most = envelope[order[0]];
@@ -37,4 +36,4 @@ ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Rando
     return decision;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -8,7 +8,7 @@ namespace aeolis::simulation {
 /// What an ideal non-coherent receiver makes of one 10 s symbol of 256 orthogonal tones.
 struct ToneDecision {
     BestTones best{};
-    double tone_c_n0_dbhz = 0.0; ///< estimate from the winner's energy
+    double tone_c_n0_dbhz = 0.0;  ///< estimate from the winner's energy
 };
 
 /// Draws the 256 detector outputs from their exact distributions and decides: the symbol error is that of non-coherent
@@ -19,4 +19,4 @@ struct ToneDecision {
 /// in proportion to I0(√(2 E/N0) r).
 ToneDecision detect_tone(int sent, double tone_c_n0_dbhz, double symbol_s, Random& random);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -14,8 +14,8 @@ struct SentTone {
     std::uint8_t tone = 0;
 };
 
-/// What the modulator makes of one tone at a sample rate: exp(j m sq) = cos m + j sin m · sq, the square wave without those
-/// harmonics that the sampling could not hold (a front end filters them off before it samples).
+/// What the modulator makes of one tone at a sample rate: exp(j m sq) = cos m + j sin m · sq, the square wave without
+/// those harmonics that the sampling could not hold (a front end filters them off before it samples).
 class ModulatedTone {
   public:
     /// Harmonics up to 0.45 of `rate_hz`.
@@ -34,4 +34,4 @@ class ModulatedTone {
     std::vector<float> quadrature_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -7,10 +7,10 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr std::size_t transmitter_octets = 65536; // ours
+constexpr std::size_t transmitter_octets = 65536;  // ours
 constexpr const char* nominal = "nominal";
 
-} // namespace
+}  // namespace
 
 void UhfLink::offer(std::span<const std::uint8_t> octets) {
     const std::size_t taken = std::min(octets.size(), transmitter_octets - waiting_.size());
@@ -39,7 +39,8 @@ std::span<const std::uint8_t> UhfLink::cycle(const Surroundings& at) {
     arrived_.clear();
     credit_octets_ += radio_.uhf_rate_bps / 8.0 * seconds_per_tick;
     const auto leaving = static_cast<std::ptrdiff_t>(std::min(credit_octets_, static_cast<double>(waiting_.size())));
-    credit_octets_ = static_cast<std::size_t>(leaving) == waiting_.size() ? 0.0 : credit_octets_ - static_cast<double>(leaving);
+    credit_octets_ =
+        static_cast<std::size_t>(leaving) == waiting_.size() ? 0.0 : credit_octets_ - static_cast<double>(leaving);
     if (up_)
         arrived_.assign(waiting_.begin(), waiting_.begin() + leaving);
     else
@@ -48,4 +49,4 @@ std::span<const std::uint8_t> UhfLink::cycle(const Surroundings& at) {
     return arrived_;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -8,12 +8,12 @@
 
 namespace aeolis::simulation {
 
-/// The vehicle's UHF transmitter while it lands: octets leave it at the link's rate. What leaves it in plasma, or while its
-/// antenna is changed, nobody hears. It knows nothing of frames, and nothing of who hears it (orbiter_pass.hpp).
+/// The vehicle's UHF transmitter while it lands: octets leave it at the link's rate. What leaves it in plasma, or while
+/// its antenna is changed, nobody hears. It knows nothing of frames, and nothing of who hears it (orbiter_pass.hpp).
 ///
 /// Memory   ours: it holds 64 KiB that wait; what finds no room is lost, and counted
-/// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end speed
-/// Left out: antenna patterns
+/// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end
+/// speed Left out: antenna patterns
 class UhfLink {
   public:
     /// What the link sees of the vehicle in a cycle.
@@ -21,8 +21,8 @@ class UhfLink {
         double e_s = 0.0;
         double altitude_m = 0.0;
         double speed_mps = 0.0;
-        bool transmitter_on = false; ///< and an antenna selected
-        bool parachute_antenna = false; ///< else that of entry
+        bool transmitter_on = false;     ///< and an antenna selected
+        bool parachute_antenna = false;  ///< else that of entry
     };
 
     explicit UhfLink(const Radio& radio) : radio_(radio) {}
@@ -34,8 +34,8 @@ class UhfLink {
     std::span<const std::uint8_t> cycle(const Surroundings& at);
 
     bool up() const { return up_; }
-    const char* reason() const { return reason_; } ///< static text
-    std::uint64_t lost_octets() const { return lost_octets_; } ///< for want of room, or while the link was down
+    const char* reason() const { return reason_; }              ///< static text
+    std::uint64_t lost_octets() const { return lost_octets_; }  ///< for want of room, or while the link was down
 
   private:
     const char* why_down(const Surroundings& at);
@@ -51,4 +51,4 @@ class UhfLink {
     std::uint64_t lost_octets_ = 0;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -5,14 +5,14 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double half_power_off_best_rad = 60.0 * degree_rad; // ours
-constexpr double least_gain = 0.01;                           // ours: what leaks to the sides
+constexpr double half_power_off_best_rad = 60.0 * degree_rad;  // ours
+constexpr double least_gain = 0.01;                            // ours: what leaks to the sides
 
 double best_rad(XBandAntenna antenna) {
-    return antenna == XBandAntenna::entry ? 0.0 : 70.0 * degree_rad; // ours
+    return antenna == XBandAntenna::entry ? 0.0 : 70.0 * degree_rad;  // ours
 }
 
-} // namespace
+}  // namespace
 
 double x_band_gain(XBandAntenna antenna, const Vector3& earth_B) {
     const double from_axis_rad = std::acos(std::clamp(-earth_B.z(), -1.0, 1.0));
@@ -20,4 +20,4 @@ double x_band_gain(XBandAntenna antenna, const Vector3& earth_B) {
     return std::max(least_gain, std::exp2(-off_best * off_best));
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -17,4 +17,4 @@ enum class XBandAntenna : std::uint8_t { entry, parachute };
 /// Power towards Earth relative to the antenna's best direction, as a ratio, 0.01 … 1. `earth_B`: unit vector, in B.
 double x_band_gain(XBandAntenna antenna, const Vector3& earth_B);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

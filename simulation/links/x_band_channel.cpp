@@ -6,12 +6,13 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double channel_step_s = 1.0 / 128.0; // ours: Doppler bends by 1e-4 cycles of the carrier within, at 1000 Hz/s²
+constexpr double channel_step_s =
+    1.0 / 128.0;  // ours: Doppler bends by 1e-4 cycles of the carrier within, at 1000 Hz/s²
 
-} // namespace
+}  // namespace
 
-XBandChannel::XBandChannel(const MfskWaveform& waveform, XBandPath path, std::vector<SentTone> tones, std::uint64_t seed,
-                           std::uint64_t case_number)
+XBandChannel::XBandChannel(const MfskWaveform& waveform, XBandPath path, std::vector<SentTone> tones,
+                           std::uint64_t seed, std::uint64_t case_number)
     : path_(std::move(path)), tones_(std::move(tones)), symbol_s_(waveform.symbol_s),
       sampler_(waveform, path_.rate_hz, seed, case_number),
       step_samples_(std::max(1, static_cast<int>(path_.rate_hz * channel_step_s))),
@@ -44,8 +45,7 @@ int XBandChannel::alike() const {
 void XBandChannel::next(std::span<std::complex<float>> samples) {
     while (!samples.empty()) {
         if (step_left_ == 0) begin_step();
-        while (tone_ < tones_.size() && time_s() >= tones_[tone_].start_s + symbol_s_)
-            ++tone_;
+        while (tone_ < tones_.size() && time_s() >= tones_[tone_].start_s + symbol_s_) ++tone_;
         const bool sending = tone_ < tones_.size() && time_s() >= tones_[tone_].start_s;
         const auto now = std::min(samples.size(), static_cast<std::size_t>(alike()));
         if (sending)
@@ -58,4 +58,4 @@ void XBandChannel::next(std::span<std::complex<float>> samples) {
     }
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

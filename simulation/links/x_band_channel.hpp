@@ -23,8 +23,8 @@ struct XBandPath {
 
 /// The samples (x_band_sampler.hpp) of a path and tones that are known from the start.
 ///
-/// In      tones in the order of their starts, each a symbol long and none before the last has ended; between them carrier
-/// Out     samples, as many as asked for at a time; the same whatever the portions
+/// In      tones in the order of their starts, each a symbol long and none before the last has ended; between them
+/// carrier Out     samples, as many as asked for at a time; the same whatever the portions
 class XBandChannel {
   public:
     XBandChannel(const MfskWaveform& waveform, XBandPath path, std::vector<SentTone> tones, std::uint64_t seed,
@@ -35,7 +35,9 @@ class XBandChannel {
   private:
     /// Over a step Doppler is linear and gain constant.
     void begin_step();
-    double time_s() const { return path_.start_s + static_cast<double>(sample_) / path_.rate_hz; } ///< of the next sample
+    double time_s() const {
+        return path_.start_s + static_cast<double>(sample_) / path_.rate_hz;
+    }  ///< of the next sample
     /// Samples from the next one that are alike: of one tone, or of none.
     int alike() const;
 
@@ -43,11 +45,11 @@ class XBandChannel {
     std::vector<SentTone> tones_;
     double symbol_s_;
     XBandSampler sampler_;
-    std::size_t tone_ = 0; ///< the one that is or will be sent
+    std::size_t tone_ = 0;  ///< the one that is or will be sent
 
     std::int64_t sample_ = 0;
     int step_left_ = 0, step_samples_;
     double step_end_residual_hz_, step_end_doppler_hz_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -7,12 +7,12 @@ namespace aeolis::simulation {
 namespace {
 
 constexpr int symbol_ticks = 640;
-constexpr double symbol_s = 10.0;                          // [facts]
-constexpr double modulation_index_rad = 32.0 * degree_rad; // as mfsk.csv says; a test holds the two together
-constexpr double carrier_lock_dbhz = 15.8;                 // ours: what the receiver's search over 4 s needs
-constexpr double least_likelihood = 0.9;                   // ours
+constexpr double symbol_s = 10.0;                           // [facts]
+constexpr double modulation_index_rad = 32.0 * degree_rad;  // as mfsk.csv says; a test holds the two together
+constexpr double carrier_lock_dbhz = 15.8;                  // ours: what the receiver's search over 4 s needs
+constexpr double least_likelihood = 0.9;                    // ours
 
-} // namespace
+}  // namespace
 
 double XBandLink::carrier_power_db() {
     return 20.0 * std::log10(std::cos(modulation_index_rad));
@@ -63,4 +63,4 @@ ReceivedTone XBandLink::decide(bool broken, const Surroundings& at) {
     return received;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -10,20 +10,20 @@
 
 namespace aeolis::simulation {
 
-/// The front end of a ground station: complex baseband samples of carrier and tone, phase-continuous, with white noise of
-/// power 1 a sample (N0 = 1/rate).
+/// The front end of a ground station: complex baseband samples of carrier and tone, phase-continuous, with white noise
+/// of power 1 a sample (N0 = 1/rate).
 ///
-/// In      stretches, in each of which Doppler is linear and gain constant        Out   their samples, in portions of any size
-/// Memory  one modulated tone's table; nothing grows
+/// In      stretches, in each of which Doppler is linear and gain constant        Out   their samples, in portions of
+/// any size Memory  one modulated tone's table; nothing grows
 class XBandSampler {
   public:
     XBandSampler(const MfskWaveform& waveform, double rate_hz, std::uint64_t seed, std::uint64_t case_number);
 
     struct Stretch {
         int samples = 0;
-        double residual_from_hz = 0.0, residual_to_hz = 0.0; ///< of the carrier less the predict, at its ends
-        double doppler_hz = 0.0;                             ///< mean; motion scales the subcarrier with it
-        std::optional<double> total_c_n0_dbhz;               ///< none: nothing but noise
+        double residual_from_hz = 0.0, residual_to_hz = 0.0;  ///< of the carrier less the predict, at its ends
+        double doppler_hz = 0.0;                              ///< mean; motion scales the subcarrier with it
+        std::optional<double> total_c_n0_dbhz;                ///< none: nothing but noise
     };
     void begin(const Stretch& stretch);
 
@@ -37,8 +37,8 @@ class XBandSampler {
     std::optional<std::uint8_t> modulated_for_;
     std::optional<ModulatedTone> modulated_;
     std::complex<double> carrier_{1.0, 0.0}, turn_, turn_of_turn_;
-    double lead_s_ = 0.0, lead_rate_ = 0.0; ///< the subcarrier's time runs ahead by this: ∫ Doppler / carrier
+    double lead_s_ = 0.0, lead_rate_ = 0.0;  ///< the subcarrier's time runs ahead by this: ∫ Doppler / carrier
     float amplitude_ = 0.0F;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -8,7 +8,7 @@ namespace aeolis::simulation {
 namespace {
 
 struct Row {
-    double altitude_m; ///< above the landing radius
+    double altitude_m;  ///< above the landing radius
     double temperature_K;
     double density_kgm3;
 };
@@ -60,7 +60,7 @@ constexpr double sound_m2ps2K = 252.0;
 constexpr double bottom_m = -2000.0;
 constexpr double spacing_m = 1000.0;
 constexpr double top_m = 250000.0;
-constexpr double wave_length_m = 30000.0; // ours
+constexpr double wave_length_m = 30000.0;  // ours
 
 double scale_at(std::span<const DensityScale> scales, double altitude_m) {
     if (scales.empty()) return 1.0;
@@ -76,15 +76,14 @@ double scale_at(std::span<const DensityScale> scales, double altitude_m) {
     return scales.back().scale;
 }
 
-} // namespace
+}  // namespace
 
 Atmosphere::Atmosphere(std::span<const DensityScale> scales) {
     static_assert(gale.size() == table_rows);
     for (std::size_t i = 0; i < rows; ++i) {
         const double altitude_m = bottom_m + spacing_m * static_cast<double>(i);
         std::size_t above = 1;
-        while (above + 1 < gale.size() && altitude_m > gale[above].altitude_m)
-            ++above;
+        while (above + 1 < gale.size() && altitude_m > gale[above].altitude_m) ++above;
         const Row& low = gale[above - 1];
         const Row& high = gale[above];
         const double part = (altitude_m - low.altitude_m) / (high.altitude_m - low.altitude_m);
@@ -120,4 +119,4 @@ double Atmosphere::departure(double altitude_m) const {
     return std::max(0.2, 1.0 + departure_fraction_ + wave);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -23,14 +23,14 @@ struct Air {
 /// height.
 class Atmosphere {
   public:
-    explicit Atmosphere(std::span<const DensityScale> scales); ///< without departure
+    explicit Atmosphere(std::span<const DensityScale> scales);  ///< without departure
     Atmosphere(std::span<const DensityScale> scales, double density_fraction, Random random);
 
     Air at(double altitude_m) const;
 
   private:
     static constexpr std::size_t table_rows = 35;
-    static constexpr std::size_t rows = 257; ///< scale and table together, every kilometre from −2 km
+    static constexpr std::size_t rows = 257;  ///< scale and table together, every kilometre from −2 km
     double departure(double altitude_m) const;
 
     std::array<double, rows> log_density_{};
@@ -38,4 +38,4 @@ class Atmosphere {
     double departure_fraction_ = 0.0, wave_fraction_ = 0.0, wave_phase_rad_ = 0.0;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

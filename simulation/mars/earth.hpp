@@ -13,11 +13,11 @@ Vector3 earth_direction_M(double e_s);
 double earth_elevation_rad(const Vector3& p_MoB_M, double e_s);
 
 /// Whether Earth stands above the terrain: above the limb of highlands 6.13 km over the landing radius, which lie where
-/// Earth sets; who is lower than they are sees it only above the horizontal. The height is ours: with it Earth sets at the
-/// published −2.0° for a vehicle at 8.2 km. [od137]
+/// Earth sets; who is lower than they are sees it only above the horizontal. The height is ours: with it Earth sets at
+/// the published −2.0° for a vehicle at 8.2 km. [od137]
 bool earth_is_up(const Vector3& p_MoB_M, double e_s, double landing_radius_m);
 
 /// Speed at which the vehicle's distance from Earth grows. [m/s]
 double earth_range_rate_mps(const Vector3& p_MoB_M, const Vector3& v_MB_M, double e_s);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

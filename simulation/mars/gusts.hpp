@@ -11,9 +11,9 @@ namespace aeolis::simulation {
 ///
 ///   u ← a u + σ √(1 − a²) n,   a = exp(−V Δt / L),   n normal
 ///
-/// so that the deviation does not depend on the step. All numbers are ours: σ is the scenario's at the ground and fades to
-/// nothing at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first part of what is known of
-/// gusts near Earth's ground (Dryden) has this form.
+/// so that the deviation does not depend on the step. All numbers are ours: σ is the scenario's at the ground and fades
+/// to nothing at 5 km, half of it vertically; L is half the height, within 25 … 500 m. The first part of what is known
+/// of gusts near Earth's ground (Dryden) has this form.
 class Gusts {
   public:
     Gusts(double deviation_mps, Random random) : deviation_mps_(deviation_mps), random_(random) {}
@@ -30,7 +30,7 @@ class Gusts {
     double deviation_mps_;
     Random random_;
     bool begun_ = false;
-    std::array<double, 3> parts_{}; ///< east, north, up, of deviation 1
+    std::array<double, 3> parts_{};  ///< east, north, up, of deviation 1
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

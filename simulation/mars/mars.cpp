@@ -45,4 +45,4 @@ Horizon horizon(const Vector3& p) {
     return at;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

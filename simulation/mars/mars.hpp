@@ -5,10 +5,10 @@
 // Mars as a body: gravity, spin, places on it. Everything in frame M, fixed to the rotating planet.
 namespace aeolis::simulation {
 
-inline constexpr double mars_gm_m3ps2 = 42828.3737e9;         // [konopliv-2016]
-inline constexpr double mars_j2 = 1.9566e-3;                  // [konopliv-2016]
-inline constexpr double mars_equatorial_radius_m = 3396190.0; // [iau-mars]
-inline constexpr double mars_spin_rps = 7.088218e-5;          // [iau-mars]
+inline constexpr double mars_gm_m3ps2 = 42828.3737e9;          // [konopliv-2016]
+inline constexpr double mars_j2 = 1.9566e-3;                   // [konopliv-2016]
+inline constexpr double mars_equatorial_radius_m = 3396190.0;  // [iau-mars]
+inline constexpr double mars_spin_rps = 7.088218e-5;           // [iau-mars]
 
 /// Gravitational acceleration: point mass and oblateness (J2). Leaves out higher harmonics, about 2e-3 m/s² at the
 /// surface. `p_MoB_M` [m], norm above 3.0e6. Source: [konopliv-2016] constants, [vallado-2013] form.
@@ -32,4 +32,4 @@ struct Horizon {
 };
 Horizon horizon(const Vector3& p_MoB_M);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -44,4 +44,4 @@ PointMass runge_kutta_step(const PointMass& at, double step_s, SpecificForce&& s
 /// a millimetre over an hour on an approach orbit.
 PointMass coast(PointMass from, double duration_s);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

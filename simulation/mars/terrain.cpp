@@ -6,9 +6,10 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double slope_reach_m = 30000.0; // ours: the ground is level beyond, else a slope at the site would be a mountain at entry
+constexpr double slope_reach_m =
+    30000.0;  // ours: the ground is level beyond, else a slope at the site would be a mountain at entry
 
-} // namespace
+}  // namespace
 
 Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(scenario.target.radius_m) {
     const Dispersions& errors = scenario.dispersions;
@@ -18,14 +19,15 @@ Terrain::Terrain(const Scenario& scenario, Random random) : landing_radius_m_(sc
     const double rise_error = std::tan(errors.terrain_slope_deg * degree_rad);
     const double east = rise * std::sin(azimuth_rad) + rise_error * random.normal();
     const double north = rise * std::cos(azimuth_rad) + rise_error * random.normal();
-    const Horizon target = horizon(
-        place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
+    const Horizon target =
+        horizon(place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
     rise_M_ = east * target.east + north * target.north;
 }
 
 double Terrain::radius_m(const Vector3& p) const {
     const double level_beyond_m = slope_reach_m * rise_M_.norm();
-    return landing_radius_m_ + height_m_ + std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
+    return landing_radius_m_ + height_m_ +
+           std::clamp(landing_radius_m_ * p.dot(rise_M_) / p.norm(), -level_beyond_m, level_beyond_m);
 }
 
 Vector3 Terrain::normal(const Vector3& p) const {
@@ -47,4 +49,4 @@ Terrain::Meeting Terrain::meet(const Vector3& p, const Vector3& direction_M) con
     return {true, c / (-half_b + std::sqrt(discriminant)), -direction_M.dot(upright)};
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -6,10 +6,12 @@
 
 namespace aeolis::simulation {
 
-/// The ground around the target: the sphere of the landing radius, raised by a height and tilted by a slope that goes on evenly
-/// in one direction. Without either it is that sphere. Rocks, craters and all of the real ground are left out.
+/// The ground around the target: the sphere of the landing radius, raised by a height and tilted by a slope that goes
+/// on evenly in one direction. Without either it is that sphere. Rocks, craters and all of the real ground are left
+/// out.
 ///
-/// Frame M        Valid within 30 km of the target: there a tilted plane and a tilted sphere are alike to the slope's percent
+/// Frame M        Valid within 30 km of the target: there a tilted plane and a tilted sphere are alike to the slope's
+/// percent
 class Terrain {
   public:
     /// `random` draws the case's own height and rise.
@@ -24,19 +26,19 @@ class Terrain {
     /// Unit, away from the ground, there.
     Vector3 normal(const Vector3& p_MoB_M) const;
 
-    /// Where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground: the ground below the start, as the
-    /// sphere that touches it there.
+    /// Where a ray from `p_MoB_M` along the unit vector `direction_M` meets the ground: the ground below the start, as
+    /// the sphere that touches it there.
     struct Meeting {
         bool meets = false;
         double range_m = 0.0;
-        double incidence_cosine = 0.0; ///< between the ray, turned around, and the normal
+        double incidence_cosine = 0.0;  ///< between the ray, turned around, and the normal
     };
     Meeting meet(const Vector3& p_MoB_M, const Vector3& direction_M) const;
 
   private:
     double landing_radius_m_;
     double height_m_;
-    Vector3 rise_M_; ///< horizontal at the target, towards uphill, as long as the tangent of the slope
+    Vector3 rise_M_;  ///< horizontal at the target, towards uphill, as long as the tangent of the slope
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -7,7 +7,7 @@ constexpr double waves_top_m = 5000.0;
 constexpr double wave_east_length_m = 410.0;
 constexpr double wave_north_length_m = 530.0;
 
-} // namespace
+}  // namespace
 
 Wind::Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts)
     : east_mps_(steady_east_mps + deviation_mps * random.normal()),
@@ -30,4 +30,4 @@ Vector3 Wind::at(const Vector3& p, double altitude_m) const {
     return gusty ? Vector3{steady + gusts_.at(altitude_m, local)} : steady;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

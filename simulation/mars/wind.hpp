@@ -7,8 +7,8 @@
 namespace aeolis::simulation {
 
 /// Wind over Gale. No measured winds are published for the landing, so all of it is ours: the scenario's steady wind, a
-/// case's own constant part, below 5 km two waves over height half as strong, for shear; these are horizontal everywhere. And
-/// gusts, which change as the vehicle flies on.
+/// case's own constant part, below 5 km two waves over height half as strong, for shear; these are horizontal
+/// everywhere. And gusts, which change as the vehicle flies on.
 class Wind {
   public:
     Wind(double steady_east_mps, double steady_north_mps, double deviation_mps, Random random, const Gusts& gusts);
@@ -18,8 +18,7 @@ class Wind {
 
     /// The vehicle, there with that velocity, flies on for `step_s`.
     void advance(const Vector3& p_MoB_M, const Vector3& v_MB_M, double altitude_m, double step_s) {
-        if (gusts_.blow_at(altitude_m))
-            gusts_.advance(altitude_m, (v_MB_M - at(p_MoB_M, altitude_m)).norm(), step_s);
+        if (gusts_.blow_at(altitude_m)) gusts_.advance(altitude_m, (v_MB_M - at(p_MoB_M, altitude_m)).norm(), step_s);
     }
 
   private:
@@ -28,4 +27,4 @@ class Wind {
     Gusts gusts_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -5,9 +5,9 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double reading_s = 1.0 / 200.0; // [facts]
+constexpr double reading_s = 1.0 / 200.0;  // [facts]
 
-} // namespace
+}  // namespace
 
 Imu::Imu(const Dispersions& dispersions, Random random, Random mounting)
     : accelerometer_bias_mps2_(dispersions.imu_bias_mps2 * vector3(random.normal3())),
@@ -52,4 +52,4 @@ void Imu::begin_reading() {
     turned_.setIdentity();
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

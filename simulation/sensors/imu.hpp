@@ -9,9 +9,9 @@ namespace aeolis::simulation {
 
 /// The inertial measurement unit: integrates specific force and inertial rate in B, one reading each 5 ms.
 ///
-/// Each axis of either kind has a constant bias, a constant scale error and noise from reading to reading, of the scenario's
-/// deviations. Its axes are turned away from those of B by a small rotation, the same for all its sensors, of the scenario's
-/// deviation about each axis. It sits at the centre of mass.
+/// Each axis of either kind has a constant bias, a constant scale error and noise from reading to reading, of the
+/// scenario's deviations. Its axes are turned away from those of B by a small rotation, the same for all its sensors,
+/// of the scenario's deviation about each axis. It sits at the centre of mass.
 class Imu {
   public:
     /// `mounting` draws how it is turned, and the gyros' scale.
@@ -33,11 +33,11 @@ class Imu {
   private:
     Vector3 accelerometer_bias_mps2_, accelerometer_scale_, gyro_bias_rps_;
     double velocity_noise_mps_, angle_noise_rad_;
-    Quaternion q_SensorsB_; ///< turns components in B into those along the sensors' axes
+    Quaternion q_SensorsB_;  ///< turns components in B into those along the sensors' axes
     Vector3 gyro_scale_;
     Random noise_;
     Vector3 delta_v_mps_ = Vector3::Zero();
-    Quaternion turned_ = Quaternion::Identity(); ///< since the last reading, relative to inertial space
+    Quaternion turned_ = Quaternion::Identity();  ///< since the last reading, relative to inertial space
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

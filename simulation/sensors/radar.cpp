@@ -6,26 +6,25 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double least_range_m = 4.0;                                                        // ours
-constexpr std::array<double, Radar::beams> largest_range_m{12e3, 12e3, 12e3, 12e3, 9e3, 9e3}; // ours
-constexpr double largest_incidence_rad = 65.0 * degree_rad;                                  // ours
-constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 50.0, 50.0};  // [facts]
-constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0}; // ours
-constexpr double heatshield_radius_m = 2.25;                                                 // [facts]
-constexpr double half_beam_rad = 1.5 * degree_rad;                                           // [facts]
-constexpr double hides_within_m = 90.0;                                                      // ours: see the header
-constexpr std::int64_t period_grid = 80;                                                     // of 1/1600 s: 20 Hz
+constexpr double least_range_m = 4.0;                                                          // ours
+constexpr std::array<double, Radar::beams> largest_range_m{12e3, 12e3, 12e3, 12e3, 9e3, 9e3};  // ours
+constexpr double largest_incidence_rad = 65.0 * degree_rad;                                    // ours
+constexpr std::array<double, Radar::beams> off_axis_deg{0.0, 20.0, 20.0, 20.0, 50.0, 50.0};    // [facts]
+constexpr std::array<double, Radar::beams> azimuth_deg{0.0, 0.0, 120.0, 240.0, 60.0, 240.0};   // ours
+constexpr double heatshield_radius_m = 2.25;                                                   // [facts]
+constexpr double half_beam_rad = 1.5 * degree_rad;                                             // [facts]
+constexpr double hides_within_m = 90.0;                                                        // ours: see the header
+constexpr std::int64_t period_grid = 80;                                                       // of 1/1600 s: 20 Hz
 constexpr std::array<std::int64_t, Radar::beams> phase_grid{0, 13, 27, 40, 53, 67};
 
-} // namespace
+}  // namespace
 
 Radar::Radar(const Dispersions& dispersions, Random random, Random dropouts)
     : range_scale_(1.0 + dispersions.radar_range_fraction * random.normal()),
       range_noise_fraction_(0.5 * dispersions.radar_range_fraction),
       velocity_noise_mps_(0.5 * dispersions.radar_velocity_mps), dropout_fraction_(dispersions.radar_dropout_fraction),
       noise_(random), dropouts_(dropouts) {
-    for (double& bias_mps : velocity_bias_mps_)
-        bias_mps = dispersions.radar_velocity_mps * noise_.normal();
+    for (double& bias_mps : velocity_bias_mps_) bias_mps = dispersions.radar_velocity_mps * noise_.normal();
 }
 
 std::array<double, 3> Radar::direction_B(std::uint32_t beam) {
@@ -57,7 +56,8 @@ flight::RadarBeam Radar::measure(std::uint32_t beam, const PointMass& at, const 
                     truth.incidence_cosine >= std::cos(largest_incidence_rad);
     if (!reading.valid) return reading;
     reading.range_m = truth.range_m * (range_scale_ + range_noise_fraction_ * range_noise);
-    reading.range_rate_mps = -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;
+    reading.range_rate_mps =
+        -at.v_MB_M.dot(direction_M) + velocity_bias_mps_[beam] + velocity_noise_mps_ * velocity_noise;
     return reading;
 }
 
@@ -66,4 +66,4 @@ bool Radar::due(std::uint32_t beam, std::int64_t after, std::int64_t until) {
     return turns(until) > turns(after);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

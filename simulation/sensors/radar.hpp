@@ -13,11 +13,11 @@ namespace aeolis::simulation {
 
 /// The landing radar: six beams in turn, each at 20 Hz.
 ///
-/// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts] Ours: their azimuths (0°, 120°, 240°; 60°, 240°), ranges of
-/// 4 m to 12, 12 and 9 km (the flatter, the weaker the echo), a largest angle of 65° between beam and the ground's normal, and
-/// that a reading is as of its tick. A case has one range scale error and each beam its own velocity bias, of the scenario's
-/// deviations; half as much is noise on each reading, and a part of them fails. The hung rover and the plume are not
-/// seen.
+/// Beam 0 along z of B, 1…3 at 20°, 4…5 at 50° from it. [facts] Ours: their azimuths (0°, 120°, 240°; 60°, 240°),
+/// ranges of 4 m to 12, 12 and 9 km (the flatter, the weaker the echo), a largest angle of 65° between beam and the
+/// ground's normal, and that a reading is as of its tick. A case has one range scale error and each beam its own
+/// velocity bias, of the scenario's deviations; half as much is noise on each reading, and a part of them fails. The
+/// hung rover and the plume are not seen.
 class Radar {
   public:
     /// `dropouts` draws which readings fail.
@@ -26,8 +26,8 @@ class Radar {
     static constexpr std::uint32_t beams = 6;
     static std::array<double, 3> direction_B(std::uint32_t beam);
 
-    /// Whether the heatshield, which is `to_heatshield_M` away, stands in a beam: nearer than 90 m, where it fills the 3° of
-    /// a beam [facts], and in any part of it. Ours: farther off the ground's echo is the stronger.
+    /// Whether the heatshield, which is `to_heatshield_M` away, stands in a beam: nearer than 90 m, where it fills the
+    /// 3° of a beam [facts], and in any part of it. Ours: farther off the ground's echo is the stronger.
     static bool hides(const Vector3& to_heatshield_M, const Vector3& direction_M);
 
     /// The reading of one beam now.
@@ -43,4 +43,4 @@ class Radar {
     Random noise_, dropouts_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

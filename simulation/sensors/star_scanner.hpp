@@ -25,4 +25,4 @@ class StarScanner {
     Quaternion error_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

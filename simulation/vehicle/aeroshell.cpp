@@ -13,7 +13,7 @@ constexpr std::array<double, 6> table_angles_deg{0.0, 2.0, 4.0, 6.0, 11.0, 16.0}
 
 struct Row {
     double mach;
-    std::array<double, 6> lift; ///< magnitude; the source gives it a sign by its axes
+    std::array<double, 6> lift;  ///< magnitude; the source gives it a sign by its axes
     std::array<double, 6> drag;
 };
 
@@ -75,9 +75,10 @@ constexpr std::array<TrimRow, 12> trim{{
     {27.0, 15.5},
 }};
 
-constexpr double lift_slope_beyond_table = 0.6; // ours
-constexpr double lift_of_flight = 1.04;         // ours: what the published trajectory flew of the table's lift-to-drag, 1.01 … 1.07
-constexpr double largest_lift_angle_deg = 30.0; // ours: beyond it lift fades to nothing at 90°
+constexpr double lift_slope_beyond_table = 0.6;  // ours
+constexpr double lift_of_flight =
+    1.04;  // ours: what the published trajectory flew of the table's lift-to-drag, 1.01 … 1.07
+constexpr double largest_lift_angle_deg = 30.0;  // ours: beyond it lift fades to nothing at 90°
 
 struct Place {
     std::size_t below;
@@ -98,14 +99,13 @@ Place place_of(const Rows& rows, double mach) {
 
 double by_angle(const std::array<double, 6>& values, double angle_deg, double slope_beyond) {
     std::size_t below = 0;
-    while (below + 2 < table_angles_deg.size() && angle_deg > table_angles_deg[below + 1])
-        ++below;
+    while (below + 2 < table_angles_deg.size() && angle_deg > table_angles_deg[below + 1]) ++below;
     const double slope = (values[below + 1] - values[below]) / (table_angles_deg[below + 1] - table_angles_deg[below]);
     if (angle_deg <= table_angles_deg.back()) return values[below] + slope * (angle_deg - table_angles_deg[below]);
     return values.back() + slope_beyond * slope * (angle_deg - table_angles_deg.back());
 }
 
-} // namespace
+}  // namespace
 
 AeroCoefficients aeroshell_coefficients(double mach, double angle_of_attack_rad) {
     const double angle_deg = std::abs(angle_of_attack_rad) / degree_rad;
@@ -139,4 +139,4 @@ Trim trim_at(double mach) {
     return {sine, axial * offset_m / (aeroshell_diameter_m * sine)};
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

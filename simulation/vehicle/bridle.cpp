@@ -9,12 +9,12 @@ namespace {
 constexpr double ramp_s = 0.6;
 constexpr double steady_mps = Bridle::length_m / (Bridle::pay_out_s - ramp_s);
 constexpr double ramp_mps2 = steady_mps / ramp_s;
-constexpr double stowed_m = 0.2; // from the confluence to the rover, with its weight on it
-constexpr double bridle_weight_mps2 = 3.71; // [facts]
+constexpr double stowed_m = 0.2;             // from the confluence to the rover, with its weight on it
+constexpr double bridle_weight_mps2 = 3.71;  // [facts]
 constexpr double stretch_by_weight_m = 0.015;
 constexpr double damping_ratio = 0.3;
 
-} // namespace
+}  // namespace
 
 void Bridle::start(double now_s) {
     if (started_) return;
@@ -49,4 +49,4 @@ Vector3 Bridle::pull_N(double now_s, double rover_kg, const Vector3& offset, con
     return -std::max(0.0, pull_N) * along;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

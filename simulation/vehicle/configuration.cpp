@@ -76,4 +76,4 @@ double Configuration::offset() const {
     return (1.0 - 0.5 * cruise_balances) * entry_balance_pairs / 3.0;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

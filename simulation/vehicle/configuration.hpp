@@ -5,8 +5,8 @@
 
 namespace aeolis::simulation {
 
-/// What is still attached, and so what all that flies on weighs, and where its centre of mass is. [facts] for the masses, by
-/// the scenario. Thrusters and engines drink from the same tanks, which lie about the stage's centre.
+/// What is still attached, and so what all that flies on weighs, and where its centre of mass is. [facts] for the
+/// masses, by the scenario. Thrusters and engines drink from the same tanks, which lie about the stage's centre.
 ///
 /// Not modelled: the pack of the mortar.
 class Configuration {
@@ -25,9 +25,9 @@ class Configuration {
     int cruise_balances = 2;
     int entry_balance_pairs = 3;
     bool heatshield = true;
-    bool backshell = true;      ///< with the parachute in it or on it
-    bool rover_on_stage = true; ///< else it hangs on the bridle
-    bool bridle = true;         ///< else cut
+    bool backshell = true;       ///< with the parachute in it or on it
+    bool rover_on_stage = true;  ///< else it hangs on the bridle
+    bool bridle = true;          ///< else cut
 
     double propellant_kg() const { return propellant_kg_; }
     void burn(double propellant_kg);
@@ -41,7 +41,8 @@ class Configuration {
     double total_kg() const;
     /// Centre of mass of the rigid body, from the descent stage's own. [m] in B
     Vector3 centre_B_m() const;
-    /// The rigid body's own, about its centre of mass: without what hangs on the bridle. Radii of gyration by what is attached.
+    /// The rigid body's own, about its centre of mass: without what hangs on the bridle. Radii of gyration by what is
+    /// attached.
     double rigid_kg() const { return total_kg() - (bridle && !rover_on_stage ? masses_.rover_kg : 0.0); }
     Inertia inertia() const;
     /// How much of the entry vehicle's offset of the centre of mass is in force, 0 … 1: the cruise balance masses keep
@@ -55,4 +56,4 @@ class Configuration {
     double propellant_kg_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

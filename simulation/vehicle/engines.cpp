@@ -16,7 +16,7 @@ constexpr double least_impulse_s = 204.0;
 constexpr double most_impulse_s = 223.0;
 constexpr auto engine_mounts = flight::descent_engines();
 
-} // namespace
+}  // namespace
 
 void Engines::open_valves(double now_s) {
     if (valves_open_) return;
@@ -55,4 +55,4 @@ double Engines::advance(double now_s, double step_s, double propellant_left_kg) 
     return burnt_kg;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -25,7 +25,7 @@ class Engines {
     double advance(double now_s, double step_s, double propellant_left_kg);
 
     bool running() const { return running_; }
-    double thrust_N() const { return thrust_sum_N_; } ///< of all, along each one's own direction
+    double thrust_N() const { return thrust_sum_N_; }  ///< of all, along each one's own direction
     Vector3 force_B_N() const { return force_B_N_; }
     Vector3 torque_B_Nm() const { return torque_B_Nm_; }
 
@@ -41,4 +41,4 @@ class Engines {
     Vector3 force_B_N_ = Vector3::Zero(), torque_B_Nm_ = Vector3::Zero();
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -8,8 +8,8 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double overshoot = 0.2;          // ours
-constexpr double overshoot_decay_s = 0.25; // ours
+constexpr double overshoot = 0.2;           // ours
+constexpr double overshoot_decay_s = 0.25;  // ours
 constexpr double plane_turns_rps = 4.5 * 0.017453292519943295;
 
 struct MachRow {
@@ -19,7 +19,7 @@ struct MachRow {
 constexpr std::array<MachRow, 8> factors{
     {{0.7, 1.0}, {0.85, 0.99}, {1.0, 0.92}, {1.1, 1.13}, {1.25, 1.24}, {1.6, 1.27}, {1.9, 1.22}, {2.5, 1.05}}};
 
-} // namespace
+}  // namespace
 
 double parachute_inflation(double since_mortar_s) {
     if (since_mortar_s <= line_stretch_s) return 0.0;
@@ -53,4 +53,4 @@ double parachute_mach_factor(double mach) {
     return factors.back().factor;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

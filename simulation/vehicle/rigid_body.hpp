@@ -6,12 +6,13 @@
 //
 //   ṗ = v    v̇ = F/m + gravity − 2 Ω×v − Ω×(Ω×p)    q̇_MB = ½ (q_MB ω − Ω q_MB)    I ω̇ = T − ω × Iω
 //
-// Frames   p, v, F in M, relative to rotating Mars; ω (relative to inertial space), T and I in B, about the centre of mass
+// Frames   p, v, F in M, relative to rotating Mars; ω (relative to inertial space), T and I in B, about the centre of
+// mass
 namespace aeolis::simulation {
 
 struct RigidBody {
-    Vector3 p_MoB_M = Vector3::Zero(); ///< [m]
-    Vector3 v_MB_M = Vector3::Zero();  ///< [m/s]
+    Vector3 p_MoB_M = Vector3::Zero();  ///< [m]
+    Vector3 v_MB_M = Vector3::Zero();   ///< [m/s]
     Quaternion q_MB = Quaternion::Identity();
     Vector3 rate_B_rps = Vector3::Zero();
 };
@@ -74,8 +75,8 @@ inline RigidBodySlope mean_slope(const RigidBodySlope& k1, const RigidBodySlope&
 /// `mean_force_M`, when given, receives the mean force over the step by Simpson's rule: what an accelerometer feels.
 /// Source: [hairer-1993].
 template <typename WrenchAt>
-RigidBody runge_kutta_step(const RigidBody& at, double step_s, double mass_kg, const Inertia& inertia, WrenchAt&& wrench,
-                           Vector3* mean_force_M = nullptr) {
+RigidBody runge_kutta_step(const RigidBody& at, double step_s, double mass_kg, const Inertia& inertia,
+                           WrenchAt&& wrench, Vector3* mean_force_M = nullptr) {
     const auto slope = [&](double fraction, const RigidBody& body) {
         return slope_of(body, wrench(fraction, body), mass_kg, inertia);
     };
@@ -88,4 +89,4 @@ RigidBody runge_kutta_step(const RigidBody& at, double step_s, double mass_kg, c
     return moved(at, mean, step_s);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

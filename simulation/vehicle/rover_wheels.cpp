@@ -6,11 +6,11 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double weight_mps2 = 3.71; // [facts]
+constexpr double weight_mps2 = 3.71;  // [facts]
 constexpr double sinks_by_weight_m = 0.02;
 constexpr double friction = 0.6, full_friction_from_mps = 0.03;
 
-} // namespace
+}  // namespace
 
 Vector3 ground_reaction_N(double rover_kg, double sunk_m, const Vector3& normal, const Vector3& v) {
     if (sunk_m <= 0.0) return Vector3::Zero();
@@ -22,4 +22,4 @@ Vector3 ground_reaction_N(double rover_kg, double sunk_m, const Vector3& normal,
     return push_N * (normal - friction / std::max(slides.norm(), full_friction_from_mps) * slides);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

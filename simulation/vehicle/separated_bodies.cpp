@@ -9,7 +9,7 @@ namespace {
 
 constexpr double step_ticks = 4.0;
 
-} // namespace
+}  // namespace
 
 void SeparatedBody::release(const PointMass& at, double mass_kg, double drag_area_m2) {
     if (released_) return;
@@ -48,4 +48,4 @@ void SeparatedBody::fly(double step_s, const Atmosphere& atmosphere, const Wind&
     at_.v_MB_M.setZero();
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

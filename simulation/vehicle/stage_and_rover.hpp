@@ -3,8 +3,8 @@
 #include "simulation/mars/point_mass.hpp"
 #include "simulation/vehicle/rigid_body.hpp"
 
-// The sky crane: the descent stage, a rigid body, and the rover below it, a point that swings on the bridle. They push each
-// other by what `loads` gives them, and are flown in one step, so that momentum is kept to the integrator's order.
+// The sky crane: the descent stage, a rigid body, and the rover below it, a point that swings on the bridle. They push
+// each other by what `loads` gives them, and are flown in one step, so that momentum is kept to the integrator's order.
 namespace aeolis::simulation {
 
 struct StageAndRover {
@@ -14,7 +14,7 @@ struct StageAndRover {
 
 struct StageAndRoverLoads {
     Wrench on_stage;
-    Vector3 on_rover_M = Vector3::Zero(); ///< [N]
+    Vector3 on_rover_M = Vector3::Zero();  ///< [N]
 };
 
 /// One step of the classical fourth-order Runge–Kutta method, as of rigid_body.hpp; `loads(fraction, both)`.
@@ -45,4 +45,4 @@ StageAndRover runge_kutta_step(const StageAndRover& at, double step_s, double st
     return after(mean, step_s);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

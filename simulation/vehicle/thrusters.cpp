@@ -13,7 +13,7 @@ constexpr double valve_delay_s = 0.004;
 constexpr double specific_impulse_s = 220.0;
 constexpr auto thruster_mounts = flight::entry_thrusters();
 
-} // namespace
+}  // namespace
 
 void Thrusters::command(const flight::ThrusterCommand& command, bool enabled, double now_s) {
     for (std::size_t i = 0; i < pulses_.size(); ++i) {
@@ -35,7 +35,8 @@ Thrusters::Push Thrusters::mean(double now_s, double step_s) const {
         for (const Pulse& pulse : pulses_[i])
             open_s += std::max(0.0, std::min(pulse.until_s, now_s + step_s) - std::max(pulse.from_s, now_s));
         if (open_s == 0.0) continue;
-        const Vector3 force_B = flight::thruster_force_N * std::min(open_s / step_s, 1.0) * vector3(thruster_mounts[i].direction_B);
+        const Vector3 force_B =
+            flight::thruster_force_N * std::min(open_s / step_s, 1.0) * vector3(thruster_mounts[i].direction_B);
         push.propellant_kg += flight::thruster_force_N * open_s / (specific_impulse_s * standard_gravity_mps2);
         push.force_B += force_B;
         push.torque_B += vector3(thruster_mounts[i].position_B_m).cross(force_B);
@@ -43,4 +44,4 @@ Thrusters::Push Thrusters::mean(double now_s, double step_s) const {
     return push;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

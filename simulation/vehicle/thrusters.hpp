@@ -31,4 +31,4 @@ class Thrusters {
     double last_until_s_ = 0.0;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

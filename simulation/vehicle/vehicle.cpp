@@ -7,8 +7,8 @@
 namespace aeolis::simulation {
 namespace {
 
-constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0; // [od137] 2 rpm
-constexpr double powered_drag_area_m2 = 5.0;                     // ours: what free fall at backshell separation shows
+constexpr double spin_rps = 2.0 * 2.0 * std::numbers::pi / 60.0;  // [od137] 2 rpm
+constexpr double powered_drag_area_m2 = 5.0;                      // ours: what free fall at backshell separation shows
 constexpr double air_ends_m = 250000.0;
 
 Vector3 on_axis(const Vector3& station_B) {
@@ -19,7 +19,7 @@ double dispersed(double fraction, Random random) {
     return 1.0 + fraction * random.normal();
 }
 
-} // namespace
+}  // namespace
 
 Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
                  std::uint64_t case_number)
@@ -28,15 +28,15 @@ Vehicle::Vehicle(const Scenario& scenario, const PointMass& start, const Quatern
                                                                      Random{seed, case_number, Stream::parachute})),
       parachute_plane_rad_(scenario.dispersions.parachute_plane_deg * degree_rad *
                            Random{seed, case_number, Stream::swing}.normal()),
-      aeroshell_factors_{dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
-                         dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
+      aeroshell_factors_{
+          dispersed(scenario.dispersions.drag_fraction, Random{seed, case_number, Stream::drag}),
+          dispersed(scenario.dispersions.slow_drag_fraction, Random{seed, case_number, Stream::slow_drag})},
       atmosphere_(scenario.density_scale, scenario.dispersions.density_fraction,
                   Random{seed, case_number, Stream::density}),
       wind_(scenario.steady_wind_east_mps, scenario.steady_wind_north_mps, scenario.dispersions.wind_mps,
             Random{seed, case_number, Stream::wind},
             Gusts{scenario.dispersions.gust_mps, Random{seed, case_number, Stream::gust}}),
-      body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}},
-      configuration_(scenario),
+      body_{start.p_MoB_M, start.v_MB_M, q_MB, {0.0, 0.0, spin_rps}}, configuration_(scenario),
       thrusters_from_B_m_(on_axis(Configuration::at_entry(scenario).centre_B_m())),
       engines_from_B_m_(on_axis(Configuration::at_powered_descent(scenario).centre_B_m())) {
     configuration_.weigh(scenario.masses,
@@ -65,18 +65,12 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
     const Masses& masses = configuration_.masses();
     const Stations& stations = configuration_.stations();
     switch (pyro) {
-    case PyroId::cruise_stage_separation:
-        configuration_.cruise_stage = false;
-        break;
+    case PyroId::cruise_stage_separation: configuration_.cruise_stage = false; break;
     case PyroId::cruise_balance_1:
-    case PyroId::cruise_balance_2:
-        --configuration_.cruise_balances;
-        break;
+    case PyroId::cruise_balance_2: --configuration_.cruise_balances; break;
     case PyroId::entry_balance_1:
     case PyroId::entry_balance_2:
-    case PyroId::entry_balance_3:
-        --configuration_.entry_balance_pairs;
-        break;
+    case PyroId::entry_balance_3: --configuration_.entry_balance_pairs; break;
     case PyroId::parachute_mortar:
         mortar_s_ = now_s;
         right_at_mortar_M_ = level_right(body_.p_MoB_M, body_.v_MB_M);
@@ -85,9 +79,7 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         let_go(separated_.heatshield, stations.heatshield_m, masses.heatshield_kg, heatshield_drag_area_m2);
         configuration_.heatshield = false;
         break;
-    case PyroId::engine_valves:
-        engines_.open_valves(now_s);
-        break;
+    case PyroId::engine_valves: engines_.open_valves(now_s); break;
     case PyroId::backshell_separation:
         let_go(separated_.backshell, stations.backshell_m, masses.backshell_and_parachute_kg,
                parachute_open(now_s) ? parachute_area_m2_ : aeroshell_area_m2);
@@ -97,14 +89,11 @@ void Vehicle::fire(flight::PyroId pyro, double now_s) {
         rover_ = point_at(body_, Vector3{0.0, 0.0, stations.rover_m} - centre_B_m_);
         configuration_.rover_on_stage = false;
         break;
-    case PyroId::bridle_cutter:
-        configuration_.bridle = false;
-        break;
+    case PyroId::bridle_cutter: configuration_.bridle = false; break;
     // Neither moves the vehicle in this model: coolant's push is small, the cables only join cruise stage and
     // aeroshell.
     case PyroId::cruise_cable_cutter:
-    case PyroId::coolant_vent:
-        break;
+    case PyroId::coolant_vent: break;
     }
     recentre();
 }
@@ -140,7 +129,7 @@ void Vehicle::fly_separated() {
 }
 
 double Vehicle::aeroshell_factor(double mach) const {
-    constexpr double slow_below_mach = 3.0, fast_above_mach = 8.0; // ours
+    constexpr double slow_below_mach = 3.0, fast_above_mach = 8.0;  // ours
     const double fast = std::clamp((mach - slow_below_mach) / (fast_above_mach - slow_below_mach), 0.0, 1.0);
     return aeroshell_factors_[1] + fast * (aeroshell_factors_[0] - aeroshell_factors_[1]);
 }
@@ -163,7 +152,7 @@ void Vehicle::step(double now_s, double step_s) {
         step.thrusters.propellant_kg + engines_.advance(now_s, step_s, configuration_.propellant_kg());
     step.engines_end_B_N = engines_.force_B_N();
     step.engines_end_B_Nm = engines_.torque_B_Nm() + engines_arm_B_m.cross(step.engines_end_B_N);
-    configuration_.burn(0.5 * burnt_kg); // mass in the middle of the step
+    configuration_.burn(0.5 * burnt_kg);  // mass in the middle of the step
     const double mass_kg = configuration_.rigid_kg();
     Vector3 force_M;
     if (rover_hangs()) {
@@ -230,7 +219,8 @@ void Vehicle::add_air(double now_s, Step& step, const RigidBody& body, Wrench& w
     const double since_mortar_s = mortar_s_ ? now_s - *mortar_s_ : 0.0;
     const double inflation = mortar_s_ ? parachute_inflation(since_mortar_s) : 0.0;
     if (inflation > 0.0) {
-        const Vector3 lift = parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s, parachute_plane_rad_);
+        const Vector3 lift =
+            parachute_lift_direction(forward, right_at_mortar_M_, since_mortar_s, parachute_plane_rad_);
         const Vector3 pull_M = pressure_Pa * parachute_area_m2_ * inflation * parachute_mach_factor(mach) *
                                (parachute_lift_to_drag * lift - forward);
         const Vector3 confluence_B = Vector3{0.0, 0.0, riser_station_m} - centre_B_m_;
@@ -291,4 +281,4 @@ double Vehicle::swing_rad() const {
     return std::atan2(down.cross(offset).norm(), down.dot(offset));
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -20,11 +20,12 @@
 
 namespace aeolis::simulation {
 
-/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines; and once
-/// it is let down, the rover on its bridle as a second body, which swings and comes to stand.
+/// All that moves: a rigid body with a configuration, air and a parachute that push and turn it, thrusters, engines;
+/// and once it is let down, the rover on its bridle as a second body, which swings and comes to stand.
 ///
 /// Its point is the centre of mass of what is rigid: with each jettison it moves to that of what flies on, and with the
-/// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds since the start of the world.
+/// velocity there. Thrusters and engines push where they are mounted, by arms from where it is now. Time is in seconds
+/// since the start of the world.
 class Vehicle {
   public:
     Vehicle(const Scenario& scenario, const PointMass& start, const Quaternion& q_MB, std::uint64_t seed,
@@ -46,9 +47,9 @@ class Vehicle {
     PointMass at() const { return {body_.p_MoB_M, body_.v_MB_M}; }
     const RigidBody& body() const { return body_; }
     const Quaternion& q_MB() const { return body_.q_MB; }
-    const Vector3& specific_force_M() const { return specific_force_M_; } ///< [m/s²] mean over the last step
-    double altitude_m() const { return terrain_.altitude_m(body_.p_MoB_M); } ///< above the landing radius
-    double height_m() const { return terrain_.height_m(body_.p_MoB_M); }     ///< above the ground below
+    const Vector3& specific_force_M() const { return specific_force_M_; }     ///< [m/s²] mean over the last step
+    double altitude_m() const { return terrain_.altitude_m(body_.p_MoB_M); }  ///< above the landing radius
+    double height_m() const { return terrain_.height_m(body_.p_MoB_M); }      ///< above the ground below
 
     const Configuration& configuration() const { return configuration_; }
     const Engines& engines() const { return engines_; }
@@ -77,7 +78,7 @@ class Vehicle {
         double start_s = 0.0, length_s = 0.0;
         Thrusters::Push thrusters;
         Vector3 engines_start_B_N, engines_end_B_N, engines_start_B_Nm, engines_end_B_Nm;
-        std::optional<Trim> trim; ///< by the Mach number at its start: it changes slowly
+        std::optional<Trim> trim;  ///< by the Mach number at its start: it changes slowly
     };
     /// A body whose station it is is let go.
     void let_go(SeparatedBody& body, double station_m, double mass_kg, double drag_area_m2) const;
@@ -94,26 +95,26 @@ class Vehicle {
     void add_air(double now_s, Step& step, const RigidBody& body, Wrench& wrench) const;
 
     Terrain terrain_;
-    double parachute_area_m2_; ///< with this case's own drag
-    double parachute_plane_rad_; ///< this case's own, from up, in which its lift begins
-    std::array<double, 2> aeroshell_factors_; ///< this case's own drag and lift, at high and at low Mach numbers
+    double parachute_area_m2_;                 ///< with this case's own drag
+    double parachute_plane_rad_;               ///< this case's own, from up, in which its lift begins
+    std::array<double, 2> aeroshell_factors_;  ///< this case's own drag and lift, at high and at low Mach numbers
     Atmosphere atmosphere_;
     Wind wind_;
 
     RigidBody body_;
-    PointMass rover_; ///< while it hangs
+    PointMass rover_;  ///< while it hangs
     Vector3 specific_force_M_ = Vector3::Zero();
     Thrusters thrusters_;
     Configuration configuration_;
-    std::bitset<32> fired_; ///< by PyroId
-    Vector3 centre_B_m_; ///< the point of body_, from the stage's own centre of mass
+    std::bitset<32> fired_;  ///< by PyroId
+    Vector3 centre_B_m_;     ///< the point of body_, from the stage's own centre of mass
     /// Origins of the drawings of thrusters and engines, likewise: on the axis.
     Vector3 thrusters_from_B_m_, engines_from_B_m_;
     Engines engines_;
     Bridle bridle_;
     std::optional<double> mortar_s_;
-    Vector3 right_at_mortar_M_ = Vector3::UnitZ(); ///< level, to the right of its flight
+    Vector3 right_at_mortar_M_ = Vector3::UnitZ();  ///< level, to the right of its flight
     SeparatedBodies separated_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

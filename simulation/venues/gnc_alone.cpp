@@ -45,23 +45,15 @@ const flight::DeviceOutputs& GncAlone::cycle(const flight::DeviceInputs& in) {
 const char* decided_by_gnc(flight::gnc::Trigger trigger) {
     using flight::gnc::Trigger;
     switch (trigger) {
-    case Trigger::guidance_start:
-        return "guidance_start";
-    case Trigger::heading_alignment:
-        return "heading_alignment";
-    case Trigger::radar_lock:
-        return "radar_lock";
-    case Trigger::powered_approach:
-        return "powered_approach_start";
-    case Trigger::constant_velocity:
-        return "constant_velocity_start";
-    case Trigger::constant_deceleration:
-        return "constant_deceleration_start";
-    case Trigger::touchdown:
-        return "touchdown";
-    default:
-        return nullptr;
+    case Trigger::guidance_start: return "guidance_start";
+    case Trigger::heading_alignment: return "heading_alignment";
+    case Trigger::radar_lock: return "radar_lock";
+    case Trigger::powered_approach: return "powered_approach_start";
+    case Trigger::constant_velocity: return "constant_velocity_start";
+    case Trigger::constant_deceleration: return "constant_deceleration_start";
+    case Trigger::touchdown: return "touchdown";
+    default: return nullptr;
     }
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -10,8 +10,8 @@ namespace aeolis::simulation {
 /// As GNC takes it: angles in radians. What ground's navigators do not bring keeps GNC's own value.
 flight::gnc::Solution solution_of(const NavigationSolution& from);
 
-/// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as they fly, and a few lines in place
-/// of the timeline. Nothing of executive, telemetry, commands or radio takes part. R36
+/// The test venue "GNC alone" (the paper's GSTS): EdlGnc and the radar's batch filter as they fly, and a few lines in
+/// place of the timeline. Nothing of executive, telemetry, commands or radio takes part. R36
 ///
 /// In       DeviceInputs of each tick                     Out   DeviceOutputs of that cycle, what GNC told
 /// Rate     64 Hz        Memory   a value: copying it is a fork
@@ -39,4 +39,4 @@ class GncAlone {
 /// The name of what GNC decided, among those in decided_on_board; none for what the truth shows by itself.
 const char* decided_by_gnc(flight::gnc::Trigger trigger);
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -19,10 +19,10 @@ using flight::gnc::Trigger;
 using Attitude = flight::gnc::AttitudeCommand::Mode;
 
 using flight::parameters;
-constexpr double sufr_mps = 453.0; // [od137]
+constexpr double sufr_mps = 453.0;  // [od137]
 constexpr double priming_above_backshell_m = 1340.0;
 constexpr double approach_end_m = 150.0, slow_below_m = 32.0;
-constexpr double sidestep_mps = 12.0; // while it approaches: from under the backshell
+constexpr double sidestep_mps = 12.0;  // while it approaches: from under the backshell
 
 /// Lift to the left or right as in [od137], roughly.
 double bank_deg(const TruthState& truth) {
@@ -39,12 +39,13 @@ int reversals(const TruthState& truth) {
 /// Two stretches of even deceleration, then slow and steady.
 double wanted_climb_mps(double height_m) {
     if (height_m > approach_end_m)
-        return -std::min(75.0, std::sqrt(parameters.constant_velocity_mps * parameters.constant_velocity_mps + 6.0 * (height_m - approach_end_m)));
+        return -std::min(75.0, std::sqrt(parameters.constant_velocity_mps * parameters.constant_velocity_mps +
+                                         6.0 * (height_m - approach_end_m)));
     if (height_m > slow_below_m) return -std::sqrt(0.56 + 8.6 * (height_m - slow_below_m));
     return -parameters.sky_crane_descent_rate_mps;
 }
 
-} // namespace
+}  // namespace
 
 bool GncStandIn::take(GncModeEvent event) {
     if (!mode_.take(event)) return false;
@@ -88,10 +89,12 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
     const TruthState truth = world.truth();
     const NavigationSolution& solution = world.solution();
     if (mode_.can(GncModeEvent::drag_felt) &&
-        fire(Trigger::guidance_start, at_least(Quantity::drag_mps2, truth.sensed_mps2, parameters.guidance_start_drag_mps2)))
+        fire(Trigger::guidance_start,
+             at_least(Quantity::drag_mps2, truth.sensed_mps2, parameters.guidance_start_drag_mps2)))
         take(GncModeEvent::drag_felt);
     if (mode_.can(GncModeEvent::slow_for_heading) &&
-        fire(Trigger::heading_alignment, at_most(Quantity::speed_mps, truth.speed_mps, parameters.heading_alignment_speed_mps)))
+        fire(Trigger::heading_alignment,
+             at_most(Quantity::speed_mps, truth.speed_mps, parameters.heading_alignment_speed_mps)))
         take(GncModeEvent::slow_for_heading);
     if (mode_.can(GncModeEvent::parachute_near) && configuration.sufr_allowed &&
         fire(Trigger::sufr_start, at_most(Quantity::speed_mps, truth.speed_mps, sufr_mps)))
@@ -103,9 +106,10 @@ void GncStandIn::decide_in_air(const World& world, const flight::gnc::Configurat
     if (parachute_s > parameters.heatshield_delay_min_s)
         fire(Trigger::heatshield, at_most(Quantity::speed_mps, truth.speed_mps, solution.heatshield_speed_mps));
     if (!configuration.heatshield_gone) return;
-    if (configuration.radar_on) fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, parameters.radar_altitude_max_m));
-    fire(Trigger::engine_priming, at_most(Quantity::altitude_m, truth.altitude_m,
-                                          solution.backshell_altitude_m + priming_above_backshell_m));
+    if (configuration.radar_on)
+        fire(Trigger::radar_lock, at_most(Quantity::altitude_m, truth.altitude_m, parameters.radar_altitude_max_m));
+    fire(Trigger::engine_priming,
+         at_most(Quantity::altitude_m, truth.altitude_m, solution.backshell_altitude_m + priming_above_backshell_m));
     if (configuration.engines_primed)
         fire(Trigger::backshell, at_most(Quantity::altitude_m, truth.altitude_m, solution.backshell_altitude_m));
 }
@@ -115,7 +119,8 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
     const double in_mode_s = now_ - mode_since_;
     switch (mode_.state()) {
     case Mode::free_fall:
-        if (fire(Trigger::powered_approach, at_least(Quantity::time_in_mode_s, in_mode_s, flight::gnc::powered_descent::free_fall_s)))
+        if (fire(Trigger::powered_approach,
+                 at_least(Quantity::time_in_mode_s, in_mode_s, flight::gnc::powered_descent::free_fall_s)))
             take(GncModeEvent::fallen_clear);
         break;
     case Mode::powered_approach:
@@ -132,10 +137,10 @@ void GncStandIn::decide_on_engines(const World& world, const flight::gnc::Config
     case Mode::sky_crane:
         fire(Trigger::rover_separation, at_least(Quantity::time_in_mode_s, in_mode_s, parameters.sky_crane_settle_s));
         if (configuration.touchdown_logic_ready && world.contact())
-            fire(Trigger::touchdown, at_least(Quantity::time_in_mode_s, now_ - *world.contact(), parameters.touchdown_settle_s));
+            fire(Trigger::touchdown,
+                 at_least(Quantity::time_in_mode_s, now_ - *world.contact(), parameters.touchdown_settle_s));
         break;
-    default:
-        break;
+    default: break;
     }
 }
 
@@ -148,8 +153,7 @@ void GncStandIn::guide(const World& world, const flight::gnc::Configuration& con
         told_.attitude.bank_rad = bank_deg(truth) * degree_rad;
         if (mode == Mode::range_control && reversals(truth) > reversals_)
             told_.bank_reversal = static_cast<std::uint8_t>(++reversals_);
-    }
-    else if (mode == Mode::approach)
+    } else if (mode == Mode::approach)
         told_.attitude.mode = Attitude::detumble;
     if (mode == Mode::parachute_descent) told_.attitude.mode = Attitude::suspended;
     if (mode < Mode::free_fall) return;
@@ -219,4 +223,4 @@ void GncStandIn::report(const World& world) {
     told_.radar_locked = fired(Trigger::radar_lock);
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

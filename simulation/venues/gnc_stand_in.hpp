@@ -40,4 +40,4 @@ class GncStandIn {
     flight::gnc::Output told_;
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

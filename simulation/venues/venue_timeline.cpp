@@ -14,8 +14,8 @@ struct Touched {
 };
 
 struct Row {
-    std::string_view timepoint; ///< of the timeline, whose place it takes
-    std::optional<Trigger> after; ///< none: entry
+    std::string_view timepoint;    ///< of the timeline, whose place it takes
+    std::optional<Trigger> after;  ///< none: entry
     double offset_s;
     void (*action)(Touched&);
 };
@@ -27,7 +27,9 @@ void fire(Touched& t) {
 
 constexpr std::array rows{
     Row{"cruise_cables_cut", {}, -608.0, fire<PyroId::cruise_cable_cutter>},
-    Row{"cruise_stage_separation", {}, -600.046875,
+    Row{"cruise_stage_separation",
+        {},
+        -600.046875,
         [](Touched& t) {
             fire<PyroId::cruise_stage_separation>(t);
             t.configuration.cruise_stage_gone = true;
@@ -49,7 +51,8 @@ constexpr std::array rows{
             t.configuration.parachute_time = t.now;
             t.out.thrusters_enabled = false;
         }},
-    Row{"radar_power", Trigger::parachute, 6.0, [](Touched& t) { t.out.switches.push_back({flight::SwitchId::radar, true}); }},
+    Row{"radar_power", Trigger::parachute, 6.0,
+        [](Touched& t) { t.out.switches.push_back({flight::SwitchId::radar, true}); }},
     Row{"heatshield_separation", Trigger::heatshield, 0.0,
         [](Touched& t) {
             fire<PyroId::heatshield_separation>(t);
@@ -78,7 +81,8 @@ constexpr std::array rows{
             t.configuration.rover_separation_time = t.now;
             t.out.pay_out_bridle = true;
         }},
-    Row{"touchdown_logic", Trigger::rover_separation, 8.90625, [](Touched& t) { t.configuration.touchdown_logic_ready = true; }},
+    Row{"touchdown_logic", Trigger::rover_separation, 8.90625,
+        [](Touched& t) { t.configuration.touchdown_logic_ready = true; }},
     Row{"touchdown", Trigger::touchdown, 0.0, [](Touched& t) { t.configuration.touchdown_declared = true; }},
     Row{"bridle_cut", Trigger::touchdown, 0.59375,
         [](Touched& t) {
@@ -89,7 +93,7 @@ constexpr std::array rows{
     Row{"engines_off", Trigger::touchdown, 7.296875, [](Touched& t) { t.configuration.engines_off = true; }},
 };
 
-} // namespace
+}  // namespace
 
 VenueTimeline::VenueTimeline(Sclk entry) : entry_(entry) {
     static_assert(rows.size() <= rows_max);
@@ -98,8 +102,7 @@ VenueTimeline::VenueTimeline(Sclk entry) : entry_(entry) {
 std::vector<VenueTimeline::Line> VenueTimeline::lines() {
     std::vector<Line> all;
     all.reserve(rows.size());
-    for (const Row& row : rows)
-        all.push_back({row.timepoint, row.after, row.offset_s});
+    for (const Row& row : rows) all.push_back({row.timepoint, row.after, row.offset_s});
     return all;
 }
 
@@ -114,8 +117,7 @@ void VenueTimeline::act(Sclk now, flight::DeviceOutputs& out) {
 }
 
 void VenueTimeline::take(const flight::gnc::Output& told, Sclk now) {
-    for (const Trigger trigger : told.triggers)
-        triggered_[static_cast<std::size_t>(trigger)] = now;
+    for (const Trigger trigger : told.triggers) triggered_[static_cast<std::size_t>(trigger)] = now;
 }
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

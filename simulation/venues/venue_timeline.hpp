@@ -11,8 +11,8 @@
 
 namespace aeolis::simulation {
 
-/// A few lines in place of the timeline, for venues that fly without it: what the vehicle needs to land, at the times of
-/// timeline.csv, with nothing that waits, fails or is told.
+/// A few lines in place of the timeline, for venues that fly without it: what the vehicle needs to land, at the times
+/// of timeline.csv, with nothing that waits, fails or is told.
 ///
 /// In       GNC's triggers, which start anchors          Out   the configuration that GNC flies, commands to devices
 /// Rate     64 Hz: act() before GNC and after it         Memory   none beyond itself; a value
@@ -24,8 +24,8 @@ class VenueTimeline {
     void take(const flight::gnc::Output& told, Sclk now);
 
     struct Line {
-        std::string_view timepoint; ///< of timeline.csv, whose place it takes
-        std::optional<flight::gnc::Trigger> after; ///< none: entry
+        std::string_view timepoint;                 ///< of timeline.csv, whose place it takes
+        std::optional<flight::gnc::Trigger> after;  ///< none: entry
         double offset_s = 0.0;
     };
     static std::vector<Line> lines();
@@ -41,4 +41,4 @@ class VenueTimeline {
     std::array<bool, rows_max> done_{};
 };
 
-} // namespace aeolis::simulation
+}  // namespace aeolis::simulation

@@ -13,9 +13,9 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double line_step = 1.6; // rates 1.6/T² apart: 0.2 dB between two lines at most, before refinement; ours
+constexpr double line_step = 1.6;  // rates 1.6/T² apart: 0.2 dB between two lines at most, before refinement; ours
 
-} // namespace
+}  // namespace
 
 struct CarrierFit::State {
     State(int samples, double step)
@@ -41,7 +41,8 @@ struct CarrierFit::State {
     }
 
     /// Σ x exp(−j 2π (f t + q t²/2)) over the window.
-    std::complex<double> sum(std::span<const std::complex<float>> samples, double frequency_hz, double rate_hzps) const {
+    std::complex<double> sum(std::span<const std::complex<float>> samples, double frequency_hz,
+                             double rate_hzps) const {
         const double begin_s = time_s(0);
         const double turn = 2.0 * std::numbers::pi;
         std::complex<double> phasor =
@@ -82,7 +83,8 @@ CarrierLine CarrierFit::fit(std::span<const std::complex<float>> samples, double
     float most = -1.0F;
     int best_line = 0, best_bin = 0;
     double bin_offset = 0.0;
-    std::vector<double> peaks(static_cast<std::size_t>(2 * span.rate_lines + 1)); // magnitude of each line's highest bin
+    std::vector<double> peaks(
+        static_cast<std::size_t>(2 * span.rate_lines + 1));  // magnitude of each line's highest bin
     for (int line = -span.rate_lines; line <= span.rate_lines; ++line) {
         s.transform(samples, line);
         float highest = -1.0F;
@@ -119,4 +121,4 @@ CarrierLine CarrierFit::fit(std::span<const std::complex<float>> samples, double
     return found;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -10,20 +10,21 @@ namespace aeolis::telemetry {
 struct CarrierLine {
     double phase_rad = 0.0, frequency_hz = 0.0, rate_hzps = 0.0;
     double amplitude = 0.0;
-    double energy = 0.0; ///< of the window's coherent sum over the noise's: mean 1, exponential, in noise alone
+    double energy = 0.0;  ///< of the window's coherent sum over the noise's: mean 1, exponential, in noise alone
 };
 
 /// How far a fit looks around what was predicted.
 struct FitSpan {
-    double frequency_hz = 0.0; ///< to either side
-    int rate_lines = 0;        ///< to either side, of CarrierFit::rate_step_hzps each
+    double frequency_hz = 0.0;  ///< to either side
+    int rate_lines = 0;         ///< to either side, of CarrierFit::rate_step_hzps each
 };
 
-/// The most likely line of a carrier in white noise: the highest peak over frequency and rate, by Fourier transforms of the
-/// window dechirped at each rate, refined by parabolas. Source: [abatzoglou-1986] for maximum likelihood of a chirp.
+/// The most likely line of a carrier in white noise: the highest peak over frequency and rate, by Fourier transforms of
+/// the window dechirped at each rate, refined by parabolas. Source: [abatzoglou-1986] for maximum likelihood of a
+/// chirp.
 class CarrierFit {
   public:
-    static constexpr int rate_lines_max = 20; ///< to either side; ours
+    static constexpr int rate_lines_max = 20;  ///< to either side; ours
 
     /// Windows of `length` samples, `step_s` apart.
     CarrierFit(int length, double step_s);
@@ -41,4 +42,4 @@ class CarrierFit {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

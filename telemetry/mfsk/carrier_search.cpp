@@ -11,14 +11,14 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double segment_s = 0.02;       // ours: 1200 Hz/s bends the phase by 0.4 rad at most
-constexpr int segments_a_window = 50;    // 1 s
-constexpr int windows_a_long_one = 4;    // 4 s
-constexpr int lines_aside = 24;          // to either side of rate 0
+constexpr double segment_s = 0.02;     // ours: 1200 Hz/s bends the phase by 0.4 rad at most
+constexpr int segments_a_window = 50;  // 1 s
+constexpr int windows_a_long_one = 4;  // 4 s
+constexpr int lines_aside = 24;        // to either side of rate 0
 constexpr int rate_lines = 2 * lines_aside + 1;
-constexpr double rate_max_hzps = 1200.0; // ours: what a predict may leave
+constexpr double rate_max_hzps = 1200.0;  // ours: what a predict may leave
 
-} // namespace
+}  // namespace
 
 double exceeded_by_noise(int count, double x) {
     double log_term = -x, sum = 0.0;
@@ -107,8 +107,8 @@ struct CarrierSearch::State {
         CarrierFound found;
         found.last_sample = segments_seen * segment;
         found.first_sample = found.last_sample - static_cast<std::int64_t>(count) * segment;
-        found.frequency_hz = (static_cast<double>(from_middle) +
-                              peak_offset(around(0, -1), around(0, 0), around(0, 1))) * bin_hz;
+        found.frequency_hz =
+            (static_cast<double>(from_middle) + peak_offset(around(0, -1), around(0, 0), around(0, 1))) * bin_hz;
         found.rate_hzps = (best_line + peak_offset(around(-1, 0), around(0, 0), around(1, 0))) * step_hzps;
         found.statistic = most / mean;
         found.threshold = limit;
@@ -118,10 +118,10 @@ struct CarrierSearch::State {
     double rate_hz;
     int segment, bins;
     double bin_hz, segment_length_s;
-    int guard; ///< bins to either side that lines of the greatest slope run into
+    int guard;  ///< bins to either side that lines of the greatest slope run into
     Eigen::ArrayXXf powers;
     std::vector<std::complex<float>> padded, transformed;
-    std::vector<double> thresholds; ///< of the short and of the long window
+    std::vector<double> thresholds;  ///< of the short and of the long window
     Eigen::FFT<float> fft;
     Eigen::ArrayXf line;
     std::int64_t segments_seen = 0;
@@ -154,4 +154,4 @@ std::optional<CarrierFound> CarrierSearch::push(std::span<const std::complex<flo
     return std::nullopt;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -11,26 +11,29 @@ namespace aeolis::telemetry {
 
 /// A carrier as the search found it, at the middle of its window.
 struct CarrierFound {
-    std::int64_t first_sample = 0, last_sample = 0; ///< the window, in samples since the search began; last is excluded
-    double frequency_hz = 0.0;                      ///< from the middle of the samples' band
+    std::int64_t first_sample = 0,
+                 last_sample = 0;  ///< the window, in samples since the search began; last is excluded
+    double frequency_hz = 0.0;     ///< from the middle of the samples' band
     double rate_hzps = 0.0;
-    double statistic = 0.0; ///< sum of the segments' powers along the line, each of mean 1 in noise
-    double threshold = 0.0; ///< what noise alone exceeds once in 1/false_alarm windows at most
+    double statistic = 0.0;  ///< sum of the segments' powers along the line, each of mean 1 in noise
+    double threshold = 0.0;  ///< what noise alone exceeds once in 1/false_alarm windows at most
 };
 
 /// Finds a carrier of unknown frequency and rate: powers of 20 ms Fourier transforms are summed along straight lines of
 /// frequency against time.
 ///
 /// In      complex samples at a fixed rate; the whole of its band is searched
-/// Out     a carrier for a window of 1 s over ±1200 Hz/s in lines of 50 Hz/s; each time four of those found none, also for
+/// Out     a carrier for a window of 1 s over ±1200 Hz/s in lines of 50 Hz/s; each time four of those found none, also
+/// for
 ///         the window of all 4 s, over ±300 Hz/s in lines of 12.5: its effort grows with the wait
 /// Memory  the powers of 4 s
-/// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in white noise of any power. Without power nothing is
+/// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in white noise of any power. Without power
+/// nothing is
 ///         found.
 /// Source: [richards-radar] for the non-coherent sum and its distribution; lengths and grid ours.
 class CarrierSearch {
   public:
-    static constexpr double false_alarm = 1e-4; ///< of a window; ours
+    static constexpr double false_alarm = 1e-4;  ///< of a window; ours
 
     explicit CarrierSearch(double rate_hz);
     ~CarrierSearch();
@@ -51,4 +54,4 @@ class CarrierSearch {
 /// Probability that the sum of `count` unit exponentials exceeds `x`: e^−x Σ xⁱ/i!, i < count.
 double exceeded_by_noise(int count, double x);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

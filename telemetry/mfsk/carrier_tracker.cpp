@@ -8,20 +8,20 @@ namespace aeolis::telemetry {
 namespace {
 
 constexpr double turn_rad = 2.0 * std::numbers::pi;
-constexpr double thinned_rate_least_hz = 6000.0; // the sum droops by 0.12 dB at the highest tone; ours
-constexpr double parts_hz = 256.0;               // ours: a wrong prediction by 100 Hz is still seen
-constexpr double false_find = 0.005;             // of a look at noise; ours
-constexpr double longer_gain = 1.2;              // what a longer window must gather more; ours
-constexpr int short_for_hops = 16;               // then no longer one is tried; ours
-constexpr double energy_weak = 22.0;             // below this a longer window is taken; ours
-constexpr double energy_strong = 60.0;           // above this a shorter one; ours
-constexpr double lost_after_s = 1.5;             // at least; ours
-constexpr double weak_lost_after_s = 20.0;       // ours
-constexpr double weak_level_hz = 25.0;           // 14 dB-Hz: the search over 4 s needs more; ours
-constexpr double level_of_old = 0.99;            // of each hop in the running mean of C/N0: 12 s; ours
-constexpr double noise_gain = 0.08;              // of each hop in the running mean of the noise: 1.5 s; ours
+constexpr double thinned_rate_least_hz = 6000.0;  // the sum droops by 0.12 dB at the highest tone; ours
+constexpr double parts_hz = 256.0;                // ours: a wrong prediction by 100 Hz is still seen
+constexpr double false_find = 0.005;              // of a look at noise; ours
+constexpr double longer_gain = 1.2;               // what a longer window must gather more; ours
+constexpr int short_for_hops = 16;                // then no longer one is tried; ours
+constexpr double energy_weak = 22.0;              // below this a longer window is taken; ours
+constexpr double energy_strong = 60.0;            // above this a shorter one; ours
+constexpr double lost_after_s = 1.5;              // at least; ours
+constexpr double weak_lost_after_s = 20.0;        // ours
+constexpr double weak_level_hz = 25.0;            // 14 dB-Hz: the search over 4 s needs more; ours
+constexpr double level_of_old = 0.99;             // of each hop in the running mean of C/N0: 12 s; ours
+constexpr double noise_gain = 0.08;               // of each hop in the running mean of the noise: 1.5 s; ours
 
-} // namespace
+}  // namespace
 
 HopLayout::HopLayout(double rate)
     : rate_hz(rate), thinning(std::max(1, static_cast<int>(rate / thinned_rate_least_hz))),
@@ -111,8 +111,8 @@ CarrierLine CarrierTracker::fit_around(std::size_t middle, Window& window, bool 
             const double at_s = (part + 0.5) * part_s;
             const double cycles = hop.cycles_at(at_s) - reference.cycles_at(begin_s + at_s);
             const auto& sum = hop.parts[static_cast<std::size_t>(part)];
-            aligned_.push_back(i == middle ? sum
-                                           : sum * static_cast<std::complex<float>>(std::polar(1.0, turn_rad * cycles)));
+            aligned_.push_back(
+                i == middle ? sum : sum * static_cast<std::complex<float>>(std::polar(1.0, turn_rad * cycles)));
         }
     }
     const double noise = std::max(reference.noise / part_s, 1e-30);
@@ -181,7 +181,7 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
     while (waiting_ + static_cast<std::size_t>(windows_[window_].hops / 2) < hops_.size()) {
         const auto aside = static_cast<std::size_t>(windows_[window_].hops / 2);
         const Wiped& hop = hops_[waiting_];
-        if (waiting_ < aside && window_ > 0) { // the first hops have no half window before them
+        if (waiting_ < aside && window_ > 0) {  // the first hops have no half window before them
             shorten();
             continue;
         }
@@ -205,7 +205,7 @@ void CarrierTracker::fit_waiting(std::vector<CarrierHop>& out) {
             energy_before_longer_ = 0.0;
             if (middle == waiting_) {
                 done = demodulated(hop, line);
-            } else { // carried over from the window's middle to this earlier hop
+            } else {  // carried over from the window's middle to this earlier hop
                 const Wiped& reference = hops_[middle];
                 const double back_s = static_cast<double>(hop.first_sample - reference.first_sample) / layout_.rate_hz;
                 const double mid_s = 0.5 * layout_.hop_s();
@@ -269,4 +269,4 @@ void CarrierTracker::finish(std::vector<CarrierHop>& out) {
     lost_ = true;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

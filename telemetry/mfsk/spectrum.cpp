@@ -8,8 +8,7 @@ int smooth_length(int least) {
     for (int n = std::max(least, 8);; ++n) {
         int rest = n;
         for (const int factor : {2, 3, 5})
-            while (rest % factor == 0)
-                rest /= factor;
+            while (rest % factor == 0) rest /= factor;
         if (rest == 1) return n;
     }
 }
@@ -19,4 +18,4 @@ double peak_offset(double before, double at, double after) {
     return bend < 0.0 ? std::clamp(0.5 * (before - after) / bend, -0.5, 0.5) : 0.0;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -8,7 +8,8 @@
 namespace aeolis::telemetry {
 
 double symbol_error(double energy, int tones) {
-    // Over x = √u, whose density is within 8 of √E; Simpson's rule. What is integrated is the error itself, not 1 − error.
+    // Over x = √u, whose density is within 8 of √E; Simpson's rule. What is integrated is the error itself, not 1 −
+    // error.
     constexpr int intervals = 4000;
     const double root = std::sqrt(energy);
     const double begin = std::max(root - 8.0, 0.0), step = (root + 8.0 - begin) / intervals;
@@ -16,7 +17,8 @@ double symbol_error(double energy, int tones) {
     for (int i = 0; i <= intervals; ++i) {
         const double x = begin + i * step;
         const double density = 2.0 * x * std::exp(log_bessel_i0(2.0 * x * root) - x * x - energy);
-        const double some_other_higher = -std::expm1((tones - 1) * std::log1p(-std::min(std::exp(-x * x), 1.0 - 1e-15)));
+        const double some_other_higher =
+            -std::expm1((tones - 1) * std::log1p(-std::min(std::exp(-x * x), 1.0 - 1e-15)));
         sum += (i == 0 || i == intervals ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * density * some_other_higher;
     }
     return sum * step / 3.0;
@@ -31,4 +33,4 @@ double energy_for_symbol_error(double error, int tones) {
     return low;
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

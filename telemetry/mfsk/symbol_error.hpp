@@ -12,4 +12,4 @@ double symbol_error(double energy, int tones);
 /// The energy at which the symbol error is `error`, 0 < error < 1 − 1/tones.
 double energy_for_symbol_error(double error, int tones);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -7,8 +7,8 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double energy_of_use = 2.0; // E/N0: with less no tone can be told; ours
-constexpr int settle_hops = 8;        // ours: decisions are looked for once a second
+constexpr double energy_of_use = 2.0;  // E/N0: with less no tone can be told; ours
+constexpr int settle_hops = 8;         // ours: decisions are looked for once a second
 
 /// Sum of hops' evidence, the newest hop first.
 struct Gathered {
@@ -17,12 +17,11 @@ struct Gathered {
     void add(const HopEvidence& hop) {
         if (!hop.found) return;
         energy += hop.energy;
-        for (std::size_t tone = 0; tone < sums.size(); ++tone)
-            sums[tone] += hop.sums[tone];
+        for (std::size_t tone = 0; tone < sums.size(); ++tone) sums[tone] += hop.sums[tone];
     }
 };
 
-} // namespace
+}  // namespace
 
 SymbolSequence::SymbolSequence(int symbol_hops, std::int64_t hop_samples)
     : symbol_hops_(symbol_hops), hop_samples_(hop_samples), states_(1) {}
@@ -75,8 +74,7 @@ void SymbolSequence::push(const HopEvidence& hop, std::vector<DecidedSymbol>& ou
 
 std::int64_t SymbolSequence::first_on_way(std::int64_t hops) const {
     std::int64_t first = -1;
-    for (std::int64_t end = state(hops).last_end; end > came_out_; end = state(before(end)).last_end)
-        first = end;
+    for (std::int64_t end = state(hops).last_end; end > came_out_; end = state(before(end)).last_end) first = end;
     return first;
 }
 
@@ -132,7 +130,8 @@ void SymbolSequence::come_out(std::int64_t first, std::vector<DecidedSymbol>& ou
         State& each = states_[static_cast<std::size_t>(hops - first_state_)];
         State anew{state(hops - 1).score, state(hops - 1).last_end, std::nullopt};
         if (each.symbol && hops - symbol_hops_ >= first) {
-            const double score = state(hops - symbol_hops_).score + each.symbol->evidence.log_likelihood_ratio - begin_cost();
+            const double score =
+                state(hops - symbol_hops_).score + each.symbol->evidence.log_likelihood_ratio - begin_cost();
             if (score > anew.score) anew = {score, hops, each.symbol};
         }
         each = anew;
@@ -148,4 +147,4 @@ void SymbolSequence::finish(std::vector<DecidedSymbol>& out) {
     settle(out);
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

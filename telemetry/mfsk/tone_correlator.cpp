@@ -9,12 +9,13 @@ namespace aeolis::telemetry {
 
 struct ToneCorrelator::State {
     MfskWaveform waveform;
-    Eigen::MatrixXf tones;         // cosines of all, then negative sines
-    mutable Eigen::VectorXf parts; // of the sums, in the same order
+    Eigen::MatrixXf tones;          // cosines of all, then negative sines
+    mutable Eigen::VectorXf parts;  // of the sums, in the same order
 };
 
 ToneCorrelator::ToneCorrelator(const MfskWaveform& waveform, double sample_rate_hz, int samples)
-    : state_(new State{waveform, Eigen::MatrixXf(2 * MfskWaveform::tones, samples), Eigen::VectorXf(2 * MfskWaveform::tones)}) {
+    : state_(new State{waveform, Eigen::MatrixXf(2 * MfskWaveform::tones, samples),
+                       Eigen::VectorXf(2 * MfskWaveform::tones)}) {
     for (int tone = 0; tone < MfskWaveform::tones; ++tone)
         for (int i = 0; i < samples; ++i) {
             const double angle = 2.0 * std::numbers::pi * waveform.tone_hz(tone) * (i + 0.5) / sample_rate_hz;
@@ -37,4 +38,4 @@ void ToneCorrelator::correlate(std::span<const float> quadrature, double begin_s
     }
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -28,4 +28,4 @@ class ToneCorrelator {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

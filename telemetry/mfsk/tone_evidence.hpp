@@ -13,9 +13,9 @@ struct ToneEvidence {
     double log_likelihood_ratio = 0.0;
 };
 
-/// The exact non-coherent statistic: with `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| = energy,
-/// tone k is likelier than none by I0(2|G_k|) exp(−energy). `energy`: expected, E/N0 of the symbol as the carrier tells.
-/// Source: [proakis-digital-communications].
+/// The exact non-coherent statistic: with `sums` scaled so that noise has E|G|² = `energy` and the tone adds |G| =
+/// energy, tone k is likelier than none by I0(2|G_k|) exp(−energy). `energy`: expected, E/N0 of the symbol as the
+/// carrier tells. Source: [proakis-digital-communications].
 ToneEvidence weigh(const ToneSums& sums, double energy);
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

@@ -7,7 +7,7 @@
 namespace aeolis::telemetry {
 namespace {
 
-constexpr double level_gain = 0.1; // of each hop in the running mean of C/N0: 1.2 s; ours
+constexpr double level_gain = 0.1;  // of each hop in the running mean of C/N0: 1.2 s; ours
 
 // A pulse is 40 dB above the mean power, which noise never is; the mean forgets in 1024 samples. Ours.
 constexpr double pulse_ratio = 1e4;
@@ -29,13 +29,13 @@ double middle_power(std::span<const std::complex<float>> samples) {
     return *middle;
 }
 
-} // namespace
+}  // namespace
 
 Result<ToneReceiver> ToneReceiver::make(const MfskWaveform& waveform, double rate_hz, TimeTable predict_hz,
                                         double start_s) {
     if (!(rate_hz >= rate_least_hz && rate_hz <= rate_greatest_hz))
-        return Error{"a rate of " + std::to_string(rate_hz) + " Hz is outside " + std::to_string(rate_least_hz) + " ... " +
-                     std::to_string(rate_greatest_hz) + " Hz"};
+        return Error{"a rate of " + std::to_string(rate_hz) + " Hz is outside " + std::to_string(rate_least_hz) +
+                     " ... " + std::to_string(rate_greatest_hz) + " Hz"};
     if (2.5 * waveform.highest_tone_hz() > rate_hz)
         return Error{"a rate of " + std::to_string(rate_hz) + " Hz does not hold tones of up to " +
                      std::to_string(waveform.highest_tone_hz()) + " Hz to either side of the carrier"};
@@ -55,7 +55,7 @@ bool ToneReceiver::is_pulse(const std::complex<float>& sample) {
     if (mean_power_ == 0.0) mean_power_ = power;
     const double limit = pulse_ratio * mean_power_;
     mean_power_ += power_gain * (std::min(power, limit) - mean_power_);
-    if (power * pulse_ratio < mean_power_) mean_power_ /= 2.0; // noise is that weak once in ten thousand samples
+    if (power * pulse_ratio < mean_power_) mean_power_ /= 2.0;  // noise is that weak once in ten thousand samples
     return power > limit;
 }
 
@@ -97,8 +97,8 @@ bool ToneReceiver::search() {
     const auto unsearched = kept().subspan(static_cast<std::size_t>(searched_ - first_kept_));
     const auto found = carrier_search_.push(unsearched);
     searched_ += static_cast<std::int64_t>(unsearched.size());
-    const std::int64_t needed = found ? search_began_ + found->first_sample
-                                      : searched_ - carrier_search_.longest_window_samples();
+    const std::int64_t needed =
+        found ? search_began_ + found->first_sample : searched_ - carrier_search_.longest_window_samples();
     while (first_kept_ < needed && std::ssize(kept()) >= layout_.hop_samples() &&
            first_kept_ + layout_.hop_samples() <= searched_)
         pass_without_carrier();
@@ -144,8 +144,7 @@ void ToneReceiver::weigh_hops() {
             evidence.energy = evidence.total_n0_hz * waveform_.tone_fraction() * layout_.hop_s();
             correlator_.correlate(hop.quadrature, begin_s + lead_s_, evidence.sums);
             const auto scale = static_cast<float>(std::sqrt(evidence.energy / layout_.thinned_samples()));
-            for (auto& sum : evidence.sums)
-                sum *= scale;
+            for (auto& sum : evidence.sums) sum *= scale;
             status_.total_c_n0_dbhz = 10.0 * std::log10(std::max(evidence.total_n0_hz, 1e-9));
         }
         lead_s_ += evidence.doppler_hz / waveform_.carrier_hz * layout_.hop_s();
@@ -179,4 +178,4 @@ std::vector<ToneReception> ToneReceiver::take() {
     return std::exchange(receptions_, {});
 }
 
-} // namespace aeolis::telemetry
+}  // namespace aeolis::telemetry

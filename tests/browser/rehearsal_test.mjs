@@ -5,58 +5,88 @@ import { findings, secondsFromEntry, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
 
-test('an instructor’s fault and note are folded away while a rehearsal goes on, and stand in its review with a score that can be checked', { timeout: 240_000 }, async (t) => {
-    const server = await serve(t, 'rehearsal', ['--scenario', 'nominal_auto', '--pace', '10']);
-    const { page, problems, text, shows } = await open(server.address, { width: 1600, height: 900 });
-    await waitFor(() => text('stream-state'), /connected/);
-    await page.keyboard.press('s');
-    await shows('instructor', /Instructor: break something/);
-    assert.equal(await page.getByTestId('faults').count(), 0, 'folded away');
-    await page.locator('[data-testid="instructor"] > summary').click();
-    await shows('instructor', /no accounts: whoever opens this fold can read it/);
+test('an instructor’s fault and note are folded away while a rehearsal goes on, and stand in its review with a score that can be checked', {
+  timeout: 240_000,
+}, async (t) => {
+  const server = await serve(t, 'rehearsal', ['--scenario', 'nominal_auto', '--pace', '10']);
+  const { page, problems, text, shows } = await open(server.address, { width: 1600, height: 900 });
+  await waitFor(() => text('stream-state'), /connected/);
+  await page.keyboard.press('s');
+  await shows('instructor', /Instructor: break something/);
+  assert.equal(await page.getByTestId('faults').count(), 0, 'folded away');
+  await page.locator('[data-testid="instructor"] > summary').click();
+  await shows('instructor', /no accounts: whoever opens this fold can read it/);
 
-    await waitFor(() => text('clock-entry'), (clock) => secondsFromEntry(clock) > -1160); // the scenario has sent its own two commands
-    await page.getByTestId('fault-what').selectOption('DEVICE_RADAR');
-    await page.getByTestId('fault-unit').selectOption('B'); // one that is not in use: the landing is not to fail by it
-    await page.getByTestId('fault-inject').click();
-    await shows('instructor-message', /injected/);
-    await page.getByTestId('signature').fill('Ida');
-    await page.getByTestId('instructor-note').fill('do they see <b>it</b>?');
-    await page.keyboard.press('Enter');
-    await shows('instructor-message', /kept for the review/);
-    await shows('interventions', /E−\d\d:\d\d\.\d ▲ radar B silent, for 10 s\s+E−\d\d:\d\d\.\d Ida do they see <b>it<\/b>\?/);
-    assert.deepEqual(await findings(page, 'dark'), []);
-    assert.deepEqual((await server.get('/runs/latest/notes')).notes, [], 'not in the shift log');
+  await waitFor(
+    () => text('clock-entry'),
+    (clock) => secondsFromEntry(clock) > -1160,
+  ); // the scenario has sent its own two commands
+  await page.getByTestId('fault-what').selectOption('DEVICE_RADAR');
+  await page.getByTestId('fault-unit').selectOption('B'); // one that is not in use: the landing is not to fail by it
+  await page.getByTestId('fault-inject').click();
+  await shows('instructor-message', /injected/);
+  await page.getByTestId('signature').fill('Ida');
+  await page.getByTestId('instructor-note').fill('do they see <b>it</b>?');
+  await page.keyboard.press('Enter');
+  await shows('instructor-message', /kept for the review/);
+  await shows(
+    'interventions',
+    /E−\d\d:\d\d\.\d ▲ radar B silent, for 10 s\s+E−\d\d:\d\d\.\d Ida do they see <b>it<\/b>\?/,
+  );
+  assert.deepEqual(await findings(page, 'dark'), []);
+  assert.deepEqual((await server.get('/runs/latest/notes')).notes, [], 'not in the shift log');
 
-    await fetch(`${server.address}/api/v1/runs/latest/notes`, { method: 'POST', body: JSON.stringify({ text: 'radar B?', by: 'Bob' }) });
-    assert.equal((await fetch(`${server.address}/api/v1/runs/latest/commands`, { method: 'POST', body: JSON.stringify({ command: 'NO_OP', controller: 'Bob' }) })).status, 202);
-    await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pace: 0 }) });
-    await shows('review', /Review of run 1/, 120_000);
-    await page.locator('[data-testid="review"] > summary').click();
-    await shows('review-facts', /landing\s+E\+07:\d\d\.\d\s+touchdown/);
-    const facts = await text('review-facts');
-    assert.match(facts, /Touchdown: descending \d\.\d m\/s/);
-    assert.match(facts, /\d+\.\d km from the target, by the vehicle’s own navigation/);
-    assert.match(facts, /70 of 71|71 of 71/);
-    assert.match(facts, /packets heard live: 0 missing in the recording, 0 differ/);
-    assert.match(facts, /radar B silent, for 10 s; [\dm. ]+ s later: Bob wrote “radar B\?”/);
-    assert.match(facts, /1 command of people: 1 carried out, 0 failed, 0 cancelled, 0 not known\s+2 commands of the scenario’s script: 2 carried out/);
-    assert.match(await text('review-terms'), /commands\s+10\.0 of 10\s+1 of 1 of people/);
-    assert.match(await text('review'), /The instructor wrote\s+E−\d\d:\d\d\.\d Ida do they see <b>it<\/b>\?/);
+  await fetch(`${server.address}/api/v1/runs/latest/notes`, {
+    method: 'POST',
+    body: JSON.stringify({ text: 'radar B?', by: 'Bob' }),
+  });
+  assert.equal(
+    (
+      await fetch(`${server.address}/api/v1/runs/latest/commands`, {
+        method: 'POST',
+        body: JSON.stringify({ command: 'NO_OP', controller: 'Bob' }),
+      })
+    ).status,
+    202,
+  );
+  await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pace: 0 }) });
+  await shows('review', /Review of run 1/, 120_000);
+  await page.locator('[data-testid="review"] > summary').click();
+  await shows('review-facts', /landing\s+E\+07:\d\d\.\d\s+touchdown/);
+  const facts = await text('review-facts');
+  assert.match(facts, /Touchdown: descending \d\.\d m\/s/);
+  assert.match(facts, /\d+\.\d km from the target, by the vehicle’s own navigation/);
+  assert.match(facts, /70 of 71|71 of 71/);
+  assert.match(facts, /packets heard live: 0 missing in the recording, 0 differ/);
+  assert.match(facts, /radar B silent, for 10 s; [\dm. ]+ s later: Bob wrote “radar B\?”/);
+  assert.match(
+    facts,
+    /1 command of people: 1 carried out, 0 failed, 0 cancelled, 0 not known\s+2 commands of the scenario’s script: 2 carried out/,
+  );
+  assert.match(await text('review-terms'), /commands\s+10\.0 of 10\s+1 of 1 of people/);
+  assert.match(await text('review'), /The instructor wrote\s+E−\d\d:\d\d\.\d Ida do they see <b>it<\/b>\?/);
 
-    const terms = (await page.locator('[data-testid="review-terms"] .number').allInnerTexts()).map((each) => each.split(' of ').map(Number));
-    const [earned, most] = terms.reduce(([a, b], [c, d]) => [a + c, b + d], [0, 0]);
-    const said = Number(/(\d+) of 100/.exec(await text('review-score'))[1]);
-    assert.ok(terms.length >= 4 && Math.abs(said - (100 * earned) / most) <= 1, `${said} of ${JSON.stringify(terms)}`);
+  const terms = (await page.locator('[data-testid="review-terms"] .number').allInnerTexts()).map((each) =>
+    each.split(' of ').map(Number),
+  );
+  const [earned, most] = terms.reduce(([a, b], [c, d]) => [a + c, b + d], [0, 0]);
+  const said = Number(/(\d+) of 100/.exec(await text('review-score'))[1]);
+  assert.ok(terms.length >= 4 && Math.abs(said - (100 * earned) / most) <= 1, `${said} of ${JSON.stringify(terms)}`);
 
-    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
-    await page.getByTestId('review-copy').click();
-    await shows('review', /✓ copied/);
-    const copied = await page.evaluate(() => navigator.clipboard.readText());
-    assert.match(copied, /^Aeolis, review of run 1: nominal_auto, seed 1[^]*instructor's note: E−\d\d:\d\d\.\d Ida: do they see <b>it<\/b>\?[^]*score: \d+ of 100/);
-    for (const theme of ['dark', 'light']) {
-        await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-        await waitFor(() => findings(page, theme), (found) => found.length === 0);
-    }
-    assert.deepEqual(problems, []);
+  await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.getByTestId('review-copy').click();
+  await shows('review', /✓ copied/);
+  const copied = await page.evaluate(() => navigator.clipboard.readText());
+  assert.match(
+    copied,
+    /^Aeolis, review of run 1: nominal_auto, seed 1[^]*instructor's note: E−\d\d:\d\d\.\d Ida: do they see <b>it<\/b>\?[^]*score: \d+ of 100/,
+  );
+  for (const theme of ['dark', 'light']) {
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    await waitFor(
+      () => findings(page, theme),
+      (found) => found.length === 0,
+    );
+  }
+  assert.deepEqual(problems, []);
 });

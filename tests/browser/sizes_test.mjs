@@ -4,78 +4,132 @@ import { before, test } from 'node:test';
 import { comesToRest, waitFor, workplace } from './support.mjs';
 
 const { open, serve } = workplace();
-const post = (server, body) => fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
+const post = (server, body) =>
+  fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
 const held = async (t, scenario, e_s) => {
-    const server = await serve(t, scenario, ['--scenario', scenario, '--pace', '100']);
-    const passes = (wanted) => waitFor(async () => (await server.get('/runs')).runs[0]?.clocks?.e_s, (now) => now > wanted, 120_000);
-    await passes(e_s - 90);
-    await post(server, { pace: 10 });
-    await passes(e_s);
-    await post(server, { pause: true });
-    return server;
+  const server = await serve(t, scenario, ['--scenario', scenario, '--pace', '100']);
+  const passes = (wanted) =>
+    waitFor(
+      async () => (await server.get('/runs')).runs[0]?.clocks?.e_s,
+      (now) => now > wanted,
+      120_000,
+    );
+  await passes(e_s - 90);
+  await post(server, { pace: 10 });
+  await passes(e_s);
+  await post(server, { pause: true });
+  return server;
 };
 let blackout;
 
 before(async () => {
-    blackout = await held(undefined, 'nominal_auto', 60); // UHF is silent, and names why
+  blackout = await held(undefined, 'nominal_auto', 60); // UHF is silent, and names why
 });
 
 /** In the page: whether it scrolls, and how much of the command line is in sight. */
 function sight() {
-    const [line, column] = [document.querySelector('.command-line input'), document.querySelector('.right')].map((each) => each.getBoundingClientRect());
-    return { scrolls: document.documentElement.scrollHeight > innerHeight, line: line.top >= column.top && line.bottom <= Math.min(column.bottom, innerHeight) };
+  const [line, column] = [document.querySelector('.command-line input'), document.querySelector('.right')].map((each) =>
+    each.getBoundingClientRect(),
+  );
+  return {
+    scrolls: document.documentElement.scrollHeight > innerHeight,
+    line: line.top >= column.top && line.bottom <= Math.min(column.bottom, innerHeight),
+  };
 }
 
-test('a laptop shows all of the page and all of the command line: before it begins, when it is too late to, and in flight', { timeout: 180_000 }, async (t) => {
-    const late = await held(t, 'nominal', -820);
-    const early = await serve(t, 'early', ['--scenario', 'nominal']);
-    for (const [state, { address }, title] of [['early', early, /Press \//], ['late', late, /Too late for this run/], ['flying', blackout, /peak deceleration/]]) {
-        const { page, problems, shows } = await open(address);
-        await shows('waiting', title);
-        for (const [width, height] of [[1366, 768], [1440, 900], [1600, 900], [1920, 1080]]) {
-            await page.setViewportSize({ width, height });
-            await comesToRest(page);
-            assert.deepEqual(await page.evaluate(sight), { scrolls: false, line: true }, `${state}, ${width} × ${height}`);
-        }
-        assert.deepEqual(problems, []);
-        await page.close();
+test('a laptop shows all of the page and all of the command line: before it begins, when it is too late to, and in flight', {
+  timeout: 180_000,
+}, async (t) => {
+  const late = await held(t, 'nominal', -820);
+  const early = await serve(t, 'early', ['--scenario', 'nominal']);
+  for (const [state, { address }, title] of [
+    ['early', early, /Press \//],
+    ['late', late, /Too late for this run/],
+    ['flying', blackout, /peak deceleration/],
+  ]) {
+    const { page, problems, shows } = await open(address);
+    await shows('waiting', title);
+    for (const [width, height] of [
+      [1366, 768],
+      [1440, 900],
+      [1600, 900],
+      [1920, 1080],
+    ]) {
+      await page.setViewportSize({ width, height });
+      await comesToRest(page);
+      assert.deepEqual(await page.evaluate(sight), { scrolls: false, line: true }, `${state}, ${width} × ${height}`);
     }
+    assert.deepEqual(problems, []);
+    await page.close();
+  }
 });
 
-test('alone on a large screen what is waited for, the lanes of the timeline and the figures of the descent are read from afar', { timeout: 60_000 }, async () => {
-    const { page } = await open(blackout.address);
-    const px = (selector) => page.locator(selector).first().evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);
-    await page.goto(`${blackout.address}/?panel=waiting`);
-    await waitFor(() => px('.waiting h2'), (size) => size >= 50);
-    await waitFor(() => px('.waiting li'), (size) => size >= 36);
-    await page.goto(`${blackout.address}/?panel=descent`);
-    await waitFor(() => px('[data-testid=altitude]'), (size) => size >= 100);
-    await page.addInitScript(() => {
-        window.lanes = {};
-        const { fillText } = CanvasRenderingContext2D.prototype;
-        CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
-            window.lanes[words] = this.getTransform().transformPoint({ x, y }).y;
-            return fillText.call(this, words, x, y);
-        };
-    });
-    await page.goto(`${blackout.address}/?panel=timeline`);
-    await waitFor(() => page.evaluate(() => window.lanes['by tone'] - window.lanes.predicted), (apart) => apart >= 60);
-    await page.close();
+test('alone on a large screen what is waited for, the lanes of the timeline and the figures of the descent are read from afar', {
+  timeout: 60_000,
+}, async () => {
+  const { page } = await open(blackout.address);
+  const px = (selector) =>
+    page
+      .locator(selector)
+      .first()
+      .evaluate((each) => parseFloat(getComputedStyle(each).fontSize) * each.currentCSSZoom);
+  await page.goto(`${blackout.address}/?panel=waiting`);
+  await waitFor(
+    () => px('.waiting h2'),
+    (size) => size >= 50,
+  );
+  await waitFor(
+    () => px('.waiting li'),
+    (size) => size >= 36,
+  );
+  await page.goto(`${blackout.address}/?panel=descent`);
+  await waitFor(
+    () => px('[data-testid=altitude]'),
+    (size) => size >= 100,
+  );
+  await page.addInitScript(() => {
+    window.lanes = {};
+    const { fillText } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.fillText = function (words, x, y) {
+      window.lanes[words] = this.getTransform().transformPoint({ x, y }).y;
+      return fillText.call(this, words, x, y);
+    };
+  });
+  await page.goto(`${blackout.address}/?panel=timeline`);
+  await waitFor(
+    () => page.evaluate(() => window.lanes['by tone'] - window.lanes.predicted),
+    (apart) => apart >= 60,
+  );
+  await page.close();
 });
 
-test('what is opened stands beside the timeline, and a link’s reason takes no second row of the header', { timeout: 60_000 }, async () => {
-    const { page, shows } = await open(blackout.address);
-    await shows('link-UHF live', /plasma/);
-    assert.ok((await page.locator('.links').evaluate((links) => links.getBoundingClientRect().height)) < 45);
-    for (const [key, opened] of [['.', 'timepoint-detail'], ['h', 'anchors']]) {
-        for (const [width, height] of [[1920, 1080], [1366, 768]]) {
-            await page.setViewportSize({ width, height });
-            if ((await page.getByTestId(opened).count()) === 0) await page.keyboard.press(key);
-            await page.getByTestId(opened).waitFor();
-            await comesToRest(page);
-            const [picture, beside] = await Promise.all([page.getByTestId('timeline-canvas').boundingBox(), page.getByTestId(opened).boundingBox()]);
-            assert.ok(picture.x + picture.width <= beside.x && picture.width > 250, `${opened}, ${width}: ${picture.x + picture.width} > ${beside.x}`);
-        }
+test('what is opened stands beside the timeline, and a link’s reason takes no second row of the header', {
+  timeout: 60_000,
+}, async () => {
+  const { page, shows } = await open(blackout.address);
+  await shows('link-UHF live', /plasma/);
+  assert.ok((await page.locator('.links').evaluate((links) => links.getBoundingClientRect().height)) < 45);
+  for (const [key, opened] of [
+    ['.', 'timepoint-detail'],
+    ['h', 'anchors'],
+  ]) {
+    for (const [width, height] of [
+      [1920, 1080],
+      [1366, 768],
+    ]) {
+      await page.setViewportSize({ width, height });
+      if ((await page.getByTestId(opened).count()) === 0) await page.keyboard.press(key);
+      await page.getByTestId(opened).waitFor();
+      await comesToRest(page);
+      const [picture, beside] = await Promise.all([
+        page.getByTestId('timeline-canvas').boundingBox(),
+        page.getByTestId(opened).boundingBox(),
+      ]);
+      assert.ok(
+        picture.x + picture.width <= beside.x && picture.width > 250,
+        `${opened}, ${width}: ${picture.x + picture.width} > ${beside.x}`,
+      );
     }
-    await page.close();
+  }
+  await page.close();
 });

@@ -13,198 +13,234 @@ import { fileURLToPath } from 'node:url';
 export const root = path.resolve(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const { chromium } = createRequire(path.join(root, 'web/package.json'))('playwright-core');
 
-export const program = process.env.AEOLIS_PROGRAM ?? process.env.AEOLIS_BINARY ?? path.join(root, 'build/release/aeolis');
+export const program =
+  process.env.AEOLIS_PROGRAM ?? process.env.AEOLIS_BINARY ?? path.join(root, 'build/release/aeolis');
 const START_MS = 15_000;
 
 export async function temporaryFolder() {
-    const folder = await mkdtemp(path.join(tmpdir(), 'aeolis-browser-'));
-    return { folder, remove: () => rm(folder, { recursive: true, force: true }) };
+  const folder = await mkdtemp(path.join(tmpdir(), 'aeolis-browser-'));
+  return { folder, remove: () => rm(folder, { recursive: true, force: true }) };
 }
 
 /** `aeolis serve`; `port` 0 takes a free one. */
 export async function serve({ archive, port = 0, more = [], web = path.join(root, 'web/dist') }) {
-    const child = spawn(program, ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive,
-        '--web', web, ...more], { stdio: ['ignore', 'pipe', 'pipe'] });
-    let said = '';
-    const address = await new Promise((resolve, reject) => {
-        const late = setTimeout(() => reject(new Error(`no address after ${START_MS} ms; it said: ${said}`)), START_MS);
-        const listen = (chunk) => {
-            said += chunk;
-            const found = /http:\/\/127\.0\.0\.1:(\d+)/.exec(said);
-            if (found) {
-                clearTimeout(late);
-                resolve(found[0]);
-            }
-        };
-        child.stdout.on('data', listen);
-        child.stderr.on('data', listen);
-        child.on('error', reject);
-        child.on('exit', (code) => reject(new Error(`it ended with ${code}; it said: ${said}`)));
-    });
-    const end = async (signal) => {
-        if (child.exitCode !== null || child.signalCode !== null) return;
-        child.kill(signal);
-        await once(child, 'exit');
+  const child = spawn(
+    program,
+    ['serve', '--listen', `127.0.0.1:${port}`, '--archive', archive, '--web', web, ...more],
+    { stdio: ['ignore', 'pipe', 'pipe'] },
+  );
+  let said = '';
+  const address = await new Promise((resolve, reject) => {
+    const late = setTimeout(() => reject(new Error(`no address after ${START_MS} ms; it said: ${said}`)), START_MS);
+    const listen = (chunk) => {
+      said += chunk;
+      const found = /http:\/\/127\.0\.0\.1:(\d+)/.exec(said);
+      if (found) {
+        clearTimeout(late);
+        resolve(found[0]);
+      }
     };
-    return {
-        address, port: Number(new URL(address).port), said: () => said,
-        kill: () => end('SIGKILL'),
-        stop: async () => {
-            const late = setTimeout(() => child.kill('SIGKILL'), 5_000);
-            await end('SIGTERM');
-            clearTimeout(late);
-        },
-        get: async (route) => (await fetch(`${address}/api/v1${route}`)).json(),
-    };
+    child.stdout.on('data', listen);
+    child.stderr.on('data', listen);
+    child.on('error', reject);
+    child.on('exit', (code) => reject(new Error(`it ended with ${code}; it said: ${said}`)));
+  });
+  const end = async (signal) => {
+    if (child.exitCode !== null || child.signalCode !== null) return;
+    child.kill(signal);
+    await once(child, 'exit');
+  };
+  return {
+    address,
+    port: Number(new URL(address).port),
+    said: () => said,
+    kill: () => end('SIGKILL'),
+    stop: async () => {
+      const late = setTimeout(() => child.kill('SIGKILL'), 5_000);
+      await end('SIGTERM');
+      clearTimeout(late);
+    },
+    get: async (route) => (await fetch(`${address}/api/v1${route}`)).json(),
+  };
 }
 
 export async function browser() {
-    return chromium.launch({
-        executablePath: process.env.AEOLIS_CHROMIUM ?? '/usr/bin/chromium',
-        args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run',
-            '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-    });
+  return chromium.launch({
+    executablePath: process.env.AEOLIS_CHROMIUM ?? '/usr/bin/chromium',
+    args: [
+      '--headless',
+      '--no-sandbox',
+      '--disable-gpu',
+      '--disable-quic',
+      '--no-first-run',
+      '--disable-background-networking',
+      '--disable-component-update',
+      '--disable-sync',
+    ],
+  });
 }
 
 /** What the tests of one file share: a browser and a folder. A server of the test `t` ends with it, any other with the file. */
 export function workplace() {
-    let made;
-    const servers = [];
-    const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
-    after(async () => {
-        const [chrome, folder] = await both();
-        await Promise.all(servers.map((server) => server.stop()));
-        await chrome.close();
-        await folder.remove();
-    });
-    return {
-        open: async (address, size, script) => open((await both())[0], address, size, script),
-        /** With the archive NAME of this file's folder. */
-        serve: async (t, name, more = [], options = {}) => {
-            const [, { folder }] = await both();
-            const server = await serve({ archive: path.join(folder, `${name}.db`), more, ...options });
-            servers.push(server);
-            t?.after(() => server.stop());
-            return server;
-        },
-    };
+  let made;
+  const servers = [];
+  const both = () => (made ??= Promise.all([browser(), temporaryFolder()]));
+  after(async () => {
+    const [chrome, folder] = await both();
+    await Promise.all(servers.map((server) => server.stop()));
+    await chrome.close();
+    await folder.remove();
+  });
+  return {
+    open: async (address, size, script) => open((await both())[0], address, size, script),
+    /** With the archive NAME of this file's folder. */
+    serve: async (t, name, more = [], options = {}) => {
+      const [, { folder }] = await both();
+      const server = await serve({ archive: path.join(folder, `${name}.db`), more, ...options });
+      servers.push(server);
+      t?.after(() => server.stop());
+      return server;
+    },
+  };
 }
 
 /** A page that fails the test when its scripts do. */
 export async function open(chrome, address, size = { width: 1920, height: 1080 }, script = undefined) {
-    const page = await chrome.newPage({ viewport: size });
-    if (script) await page.addInitScript(script);
-    const problems = [];
-    page.on('pageerror', (error) => problems.push(String(error)));
-    page.on('console', (message) => {
-        // A connection that is refused while the server is down is what one of the tests is about.
-        if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text())) problems.push(`${message.text()} ${message.location().url}`);
-    });
-    page.setDefaultTimeout(20_000);
-    await page.goto(address);
-    const text = (id) => page.getByTestId(id).innerText();
-    return { page, problems, text, shows: (id, pattern, timeout) => waitFor(() => text(id), pattern, timeout) };
+  const page = await chrome.newPage({ viewport: size });
+  if (script) await page.addInitScript(script);
+  const problems = [];
+  page.on('pageerror', (error) => problems.push(String(error)));
+  page.on('console', (message) => {
+    // A connection that is refused while the server is down is what one of the tests is about.
+    if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text()))
+      problems.push(`${message.text()} ${message.location().url}`);
+  });
+  page.setDefaultTimeout(20_000);
+  await page.goto(address);
+  const text = (id) => page.getByTestId(id).innerText();
+  return { page, problems, text, shows: (id, pattern, timeout) => waitFor(() => text(id), pattern, timeout) };
 }
 
 const axe = createRequire(path.join(root, 'web/package.json')).resolve('axe-core/axe.min.js');
 
 /** What axe finds, one line each: rule, number of places, the first of them. In the second theme only what depends on colours. */
 export async function findings(page, theme) {
-    if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8')); // as a debugger does: a page's policy forbids scripts of others
-    const rules = theme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice'] : ['color-contrast', 'link-in-text-block'];
-    const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
-    return violations.map(({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`);
+  if (!(await page.evaluate(() => 'axe' in window))) await page.evaluate(readFileSync(axe, 'utf8')); // as a debugger does: a page's policy forbids scripts of others
+  const rules =
+    theme === 'dark'
+      ? ['wcag2a', 'wcag2aa', 'wcag21aa', 'wcag22aa', 'best-practice']
+      : ['color-contrast', 'link-in-text-block'];
+  const { violations } = await page.evaluate((runOnly) => window.axe.run(document, { runOnly }), rules);
+  return violations.map(
+    ({ id, nodes }) => `${id} × ${nodes.length}: ${nodes[0].target} ${nodes[0].failureSummary.split('\n')[1] ?? ''}`,
+  );
 }
 
 /** Waits until what `read` gives matches; fails with what it was last. What could not be read does not match. */
 export async function waitFor(read, wanted, timeout_ms = 20_000) {
-    const end = Date.now() + timeout_ms;
-    const fits = (value) => (wanted instanceof RegExp ? wanted.test(value) : wanted(value));
-    for (;;) {
-        let last;
-        try {
-            const value = await read();
-            if (fits(value)) return value;
-            last = value;
-        } catch (error) {
-            last = error;
-        }
-        if (Date.now() > end) throw new Error(`not within ${timeout_ms} ms: ${wanted}; it was: ${String(last).slice(0, 400)}`);
-        await new Promise((resolve) => setTimeout(resolve, 60));
+  const end = Date.now() + timeout_ms;
+  const fits = (value) => (wanted instanceof RegExp ? wanted.test(value) : wanted(value));
+  for (;;) {
+    let last;
+    try {
+      const value = await read();
+      if (fits(value)) return value;
+      last = value;
+    } catch (error) {
+      last = error;
     }
+    if (Date.now() > end)
+      throw new Error(`not within ${timeout_ms} ms: ${wanted}; it was: ${String(last).slice(0, 400)}`);
+    await new Promise((resolve) => setTimeout(resolve, 60));
+  }
 }
 
 /** Waits until neither header nor panels nor pictures have moved for 150 ms, six seconds at most: what is measured after a resize is what stays. */
 export async function comesToRest(page) {
-    let before;
-    for (let tries = 0; tries < 40; ++tries) {
-        await page.waitForTimeout(150);
-        const now = await page.evaluate(() => [...document.querySelectorAll('header, main, .panel, canvas')].map((each) => Object.values(each.getBoundingClientRect().toJSON()).join()).join(';'));
-        if (now === before) return;
-        before = now;
-    }
+  let before;
+  for (let tries = 0; tries < 40; ++tries) {
+    await page.waitForTimeout(150);
+    const now = await page.evaluate(() =>
+      [...document.querySelectorAll('header, main, .panel, canvas')]
+        .map((each) => Object.values(each.getBoundingClientRect().toJSON()).join())
+        .join(';'),
+    );
+    if (now === before) return;
+    before = now;
+  }
 }
 
 /** A way to a server on `port` that can be cut and mended, or frozen without a word, while the server goes on. What was frozen stays so; what comes after a thaw goes through. */
 export async function breakable(port) {
-    const open = new Set();
-    let broken = false;
-    let frozen = false;
-    const swallow = (socket) => socket.unpipe().resume();
-    const way = createServer((near) => {
-        if (broken) return near.destroy();
-        if (frozen) return open.add(swallow(near.on('error', () => near.destroy())));
-        const far = connect(port, '127.0.0.1');
-        near.pipe(far).pipe(near);
-        for (const [one, other] of [[near, far], [far, near]]) {
-            open.add(one);
-            one.on('error', () => other.destroy()).on('close', () => {
-                open.delete(one);
-                other.destroy();
-            });
-        }
-    });
-    const cut = () => {
-        broken = true;
-        for (const socket of open) socket.destroy();
-    };
-    way.listen(0, '127.0.0.1');
-    await once(way, 'listening');
-    return {
-        address: `http://127.0.0.1:${way.address().port}`, cut, mend: () => (broken = false),
-        freeze: () => {
-            frozen = true;
-            for (const socket of open) swallow(socket);
-        },
-        thaw: () => (frozen = false),
-        close: () => {
-            cut();
-            way.close();
-        },
-    };
+  const open = new Set();
+  let broken = false;
+  let frozen = false;
+  const swallow = (socket) => socket.unpipe().resume();
+  const way = createServer((near) => {
+    if (broken) return near.destroy();
+    if (frozen) return open.add(swallow(near.on('error', () => near.destroy())));
+    const far = connect(port, '127.0.0.1');
+    near.pipe(far).pipe(near);
+    for (const [one, other] of [
+      [near, far],
+      [far, near],
+    ]) {
+      open.add(one);
+      one
+        .on('error', () => other.destroy())
+        .on('close', () => {
+          open.delete(one);
+          other.destroy();
+        });
+    }
+  });
+  const cut = () => {
+    broken = true;
+    for (const socket of open) socket.destroy();
+  };
+  way.listen(0, '127.0.0.1');
+  await once(way, 'listening');
+  return {
+    address: `http://127.0.0.1:${way.address().port}`,
+    cut,
+    mend: () => (broken = false),
+    freeze: () => {
+      frozen = true;
+      for (const socket of open) swallow(socket);
+    },
+    thaw: () => (frozen = false),
+    close: () => {
+      cut();
+      way.close();
+    },
+  };
 }
 
 /** Until the pace is what is wanted, by its keys. */
 export async function setPace(page, wanted) {
-    for (let presses = 0; presses < 12; ++presses) {
-        const now = Number(await page.getByTestId('pace').inputValue());
-        if (now === wanted) return;
-        await page.keyboard.press(now === 0 || now > wanted ? '-' : '+');
-        await waitFor(() => page.getByTestId('pace').inputValue(), (value) => Number(value) !== now, 5_000);
-    }
-    throw new Error(`the pace never became ${wanted}`);
+  for (let presses = 0; presses < 12; ++presses) {
+    const now = Number(await page.getByTestId('pace').inputValue());
+    if (now === wanted) return;
+    await page.keyboard.press(now === 0 || now > wanted ? '-' : '+');
+    await waitFor(
+      () => page.getByTestId('pace').inputValue(),
+      (value) => Number(value) !== now,
+      5_000,
+    );
+  }
+  throw new Error(`the pace never became ${wanted}`);
 }
 
 /** What a stage of the newest command of this name looks like in the history: ok, failed, unknown, pending, none. */
 export const stageLook = (page, command, name) =>
-    page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
+  page.locator(`[data-command="${command}"] [data-stage="${name}"]`).first().getAttribute('data-look');
 
 /** What has the focus, by its test name. */
 export const focused = (page) => page.evaluate(() => document.activeElement?.dataset.testid);
 
 /** "E+00:04:28" in seconds. */
 export function secondsFromEntry(text) {
-    const [, sign, hours, minutes, seconds] = /E([+−])(\d+):(\d+):(\d+)/.exec(text) ?? [];
-    const value = Number(hours) * 3600 + Number(minutes) * 60 + Number(seconds);
-    return sign === '−' ? -value : value;
+  const [, sign, hours, minutes, seconds] = /E([+−])(\d+):(\d+):(\d+)/.exec(text) ?? [];
+  const value = Number(hours) * 3600 + Number(minutes) * 60 + Number(seconds);
+  return sign === '−' ? -value : value;
 }

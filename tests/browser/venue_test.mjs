@@ -9,47 +9,63 @@ import { findings, program, temporaryFolder, waitFor, workplace } from './suppor
 
 const { open, serve } = workplace();
 
-test('a real venue without commands offers none and has a dash for every clock that nobody knows, before a packet has come and after', { timeout: 120_000 }, async (t) => {
-    const { folder, remove } = await temporaryFolder();
-    t.after(remove);
-    const xtce = path.join(folder, 'mission.xml');
-    execFileSync(program, ['dictionary', 'export', '--out', xtce]);
-    const rehearsal = await serve(t, 'packets', ['--scenario', 'nominal_auto', '--pace', '100']);
-    const { packets } = await waitFor(() => rehearsal.get('/runs/latest/packets?limit=200'), (list) => list.packets?.length === 200, 60_000);
-    await rehearsal.stop();
+test('a real venue without commands offers none and has a dash for every clock that nobody knows, before a packet has come and after', {
+  timeout: 120_000,
+}, async (t) => {
+  const { folder, remove } = await temporaryFolder();
+  t.after(remove);
+  const xtce = path.join(folder, 'mission.xml');
+  execFileSync(program, ['dictionary', 'export', '--out', xtce]);
+  const rehearsal = await serve(t, 'packets', ['--scenario', 'nominal_auto', '--pace', '100']);
+  const { packets } = await waitFor(
+    () => rehearsal.get('/runs/latest/packets?limit=200'),
+    (list) => list.packets?.length === 200,
+    60_000,
+  );
+  await rehearsal.stop();
 
-    const station = createServer();
-    station.listen(0, '127.0.0.1');
-    await once(station, 'listening');
-    t.after(() => station.close());
-    const followed = once(station, 'connection');
-    const server = await serve(t, 'venue', ['--xtce', xtce, '--downlink', `tcp://127.0.0.1:${station.address().port}`]);
-    const [link] = await followed;
-    link.on('error', () => undefined);
-    t.after(() => link.destroy());
-    const { page, problems, text, shows } = await open(server.address);
-    await shows('badge', /^LIVE/);
-    await shows('waiting', /Nothing has come yet\s+This venue has no commands here\./);
-    const clocks = () => Promise.all(['entry', 'scet', 'ert', 'sclk', 'light-time'].map((id) => text(`clock-${id}`)));
-    assert.deepEqual(await clocks(), ['E —', '—', '—', '—', '—']);
-    const nothingToSend = async () => {
-        await page.keyboard.press('/');
-        assert.equal(await page.locator('[data-testid="command-line"], [data-testid="latest-send"], [data-testid="waiting"] button, [data-testid="guide"]').count(), 0);
-        assert.match(await text('no-commands'), /This venue has no commands here/);
-    };
-    await nothingToSend();
+  const station = createServer();
+  station.listen(0, '127.0.0.1');
+  await once(station, 'listening');
+  t.after(() => station.close());
+  const followed = once(station, 'connection');
+  const server = await serve(t, 'venue', ['--xtce', xtce, '--downlink', `tcp://127.0.0.1:${station.address().port}`]);
+  const [link] = await followed;
+  link.on('error', () => undefined);
+  t.after(() => link.destroy());
+  const { page, problems, text, shows } = await open(server.address);
+  await shows('badge', /^LIVE/);
+  await shows('waiting', /Nothing has come yet\s+This venue has no commands here\./);
+  const clocks = () => Promise.all(['entry', 'scet', 'ert', 'sclk', 'light-time'].map((id) => text(`clock-${id}`)));
+  assert.deepEqual(await clocks(), ['E —', '—', '—', '—', '—']);
+  const nothingToSend = async () => {
+    await page.keyboard.press('/');
+    assert.equal(
+      await page
+        .locator(
+          '[data-testid="command-line"], [data-testid="latest-send"], [data-testid="waiting"] button, [data-testid="guide"]',
+        )
+        .count(),
+      0,
+    );
+    assert.match(await text('no-commands'), /This venue has no commands here/);
+  };
+  await nothingToSend();
 
-    for (const { hex } of packets) link.write(Buffer.from(hex, 'hex'));
-    await shows('waiting', /Listening\s+This venue has no commands here\./);
-    await shows('clock-sclk', /^\d{9}\.\d{3}$/);
-    const [entry, ...others] = await clocks();
-    assert.deepEqual([entry, others[0], others[1], others[3]], ['E —', '—', '—', '—']);
-    assert.doesNotMatch(await text('phases'), /E[+−]\d|predicted/, 'nobody knows when this vehicle enters');
-    await nothingToSend();
-    for (const theme of ['dark', 'light']) {
-        await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
-        await waitFor(() => findings(page, theme), (found) => found.length === 0);
-    }
-    assert.deepEqual(problems, []);
-    await page.close();
+  for (const { hex } of packets) link.write(Buffer.from(hex, 'hex'));
+  await shows('waiting', /Listening\s+This venue has no commands here\./);
+  await shows('clock-sclk', /^\d{9}\.\d{3}$/);
+  const [entry, ...others] = await clocks();
+  assert.deepEqual([entry, others[0], others[1], others[3]], ['E —', '—', '—', '—']);
+  assert.doesNotMatch(await text('phases'), /E[+−]\d|predicted/, 'nobody knows when this vehicle enters');
+  await nothingToSend();
+  for (const theme of ['dark', 'light']) {
+    await page.evaluate((name) => (document.documentElement.dataset.theme = name), theme);
+    await waitFor(
+      () => findings(page, theme),
+      (found) => found.length === 0,
+    );
+  }
+  assert.deepEqual(problems, []);
+  await page.close();
 });

@@ -15,7 +15,7 @@ const dictionary::Command& command(std::string_view name) {
     return *dictionary.command(name);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a harmless command needs neither arming nor confirmation", "[authorise]") {
     CHECK_FALSE(is_hazardous(command("NO_OP")));

@@ -14,9 +14,15 @@ namespace {
 
 using Service = Fop::Service;
 
-Ert at_s(double seconds) { return {static_cast<std::int64_t>(seconds * 1.0e6)}; }
-std::vector<std::uint8_t> packet(std::uint8_t value) { return std::vector<std::uint8_t>(20, value); }
-Clcw report(std::uint8_t expected) { return {.expected = expected}; }
+Ert at_s(double seconds) {
+    return {static_cast<std::int64_t>(seconds * 1.0e6)};
+}
+std::vector<std::uint8_t> packet(std::uint8_t value) {
+    return std::vector<std::uint8_t>(20, value);
+}
+Clcw report(std::uint8_t expected) {
+    return {.expected = expected};
+}
 
 /// What the link sends now, as the frames in it.
 std::vector<CommandLink::Radiated> radiated(CommandLink& link, double at) {
@@ -25,7 +31,7 @@ std::vector<CommandLink::Radiated> radiated(CommandLink& link, double at) {
     return all;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a packet leaves as a CLTU with a frame that has it", "[commands][R44]") {
     CommandLink link{0.0};
@@ -67,9 +73,11 @@ TEST_CASE("without any report a frame is sent again after both light times, and 
     CHECK(reports[0] == Fop::Report{9, Fop::Fate::never_acknowledged, CommandLink::transmissions_max});
 }
 
-TEST_CASE("no command is carried out twice, nor said to be taken when it was not, over a restart of the computer", "[commands][R23]") {
+TEST_CASE("no command is carried out twice, nor said to be taken when it was not, over a restart of the computer",
+          "[commands][R23]") {
     using flight::Farm;
-    const Farm::Settings settings{.spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true};
+    const Farm::Settings settings{
+        .spacecraft = spacecraft_id, .virtual_channel = telecommand_channel, .window = 128, .locked_at_start = true};
     // Frames of any sequence, also about its wrap; `taken` of three were taken when the computer starts anew.
     for (unsigned before = 0; before < 300; before += 1) {
         for (std::size_t taken = 0; taken <= 3; ++taken) {
@@ -104,7 +112,7 @@ TEST_CASE("no command is carried out twice, nor said to be taken when it was not
             const auto units = radiated(link, now);
             REQUIRE(units.size() == 3);
             for (std::size_t i = 0; i < taken; ++i) arrive(units[i]);
-            farm = Farm{settings}; // ground has heard nothing of them
+            farm = Farm{settings};  // ground has heard nothing of them
             link.pass(at_s(now + 2.0 * CommandLink::report_s));
             for (int i = 0; i < 5; ++i) exchange();
             for (const auto& report : link.take_reports()) fates[report.tag] = report.fate;
@@ -122,7 +130,7 @@ TEST_CASE("when the vehicle counts from 0 again it is told the sequence, and wha
     for (std::uint64_t tag = 0; tag < 5; ++tag) REQUIRE(link.send(tag, packet(1), Service::sequence_controlled));
     radiated(link, 0.0);
     link.hear(report(5), at_s(1));
-    link.hear(report(0), at_s(10)); // its computer has started anew
+    link.hear(report(0), at_s(10));  // its computer has started anew
     const auto controls = radiated(link, 10.0);
     REQUIRE(controls.size() == 2);
     CHECK_FALSE(controls[0].tag);

@@ -12,12 +12,11 @@ namespace {
 /// All that leave at that instant.
 Numbers leaving(CommandQueue& queue, Ert now) {
     Numbers all;
-    while (const auto number = queue.take_next(now))
-        all.push_back(*number);
+    while (const auto number = queue.take_next(now)) all.push_back(*number);
     return all;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("of commands that are due the more urgent leaves first, of equals the older", "[commands][queue]") {
     CommandQueue queue;
@@ -37,7 +36,8 @@ TEST_CASE("a command with a time leaves then and not before", "[commands][queue]
     CHECK(leaving(queue, Ert{100}) == Numbers{1});
 }
 
-TEST_CASE("a held command waits for its release, and then for its time; a cancelled one never leaves", "[commands][queue]") {
+TEST_CASE("a held command waits for its release, and then for its time; a cancelled one never leaves",
+          "[commands][queue]") {
     CommandQueue queue;
     queue.add({.number = 1, .priority = 0, .release_at = Ert{100}, .held = true});
     queue.add({.number = 2, .priority = 0, .release_at = {}, .held = true});
@@ -77,13 +77,15 @@ TEST_CASE("what comes back into the queue leaves by its number, before what was 
     CHECK(queue.waiting().empty());
 }
 
-TEST_CASE("those that are in order leave by their number, whatever their time, priority or hold; others pass them", "[commands][queue][R19]") {
+TEST_CASE("those that are in order leave by their number, whatever their time, priority or hold; others pass them",
+          "[commands][queue][R19]") {
     CommandQueue queue;
-    queue.add({.number = 1, .priority = 0, .release_at = Ert{100}, .held = false, .needs_approval = false, .in_order = true});
+    queue.add(
+        {.number = 1, .priority = 0, .release_at = Ert{100}, .held = false, .needs_approval = false, .in_order = true});
     queue.add({.number = 2, .priority = 9, .release_at = {}, .held = false, .needs_approval = false, .in_order = true});
     queue.add({.number = 3, .priority = 0, .release_at = {}, .held = true, .needs_approval = false, .in_order = true});
     queue.add({.number = 4, .priority = 0, .release_at = {}, .held = false});
-    CHECK(queue.leaves_after(queue.waiting().front()) == 1); // 2, the most urgent
+    CHECK(queue.leaves_after(queue.waiting().front()) == 1);  // 2, the most urgent
     CHECK_FALSE(queue.due(2, Ert{0}));
     CHECK(leaving(queue, Ert{0}) == Numbers{4});
     CHECK(queue.release(3));
@@ -91,15 +93,21 @@ TEST_CASE("those that are in order leave by their number, whatever their time, p
     CHECK(leaving(queue, Ert{100}) == Numbers{1, 2, 3});
 }
 
-TEST_CASE("when one in order comes to nothing those behind it wait until each is judged anew", "[commands][queue][R19]") {
+TEST_CASE("when one in order comes to nothing those behind it wait until each is judged anew",
+          "[commands][queue][R19]") {
     CommandQueue queue;
     for (const std::uint64_t number : {1, 2, 3, 4})
-        queue.add({.number = number, .priority = 0, .release_at = {}, .held = number < 3, .needs_approval = false, .in_order = number != 4});
+        queue.add({.number = number,
+                   .priority = 0,
+                   .release_at = {},
+                   .held = number < 3,
+                   .needs_approval = false,
+                   .in_order = number != 4});
     CHECK(queue.cancel(2));
     CHECK(queue.doubt_after(2) == Numbers{3});
     CHECK(queue.release(1));
     CHECK(leaving(queue, Ert{0}) == Numbers{1, 4});
-    CHECK(queue.release(3)); // nobody's word but this makes it leave
+    CHECK(queue.release(3));  // nobody's word but this makes it leave
     CHECK(leaving(queue, Ert{0}).empty());
     CHECK(queue.judged(3));
     CHECK_FALSE(queue.judged(3));

@@ -36,7 +36,7 @@ std::vector<NamedValue> with(std::string name, double value) {
     return arguments;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a command is a telecommand packet that says what was asked, defaults filled in", "[encoder][R44]") {
     const auto packet = encode(set_parameters(), with("solution_id", 513), 9);
@@ -46,7 +46,7 @@ TEST_CASE("a command is a telecommand packet that says what was asked, defaults 
     CHECK(read->primary.apid == telecommand_apid);
     CHECK(read->primary.count == 9);
     CHECK(read->opcode == tests::set_parameters);
-    BitReader reader{read->arguments}; // as flight reads it
+    BitReader reader{read->arguments};  // as flight reads it
     CHECK(reader.get(16) == 513);
     CHECK(reader.get_double() == 1000.5);
     CHECK(reader.get_float() == 405.0F);

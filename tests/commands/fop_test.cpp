@@ -19,7 +19,9 @@ using Fate = Fop::Fate;
 std::vector<std::uint8_t> data_of(std::uint64_t tag) {
     return {static_cast<std::uint8_t>(tag >> 8), static_cast<std::uint8_t>(tag)};
 }
-std::uint64_t tag_of(std::span<const std::uint8_t> data) { return data[0] * 256U + data[1]; }
+std::uint64_t tag_of(std::span<const std::uint8_t> data) {
+    return data[0] * 256U + data[1];
+}
 
 /// A vehicle and the way to it and back, a number of steps long each, that loses what the test says.
 struct Channel {
@@ -58,11 +60,14 @@ struct Channel {
     std::map<std::uint64_t, std::vector<Fate>> reports;
 };
 
-Fop::Settings settings(unsigned transmissions_max) { return {76, 1, 20, transmissions_max}; }
+Fop::Settings settings(unsigned transmissions_max) {
+    return {76, 1, 20, transmissions_max};
+}
 
-} // namespace
+}  // namespace
 
-TEST_CASE("no frame is taken twice or out of order, and each is acknowledged or reported, whatever is lost", "[commands]") {
+TEST_CASE("no frame is taken twice or out of order, and each is acknowledged or reported, whatever is lost",
+          "[commands]") {
     for (unsigned seed = 0; seed < 300; ++seed) {
         std::mt19937 random{seed};
         Channel channel{seed, random() % 30};
@@ -122,7 +127,8 @@ TEST_CASE("a channel that loses nothing carries each frame once, light time or n
     for (const std::size_t delay : {0U, 1U, 10U, 100U}) {
         Channel channel{1, delay};
         Fop fop{settings(1)};
-        for (std::uint64_t tag = 0; tag < 300; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
+        for (std::uint64_t tag = 0; tag < 300; ++tag)
+            REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
         for (int step = 0; step < 5000; ++step) channel.step(fop, 0.0);
         CHECK(channel.taken.size() == 300);
         CHECK(fop.state() == Fop::State::active);
@@ -153,7 +159,7 @@ TEST_CASE("what was never acknowledged is reported, and a restart goes on with w
     for (std::uint64_t tag = 0; tag < 4; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
     for (int i = 0; i < 3; ++i) {
         while (fop.next()) {
-        } // into the void
+        }  // into the void
         fop.repeat();
     }
     CHECK(fop.state() == Fop::State::halted);
@@ -163,7 +169,7 @@ TEST_CASE("what was never acknowledged is reported, and a restart goes on with w
     CHECK_FALSE(fop.next());
     fop.restart();
     for (int i = 0; i < 2; ++i) CHECK(farm.take(*read_tc_frame(fop.next()->frame)) == flight::Farm::Verdict::executed);
-    CHECK_FALSE(fop.next()); // until the vehicle says that it knows
+    CHECK_FALSE(fop.next());  // until the vehicle says that it knows
     fop.on(farm.clcw());
     const auto third = fop.next();
     REQUIRE(third);
@@ -185,7 +191,8 @@ TEST_CASE("lockout halts, a restart unlocks; a report of frames never sent halts
     CHECK(fop.why_halted() == Fop::Halt::contradiction);
 }
 
-TEST_CASE("wait holds what is in sequence, not what is expedited; reports of other channels are nothing", "[commands]") {
+TEST_CASE("wait holds what is in sequence, not what is expedited; reports of other channels are nothing",
+          "[commands]") {
     Fop fop{settings(5)};
     fop.on({.virtual_channel = 1, .wait = true});
     REQUIRE(fop.send(1, data_of(1), Service::sequence_controlled));
@@ -207,11 +214,12 @@ TEST_CASE("what does not fit a frame, or is one too many, is refused in words", 
     CHECK_FALSE(fop.send(1, data_of(1), Service::sequence_controlled));
 }
 
-TEST_CASE("what was never radiated can be taken back; what was stays until it is acknowledged or given up", "[commands]") {
+TEST_CASE("what was never radiated can be taken back; what was stays until it is acknowledged or given up",
+          "[commands]") {
     Fop fop{{76, 1, 1, 2}};
     for (std::uint64_t tag = 0; tag < 3; ++tag) REQUIRE(fop.send(tag, data_of(tag), Service::sequence_controlled));
     CHECK(fop.next()->tag == 0U);
-    CHECK_FALSE(fop.next()); // the window is full
+    CHECK_FALSE(fop.next());  // the window is full
     REQUIRE(fop.send(3, data_of(3), Service::expedited));
     CHECK(fop.take_back() == std::vector<std::uint64_t>{3, 1, 2});
     CHECK(fop.waiting() == 0);

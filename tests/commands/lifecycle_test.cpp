@@ -42,7 +42,7 @@ struct Uplink {
     CommandLifecycle lifecycle;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("no stage on board is green before its evidence came", "[lifecycle][R44]") {
     Uplink uplink{"NO_OP"};
@@ -137,7 +137,7 @@ TEST_CASE("only a report made after the execution verifies", "[lifecycle][R23]")
     uplink.report(5000.0, true);
     CHECK(uplink.lifecycle.status(Stage::verified) == Status::ok);
     CHECK(uplink.evidence(Stage::verified) == "read back: 3 of 3 arguments equal bit for bit at SCLK 5000.000");
-    uplink.report(6000.0, false); // of a later command
+    uplink.report(6000.0, false);  // of a later command
     CHECK(uplink.lifecycle.status(Stage::verified) == Status::ok);
 }
 
@@ -154,8 +154,7 @@ TEST_CASE("a read-back that differs fails, and one that is equal later mends it"
 TEST_CASE("a command that nothing reads back has no stage verified", "[lifecycle]") {
     Uplink uplink{"NO_OP"};
     CHECK_FALSE(uplink.lifecycle.exists(Stage::verified));
-    for (const auto& change : uplink.changes)
-        CHECK(change.stage != Stage::verified);
+    for (const auto& change : uplink.changes) CHECK(change.stage != Stage::verified);
 }
 
 TEST_CASE("a command that never left Earth failed on board as well", "[lifecycle]") {
@@ -203,7 +202,8 @@ TEST_CASE("every command of the shipped dictionary is shown by events, from acce
     }
 }
 
-TEST_CASE("what the uplink gives back before it was radiated waits again, and can still be released or fail", "[lifecycle][R44]") {
+TEST_CASE("what the uplink gives back before it was radiated waits again, and can still be released or fail",
+          "[lifecycle][R44]") {
     Uplink uplink{"NO_OP"};
     CommandLifecycle lifecycle{uplink.lifecycle.command(), 1, 0.0, false};
     std::vector<StageChange> changes;

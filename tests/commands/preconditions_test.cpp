@@ -21,7 +21,7 @@ struct Ground {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a precondition holds or fails by the latest value, which is told", "[preconditions][R23]") {
     Ground ground;

@@ -29,7 +29,7 @@ struct Ground {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the report of what is held is found by its fields", "[read_back]") {
     const Ground ground;

@@ -7,7 +7,8 @@ using namespace aeolis;
 
 TEST_CASE("a command that changes an offset changes that row of the timeline alone", "[commands][R19]") {
     auto changed = tests::shipped_dictionary();
-    const std::vector<commands::NamedValue> timepoint{{"timepoint", 3.0}, {"desired_offset_s", -820.0}, {"minimum_offset_s", 1.0}};
+    const std::vector<commands::NamedValue> timepoint{
+        {"timepoint", 3.0}, {"desired_offset_s", -820.0}, {"minimum_offset_s", 1.0}};
     CHECK(commands::changes_offsets("EDL_SET_TIMEPOINT_OFFSET"));
     commands::apply_offsets(changed, "EDL_SET_TIMEPOINT_OFFSET", timepoint);
     CHECK(changed.timeline[3].desired_offset_s == -820.0);
@@ -19,16 +20,22 @@ TEST_CASE("a command that changes an offset changes that row of the timeline alo
     CHECK(changed.anchors[2].offset_s == -7200.0);
 }
 
-TEST_CASE("what a command moves is the timepoint that it names, or all that hang on the anchor that it names", "[commands][R19]") {
+TEST_CASE("what a command moves is the timepoint that it names, or all that hang on the anchor that it names",
+          "[commands][R19]") {
     const auto& words = tests::shipped_dictionary();
-    CHECK(commands::moved_timepoints(words, "EDL_SET_TIMEPOINT_OFFSET", std::vector<commands::NamedValue>{{"timepoint", 3.0}}) == std::vector<std::size_t>{3});
+    CHECK(commands::moved_timepoints(words, "EDL_SET_TIMEPOINT_OFFSET",
+                                     std::vector<commands::NamedValue>{{"timepoint", 3.0}}) ==
+          std::vector<std::size_t>{3});
     const auto& anchor = words.timeline[3].anchor;
     REQUIRE(anchor);
-    const auto moved = commands::moved_timepoints(words, "EDL_SET_ANCHOR_OFFSET", std::vector<commands::NamedValue>{{"anchor", static_cast<double>(anchor->value)}});
+    const auto moved =
+        commands::moved_timepoints(words, "EDL_SET_ANCHOR_OFFSET",
+                                   std::vector<commands::NamedValue>{{"anchor", static_cast<double>(anchor->value)}});
     REQUIRE(moved.size() > 1);
-    for (const auto index : moved)
-        CHECK(words.timeline[index].anchor == anchor);
-    CHECK(commands::moved_timepoints(words, "NO_OP", std::vector<commands::NamedValue>{{"timepoint", 3.0}, {"anchor", 0.0}}).empty());
+    for (const auto index : moved) CHECK(words.timeline[index].anchor == anchor);
+    CHECK(commands::moved_timepoints(words, "NO_OP",
+                                     std::vector<commands::NamedValue>{{"timepoint", 3.0}, {"anchor", 0.0}})
+              .empty());
 }
 
 TEST_CASE("a row that is not there, and any other command, change nothing", "[commands][R19]") {
@@ -37,7 +44,8 @@ TEST_CASE("a row that is not there, and any other command, change nothing", "[co
     const std::vector<commands::NamedValue> beyond{{"timepoint", 1.0e6}, {"anchor", 1.0e6}, {"desired_offset_s", 5.0}};
     for (const char* command : {"EDL_SET_TIMEPOINT_OFFSET", "EDL_SET_ANCHOR_OFFSET", "NO_OP"})
         commands::apply_offsets(changed, command, beyond);
-    commands::apply_offsets(changed, "NO_OP", std::vector<commands::NamedValue>{{"timepoint", 0.0}, {"desired_offset_s", 5.0}});
+    commands::apply_offsets(changed, "NO_OP",
+                            std::vector<commands::NamedValue>{{"timepoint", 0.0}, {"desired_offset_s", 5.0}});
     CHECK(changed.timeline[0].desired_offset_s == before);
     CHECK_FALSE(commands::changes_offsets("EDL_SET_PARAMETERS"));
 }

@@ -12,10 +12,12 @@ constexpr Ert at_minute(std::int64_t minutes) {
 }
 
 TrackingSchedule three_passes() {
-    return TrackingSchedule{{{"DSS-43", at_minute(100), at_minute(200)}, {"DSS-14", at_minute(0), at_minute(50)}, {"DSS-34", at_minute(150), at_minute(180)}}};
+    return TrackingSchedule{{{"DSS-43", at_minute(100), at_minute(200)},
+                             {"DSS-14", at_minute(0), at_minute(50)},
+                             {"DSS-34", at_minute(150), at_minute(180)}}};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a station sees the vehicle from the begin of its pass up to its end", "[commands][tracking]") {
     const auto schedule = three_passes();
@@ -35,10 +37,12 @@ TEST_CASE("why nothing can leave names the last pass and the next", "[commands][
     const auto schedule = three_passes();
     CHECK(schedule.next_after(at_minute(60))->station == "DSS-43");
     CHECK(schedule.refusal(at_minute(60)) ==
-          "no station sees the vehicle at 2000-001T13:00:00.000: the last pass, of DSS-14, ended 2000-001T12:50:00.000; the next, of "
+          "no station sees the vehicle at 2000-001T13:00:00.000: the last pass, of DSS-14, ended "
+          "2000-001T12:50:00.000; the next, of "
           "DSS-43, is 2000-001T13:40:00.000 to 2000-001T15:20:00.000: give a release time within it");
     CHECK(schedule.next_after(at_minute(200)) == nullptr);
-    CHECK_THAT(schedule.refusal(at_minute(200)), Catch::Contains("of DSS-43, ended") && Catch::EndsWith("none comes after it"));
+    CHECK_THAT(schedule.refusal(at_minute(200)),
+               Catch::Contains("of DSS-43, ended") && Catch::EndsWith("none comes after it"));
     CHECK_THAT(schedule.refusal(at_minute(-1)), Catch::Contains("no pass was before; the next, of DSS-14"));
 }
 

@@ -31,8 +31,7 @@ TEST_CASE("any sequence of fields reads back as it was written", "[common]") {
             fields.emplace_back(value, bits);
         }
         BitReader reader{octets};
-        for (const auto& [value, bits] : fields)
-            REQUIRE(reader.get(bits) == value);
+        for (const auto& [value, bits] : fields) REQUIRE(reader.get(bits) == value);
     }
 }
 

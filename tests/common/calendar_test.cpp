@@ -8,11 +8,12 @@ TEST_CASE("days are counted as the Gregorian calendar has them", "[common]") {
     CHECK(days_since_2000(2000, 3, 1) == 60);
     CHECK(days_since_2000(2012, 8, 6) == 4601);
     CHECK(days_since_2000(1970, 1, 1) == -10957);
-    CHECK(days_since_2000(1858, 11, 17) == 51544 * -1); // the modified Julian date's beginning
+    CHECK(days_since_2000(1858, 11, 17) == 51544 * -1);  // the modified Julian date's beginning
     std::int64_t next = *days_since_2000(1899, 1, 1);
     for (int year = 1899; year < 2110; ++year)
         for (unsigned month = 1; month <= 12; ++month)
-            for (unsigned day = 1; days_since_2000(year, month, day); ++day) REQUIRE(days_since_2000(year, month, day) == next++);
+            for (unsigned day = 1; days_since_2000(year, month, day); ++day)
+                REQUIRE(days_since_2000(year, month, day) == next++);
     CHECK(next == days_since_2000(2110, 1, 1));
 }
 

@@ -15,9 +15,11 @@ Content any_content(std::mt19937& random, const std::vector<std::uint8_t>& data,
     case 0: return FileData{word() % 0xFFFF0000, data};
     case 1: return Metadata{random() % 2 == 0, Checksum::modular, word(), name, name};
     case 2: return Eof{Condition::cancel_received, word(), word()};
-    case 3: return Finished{Condition::file_checksum_failure, random() % 2 == 0, static_cast<std::uint8_t>(random() % 4)};
-    case 4: return Ack{random() % 2 == 0 ? Directive::eof : Directive::finished, Condition::no_error,
-                       static_cast<std::uint8_t>(random() % 4)};
+    case 3:
+        return Finished{Condition::file_checksum_failure, random() % 2 == 0, static_cast<std::uint8_t>(random() % 4)};
+    case 4:
+        return Ack{random() % 2 == 0 ? Directive::eof : Directive::finished, Condition::no_error,
+                   static_cast<std::uint8_t>(random() % 4)};
     case 5: {
         Nak nak{{0, word()}, {}};
         for (std::size_t i = random() % (nak_requests_max + 1); i > 0; --i) {
@@ -37,7 +39,7 @@ std::vector<std::uint8_t> written(const Pdu& pdu) {
     return octets;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a published EOF reads as published", "[common]") {
     const auto pdu = cfdp::read(test::hex("00000A130018000000010015048000000000000065fc"));
@@ -111,11 +113,13 @@ TEST_CASE("a PDU whose length field leaves too little for its directive is refus
 
 TEST_CASE("what is not read is refused with the reason", "[common]") {
     CHECK(cfdp::read(test::hex("60000A130018000000010015048000000000000065fc")).why() == Malformed::other_version);
-    CHECK(cfdp::read(test::hex("21000A130018000000010015048000000000000065fc")).why() == Malformed::bad_field); // large
+    CHECK(cfdp::read(test::hex("21000A130018000000010015048000000000000065fc")).why() ==
+          Malformed::bad_field);  // large
     CHECK(cfdp::read(test::hex("20000A1B0018000000010015048000000000000065fc")).why() == Malformed::bad_field);
     CHECK(cfdp::read(test::hex("20000A1300180000000100150F8000000000000065fc")).why() == Malformed::bad_field);
     CHECK(cfdp::read(test::hex("20000A13001800000001001504C000000000000065fc")).why() == Malformed::bad_field);
-    CHECK(cfdp::read(test::hex("2000 0313 0018 00000001 0015 067000")).why() == Malformed::bad_field); // ack of metadata
+    CHECK(cfdp::read(test::hex("2000 0313 0018 00000001 0015 067000")).why() ==
+          Malformed::bad_field);  // ack of metadata
     CHECK(cfdp::read(test::hex("3000 0613 0018 00000001 0015 FFFFFFFF 0102")).why() == Malformed::bad_field);
     auto damaged = written({{.crc = true}, Eof{}});
     damaged.back() ^= 1;

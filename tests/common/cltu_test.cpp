@@ -18,8 +18,7 @@ TEST_CASE("a published CLTU is taken apart and put together again the same", "[c
 }
 
 TEST_CASE("a published randomised CLTU holds the published frame", "[common]") {
-    const auto known =
-        test::hex("EB90 FF429A5468E804BE F6688C29A63957C2 0255555555555556 C5C5C5C5C5C5C579");
+    const auto known = test::hex("EB90 FF429A5468E804BE F6688C29A63957C2 0255555555555556 C5C5C5C5C5C5C579");
     std::vector<std::uint8_t> information(cltu_information_octets_max);
     const auto size = read_cltu(known, information);
     REQUIRE(size);

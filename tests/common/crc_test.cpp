@@ -8,7 +8,7 @@ using namespace aeolis;
 
 namespace {
 constexpr std::array<std::uint8_t, 9> check{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-} // namespace
+}  // namespace
 
 TEST_CASE("CRC-16 of the check string is 29B1", "[common]") {
     CHECK(crc16(check) == 0x29B1);

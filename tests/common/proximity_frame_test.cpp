@@ -38,7 +38,8 @@ TEST_CASE("every header and length of a proximity frame reads back", "[common]")
     }
 }
 
-TEST_CASE("a PLTU that is cut, longer, without its marker or with one bit wrong is refused with the reason", "[common]") {
+TEST_CASE("a PLTU that is cut, longer, without its marker or with one bit wrong is refused with the reason",
+          "[common]") {
     std::vector<std::uint8_t> pltu(pltu_octets_max);
     std::mt19937 random{2};
     pltu.resize(write_pltu({.spacecraft = 76}, test::random_octets(random, 40), pltu));

@@ -8,12 +8,11 @@ namespace {
 [[gnu::noinline]] std::array<double, 2> as_recorded(double first, double second) {
     std::array<double, 2> rounded{};
     const std::array<double, 2> exact{first, second};
-    for (std::size_t i = 0; i < exact.size(); ++i)
-        rounded[i] = static_cast<double>(static_cast<float>(exact[i]));
+    for (std::size_t i = 0; i < exact.size(); ++i) rounded[i] = static_cast<double>(static_cast<float>(exact[i]));
     return rounded;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("what goes through a float is rounded, in every build and also in pairs", "[toolchain]") {
     volatile double one = 0.1, other = 0.3;

@@ -67,8 +67,7 @@ TEST_CASE("any octets at all are read as a packet or as none", "[common]") {
     std::mt19937 random{7};
     for (int round = 0; round < 20000; ++round) {
         std::vector<std::uint8_t> octets(random() % 40);
-        for (auto& octet : octets)
-            octet = static_cast<std::uint8_t>(random());
+        for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
         (void)read_primary_header(octets);
         (void)read_tm_packet(octets);
         (void)read_tc_packet(octets);

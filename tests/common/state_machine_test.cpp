@@ -18,7 +18,7 @@ constexpr std::array<Transition<Door, DoorEvent>, 4> table{{
     {Door::locked, DoorEvent::key, Door::shut},
 }};
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a state machine changes its state as its table says", "[state_machine][R48]") {
     DoorMachine door{table, Door::shut};

@@ -13,8 +13,7 @@ TEST_CASE("a clock of n hertz is the time cut to 1/n s, exactly", "[common][R21]
 
 TEST_CASE("sums of 1/64 s have no round-off over a mission's length", "[common][R21]") {
     Sclk t{4.0e9};
-    for (int i = 0; i < 64 * 1000; ++i)
-        t = t + seconds_per_tick;
+    for (int i = 0; i < 64 * 1000; ++i) t = t + seconds_per_tick;
     CHECK(t.seconds == 4.0e9 + 1000.0);
     CHECK(t.ticks() == 64LL * (4'000'000'000LL + 1000));
 }
@@ -57,20 +56,23 @@ TEST_CASE("a clock without drift keeps SCET to the microsecond as by the instant
     const ClockCorrelation clocks{Sclk{397501715.0}, Scet{397'501'847'400'000}};
     for (std::int64_t tick = -1000; tick < 1000; ++tick) {
         const Sclk t = clocks.sclk + static_cast<double>(tick) * seconds_per_tick;
-        CHECK(clocks.scet_of(t).microseconds == clocks.scet.microseconds + static_cast<std::int64_t>((t - clocks.sclk) * 1.0e6));
+        CHECK(clocks.scet_of(t).microseconds ==
+              clocks.scet.microseconds + static_cast<std::int64_t>((t - clocks.sclk) * 1.0e6));
     }
 }
 
 TEST_CASE("a time in day-of-year form is read back to the microsecond, and nothing else is taken for one", "[common]") {
-    for (const std::int64_t microseconds : {std::int64_t{0}, std::int64_t{397'501'847'400'000}, std::int64_t{-1'000'000'000'000}})
+    for (const std::int64_t microseconds :
+         {std::int64_t{0}, std::int64_t{397'501'847'400'000}, std::int64_t{-1'000'000'000'000}})
         CHECK(ert_from_day_of_year(day_of_year_text(Ert{microseconds})) == Ert{microseconds});
     CHECK(ert_from_day_of_year("2012-219T05:10:47") == Ert{397'501'847'000'000});
     CHECK(ert_from_day_of_year("2012-219T05:10:47.4") == Ert{397'501'847'400'000});
     CHECK(ert_from_day_of_year("2012-219T05:10:47.400001") == Ert{397'501'847'400'001});
     CHECK(ert_from_day_of_year("2012-366T00:00:00").has_value());
-    for (const char* text : {"", "tomorrow", "2013-366T00:00:00", "2012-000T00:00:00", "2012-219T24:00:00", "2012-219T05:60:00",
-                             "2012-219T05:10:60", "2012-219T05:10:47.", "2012-219T05:10:47.1234567", "2012-219 05:10:47",
-                             "2012-08-06T05:10:47", "2012-219T05:10:4x", "-012-219T05:10:47"}) {
+    for (const char* text :
+         {"", "tomorrow", "2013-366T00:00:00", "2012-000T00:00:00", "2012-219T24:00:00", "2012-219T05:60:00",
+          "2012-219T05:10:60", "2012-219T05:10:47.", "2012-219T05:10:47.1234567", "2012-219 05:10:47",
+          "2012-08-06T05:10:47", "2012-219T05:10:4x", "-012-219T05:10:47"}) {
         INFO(text);
         CHECK_FALSE(ert_from_day_of_year(text).has_value());
     }

@@ -27,7 +27,7 @@ void check_same(const TransferFrame& back, const TransferFrame& frame) {
     CHECK(test::copy_of(back.data) == test::copy_of(frame.data));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a published AOS frame reads as published", "[common]") {
     const auto known =

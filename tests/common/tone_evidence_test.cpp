@@ -3,7 +3,8 @@
 
 using namespace aeolis;
 
-TEST_CASE("a level in decibels comes back from its octet to a quarter of a decibel, and ends at the ends", "[tones][R31]") {
+TEST_CASE("a level in decibels comes back from its octet to a quarter of a decibel, and ends at the ends",
+          "[tones][R31]") {
     for (const double level_db : {-29.8, -3.2, 0.0, 0.2, 25.6, 97.4})
         CHECK(spectrum_db(spectrum_octet(level_db)) == Approx(level_db).margin(0.2501));
     CHECK(spectrum_octet(-80.0) == 0);

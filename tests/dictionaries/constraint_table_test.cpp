@@ -14,5 +14,6 @@ TEST_CASE("each constraint's code names its row of the spreadsheet, and its mome
     CHECK_THAT(source, Catch::Contains("{Moment::of_fired(timepoint::coolant_vent), "
                                        "Moment::of_triggered(timepoint::uhf_start), 20.0, std::nullopt},\n"));
     for (const auto& row : constraints)
-        CHECK_THAT(source, Catch::Contains("#line " + std::to_string(row.line) + " \"constraints.csv\"\n    {Moment::"));
+        CHECK_THAT(source,
+                   Catch::Contains("#line " + std::to_string(row.line) + " \"constraints.csv\"\n    {Moment::"));
 }

@@ -16,7 +16,7 @@ Read read(std::string_view text) {
     return result;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("what a spreadsheet program saves reads the same as what an editor saves", "[dictionary]") {
     const auto plain = read("a,b\n1,\"x, \"\"y\"\"\"\n");

@@ -20,7 +20,7 @@ const Dictionary& msl() {
     return *loaded.dictionary;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the shipped dictionary breaks no rule and is as large as a landing needs", "[dictionary][R20][R31][R48]") {
     const Dictionary& d = msl();
@@ -88,8 +88,7 @@ TEST_CASE("fields lie between the headers and the CRC, none on another", "[dicti
         std::set<unsigned> used;
         unsigned bits = 0;
         const auto claim = [&](unsigned position, unsigned count) {
-            for (unsigned bit = position; bit < position + count; ++bit)
-                used.insert(bit);
+            for (unsigned bit = position; bit < position + count; ++bit) used.insert(bit);
             bits += count;
         };
         for (const Field& field : packet.fields) {
@@ -139,9 +138,8 @@ TEST_CASE("a command is preceded and followed by what its author asks for", "[di
 TEST_CASE("any change of any file on board changes the dictionary's id; the timeline's version follows its own",
           "[dictionary][R20]") {
     std::set<std::uint16_t> ids{msl().id};
-    for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
-          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
+    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv",
+                             "constraints.csv", "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         INFO(file);
         const tests::MissionCopy mission;
         mission.write(file, mission.text(file) + "\n");
@@ -167,9 +165,8 @@ TEST_CASE("a change of constraints.csv, which flight checks and does not act on,
 }
 
 TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary]") {
-    for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
-          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
+    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv",
+                             "constraints.csv", "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         const tests::MissionCopy mission;
         std::filesystem::remove(mission.path() / file);
         const Loaded loaded = mission.load();
@@ -183,9 +180,8 @@ TEST_CASE("a mission with a file missing, or none at all, says so", "[dictionary
 TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
     std::mt19937 random{20120806};
     const tests::MissionCopy mission;
-    for (const char* file :
-         {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv", "constraints.csv",
-          "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
+    for (const char* file : {"msl.xml", "timeline.csv", "anchors.csv", "tones.csv", "mfsk.csv", "parameters.csv",
+                             "constraints.csv", "state_machines.csv", "owners.csv", "telemetry_plan.csv"}) {
         const std::string sound = mission.text(file);
         for (int trial = 0; trial < 60; ++trial) {
             std::string text = sound;
@@ -196,18 +192,10 @@ TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
                 for (unsigned changes = 1 + random() % 8; changes > 0; --changes) {
                     const std::size_t at = somewhere();
                     switch (random() % 4) {
-                    case 0:
-                        text[at] = static_cast<char>(random());
-                        break;
-                    case 1:
-                        text.erase(at, random() % 200);
-                        break;
-                    case 2:
-                        text.insert(at, text.substr(somewhere(), random() % 200));
-                        break;
-                    default:
-                        text[at] = "\"<>,&/0-"[random() % 8];
-                        break;
+                    case 0: text[at] = static_cast<char>(random()); break;
+                    case 1: text.erase(at, random() % 200); break;
+                    case 2: text.insert(at, text.substr(somewhere(), random() % 200)); break;
+                    default: text[at] = "\"<>,&/0-"[random() % 8]; break;
                     }
                     if (text.empty()) break;
                 }
@@ -215,14 +203,14 @@ TEST_CASE("a damaged file never brings the loader down", "[dictionary][fuzz]") {
             mission.write(file, text);
             const Loaded loaded = mission.load();
             CHECK(loaded.dictionary.has_value() == loaded.findings.empty());
-            for (const Finding& finding : loaded.findings)
-                CHECK(finding.line >= 1);
+            for (const Finding& finding : loaded.findings) CHECK(finding.line >= 1);
         }
         mission.write(file, sound);
     }
 }
 
-TEST_CASE("what a computer says of itself has the same fields for both, in order, and other channels", "[dictionary][R29]") {
+TEST_CASE("what a computer says of itself has the same fields for both, in order, and other channels",
+          "[dictionary][R29]") {
     for (const std::string name : {"CommStatus", "SyncStatus"}) {
         const auto& a = *msl().packet(name);
         const auto& b = *msl().packet(name + "B");

@@ -12,7 +12,7 @@ TEST_CASE("the earliest solution keeps every least difference, and no moment cou
     network.add({0, 2, 10});
     network.add({2, 3, -4});
     CHECK(network.earliest().ticks == std::vector<std::int64_t>{0, 5, 10, 6});
-    network.add({2, 1, -4}); // moment 1 no more than 4 before moment 2
+    network.add({2, 1, -4});  // moment 1 no more than 4 before moment 2
     CHECK(network.earliest().ticks == std::vector<std::int64_t>{0, 6, 10, 6});
 }
 

@@ -64,7 +64,7 @@ class Encoded {
     std::vector<std::uint8_t> octets_;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("flight was built from the dictionary that the ground loads", "[dictionary][autocoder][R48]") {
     CHECK(flight::dictionary_id == msl().id);

@@ -23,7 +23,8 @@ std::string exported(const std::filesystem::path& directory) {
 }
 
 struct WrittenFile {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / ("aeolis-export-" + std::to_string(::getpid()) + ".xml");
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("aeolis-export-" + std::to_string(::getpid()) + ".xml");
     explicit WrittenFile(const std::string& text) { std::ofstream{path, std::ios::binary} << text; }
     ~WrittenFile() { std::filesystem::remove(path); }
     WrittenFile(const WrittenFile&) = delete;
@@ -37,7 +38,7 @@ std::string first_finding(const std::string& text) {
     return loaded.findings.empty() ? "" : loaded.findings.front().message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("an exported dictionary loads again as the same one, octet for octet", "[dictionary][export]") {
     MissionCopy mission;
@@ -56,7 +57,7 @@ TEST_CASE("an exported dictionary loads again as the same one, octet for octet",
     INFO(tests::lines_of(before));
     REQUIRE(before.dictionary);
     REQUIRE(after.dictionary);
-    CHECK(after.dictionary->id == before.dictionary->id); // follows every octet of every text
+    CHECK(after.dictionary->id == before.dictionary->id);  // follows every octet of every text
     CHECK(after.dictionary->timeline_version == before.dictionary->timeline_version);
     CHECK(after.dictionary->timeline.size() == before.dictionary->timeline.size());
     CHECK(exported(file.path) == exported(mission.path()));
@@ -77,14 +78,17 @@ TEST_CASE("an exported dictionary is read as any mission's XTCE, nothing in it u
 
 TEST_CASE("an exported dictionary validates against the XTCE 1.2 schema", "[dictionary][export]") {
     const std::filesystem::path schema = AEOLIS_SOURCE_DIR "/../shared/data/xtce";
-    if (!std::filesystem::exists(schema / "SpaceSystemV1.2.xsd") || std::system("command -v xmllint >/dev/null 2>&1") != 0) {
+    if (!std::filesystem::exists(schema / "SpaceSystemV1.2.xsd") ||
+        std::system("command -v xmllint >/dev/null 2>&1") != 0) {
         std::printf("SKIPPED: xmllint is not installed, or the schema is not beside the project (../shared/data)\n");
         return;
     }
     const WrittenFile file{exported(tests::shipped_mission)};
     const auto validates = [&](const std::string& path) {
-        return std::system(("XML_CATALOG_FILES='" + (schema / "catalog.xml").string() + "' xmllint --nonet --noout --schema '" +
-                            (schema / "SpaceSystemV1.2.xsd").string() + "' '" + path + "' >/dev/null 2>&1").c_str()) == 0;
+        return std::system(("XML_CATALOG_FILES='" + (schema / "catalog.xml").string() +
+                            "' xmllint --nonet --noout --schema '" + (schema / "SpaceSystemV1.2.xsd").string() + "' '" +
+                            path + "' >/dev/null 2>&1")
+                               .c_str()) == 0;
     };
     CHECK(validates(file.path.string()));
     std::ofstream{file.path, std::ios::app} << "<More/>";

@@ -10,7 +10,8 @@ using aeolis::tests::Planted;
 TEST_CASE("a second owner and a missing one are refused, by file and line", "[dictionary][R5]") {
     static const std::vector<Planted> all{
         {"second owner of an action", "owners.csv", "action,fire_parachute_mortar,pyro,",
-         "action,fire_heatshield_separation,pyro,\naction,fire_parachute_mortar,pyro,", "has an owner already, in line ", 4},
+         "action,fire_heatshield_separation,pyro,\naction,fire_parachute_mortar,pyro,",
+         "has an owner already, in line ", 4},
         {"second owner of a device", "owners.csv", "device,nvm,edl_comm", "device,tone,edl_comm",
          "device 'tone': has an owner already, in line "},
         {"second owner of a decision", "owners.csv", "decision,touchdown,edl", "decision,do_edl,command_dispatcher",
@@ -19,11 +20,11 @@ TEST_CASE("a second owner and a missing one are refused, by file and line", "[di
          "no timepoint has an action of that name"},
         {"a decision that is none", "owners.csv", "decision,touchdown,", "decision,touchup,",
          "is no label of the enumeration 'Decision'"},
-        {"unknown kind", "owners.csv", "device,nvm,", "devise,nvm,", "kind 'devise' is none of action, device, decision"},
+        {"unknown kind", "owners.csv", "device,nvm,", "devise,nvm,",
+         "kind 'devise' is none of action, device, decision"},
         {"module no name", "owners.csv", "action,stop_uhf,telecom", "action,stop_uhf,", "module"},
     };
-    for (const Planted& planted : all)
-        tests::check_planted(planted);
+    for (const Planted& planted : all) tests::check_planted(planted);
 }
 
 TEST_CASE("what has no owner is named", "[dictionary][R5]") {

@@ -29,7 +29,7 @@ std::string mission(const std::string& types) {
            "</TelemetryMetaData></SpaceSystem>";
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the prefix that a file gives XTCE does not matter, and lines stay known", "[dictionary]") {
     const Read read{"<x:SpaceSystem name='T' xmlns:x='http://www.omg.org/space/xtce'>\n<x:TelemetryMetaData>\n"
@@ -54,8 +54,9 @@ TEST_CASE("octet order is read as 1.2 and as 1.0 spell it", "[dictionary]") {
 }
 
 TEST_CASE("a type takes from its base what it does not say itself", "[dictionary]") {
-    const Read read{mission("<EnumeratedParameterType name='t' baseType='b'/>"
-                            "<IntegerParameterType name='b'><IntegerDataEncoding sizeInBits='3'/></IntegerParameterType>")};
+    const Read read{
+        mission("<EnumeratedParameterType name='t' baseType='b'/>"
+                "<IntegerParameterType name='b'><IntegerDataEncoding sizeInBits='3'/></IntegerParameterType>")};
     CHECK(read.findings.empty());
     const auto& type = read.model->types[read.model->parameters[0].type];
     CHECK(type.kind == PacketType::Kind::enumerated);
@@ -68,7 +69,8 @@ TEST_CASE("each thing that is not supported is named with its line", "[dictionar
         CHECK(Read{mission(types)}.has(2, words));
     };
     found("<IntegerParameterType name='t'/>", "no data encoding");
-    found("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='99'/></IntegerParameterType>", "from 1 to 64");
+    found("<IntegerParameterType name='t'><IntegerDataEncoding sizeInBits='99'/></IntegerParameterType>",
+          "from 1 to 64");
     found("<FloatParameterType name='t'><FloatDataEncoding encoding='IBM' sizeInBits='32'/></FloatParameterType>",
           "'IBM' of 32 bits is not supported");
     found("<BinaryParameterType name='t'><BinaryDataEncoding><SizeInBits/></BinaryDataEncoding></BinaryParameterType>",
@@ -83,15 +85,20 @@ TEST_CASE("each thing that is not supported is named with its line", "[dictionar
 }
 
 TEST_CASE("a condition of a kind that is not supported is named with its line, wherever it stands", "[dictionary]") {
-    const auto found = [](const std::string& inside_parameter, const std::string& inside_base, const std::string& words) {
+    const auto found = [](const std::string& inside_parameter, const std::string& inside_base,
+                          const std::string& words) {
         INFO(inside_parameter << inside_base);
-        const Read read{"<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='t'>"
-                        "<IntegerDataEncoding/></IntegerParameterType></ParameterTypeSet><ParameterSet>"
-                        "<Parameter name='p' parameterTypeRef='t'><ParameterProperties><ValidityCondition>\n" + inside_parameter +
-                        "</ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>"
-                        "<SequenceContainer name='A'><EntryList/></SequenceContainer><SequenceContainer name='B'><EntryList/>"
-                        "<BaseContainer containerRef='A'><RestrictionCriteria>" + inside_base + "</RestrictionCriteria>"
-                        "</BaseContainer></SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>"};
+        const Read read{
+            "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='t'>"
+            "<IntegerDataEncoding/></IntegerParameterType></ParameterTypeSet><ParameterSet>"
+            "<Parameter name='p' parameterTypeRef='t'><ParameterProperties><ValidityCondition>\n" +
+            inside_parameter +
+            "</ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>"
+            "<SequenceContainer name='A'><EntryList/></SequenceContainer><SequenceContainer name='B'><EntryList/>"
+            "<BaseContainer containerRef='A'><RestrictionCriteria>" +
+            inside_base +
+            "</RestrictionCriteria>"
+            "</BaseContainer></SequenceContainer></ContainerSet></TelemetryMetaData></SpaceSystem>"};
         REQUIRE(read.findings.size() == 1);
         CHECK(read.has(2, words));
     };

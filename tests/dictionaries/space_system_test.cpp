@@ -9,11 +9,10 @@ namespace {
 constexpr const char* msl = "msl.xml";
 
 void check_all(const std::vector<Planted>& all) {
-    for (const Planted& planted : all)
-        tests::check_planted(planted);
+    for (const Planted& planted : all) tests::check_planted(planted);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("each broken rule of types gives one line, and nothing is loaded", "[dictionary][xtce][R40]") {
     check_all({
@@ -46,18 +45,22 @@ TEST_CASE("each broken rule of types gives one line, and nothing is loaded", "[d
          "element 'ChangeAlarmRanges' in DefaultAlarm is unknown or not supported"},
         {"binary not in octets", msl, "<FixedValue>1840</FixedValue>", "<FixedValue>1841</FixedValue>",
          "only a fixed number of whole octets is supported"},
-        {"binary a channel", msl, "parameterTypeRef=\"product_content\" shortDescription=\"this part; what is beyond "
-                                  "product_octets is zero\"/>",
+        {"binary a channel", msl,
+         "parameterTypeRef=\"product_content\" shortDescription=\"this part; what is beyond "
+         "product_octets is zero\"/>",
          "parameterTypeRef=\"product_content\"><AliasSet><Alias nameSpace=\"channel\" alias=\"X-1\"/></AliasSet>"
          "</Parameter>",
          "parameter 'content': binary data are no channel"},
-        {"alarm context of no channel", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"", "parameterRef=\"edl_place\" value=\"sky_crane\"",
+        {"alarm context of no channel", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"",
+         "parameterRef=\"edl_place\" value=\"sky_crane\"",
          "type 'deceleration_g_f32': there is no parameter 'edl_place'"},
-        {"alarm context of no label", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"", "parameterRef=\"edl_phase\" value=\"sky_hook\"",
-         "value 'sky_hook' is neither a number nor a label"},
-        {"alarm without its context", msl, "<ContextMatch><Comparison parameterRef=\"edl_phase\" value=\"sky_crane\"/></ContextMatch>",
-         "<ContextMatch/>", "a context alarm without ContextMatch"},
-        {"latch", msl, "<AncillaryData name=\"latch\">true<", "<AncillaryData name=\"latch\">yes<", "latch 'yes' is neither true nor false"},
+        {"alarm context of no label", msl, "parameterRef=\"edl_phase\" value=\"sky_crane\"",
+         "parameterRef=\"edl_phase\" value=\"sky_hook\"", "value 'sky_hook' is neither a number nor a label"},
+        {"alarm without its context", msl,
+         "<ContextMatch><Comparison parameterRef=\"edl_phase\" value=\"sky_crane\"/></ContextMatch>", "<ContextMatch/>",
+         "a context alarm without ContextMatch"},
+        {"latch", msl, "<AncillaryData name=\"latch\">true<", "<AncillaryData name=\"latch\">yes<",
+         "latch 'yes' is neither true nor false"},
         {"minConformance", msl, "minConformance=\"4\"", "minConformance=\"0\"", "minConformance '0'"},
         {"misspelt attribute", msl, "minViolations=\"8\"", "minviolations=\"8\"", "attribute 'minviolations'"},
     });
@@ -182,8 +185,7 @@ TEST_CASE("a reference is looked for in its own SpaceSystem, then outwards", "[d
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"f.xml", all};
     const auto system = dictionary::xtce::read_space_system(text, findings);
-    for (const auto& finding : all)
-        UNSCOPED_INFO(finding.text());
+    for (const auto& finding : all) UNSCOPED_INFO(finding.text());
     REQUIRE(all.empty());
     REQUIRE(system->packets.size() == 1);
     const auto& packet = system->packets.front();
@@ -208,10 +210,8 @@ TEST_CASE("containers based on each other, and SpaceSystems without end, are fou
 
     all.clear();
     std::string deep;
-    for (int i = 0; i < 2000; ++i)
-        deep += "<SpaceSystem name=\"S\">";
-    for (int i = 0; i < 2000; ++i)
-        deep += "</SpaceSystem>";
+    for (int i = 0; i < 2000; ++i) deep += "<SpaceSystem name=\"S\">";
+    for (int i = 0; i < 2000; ++i) deep += "</SpaceSystem>";
     CHECK(dictionary::xtce::read_space_system(deep, findings));
     REQUIRE(all.size() == 1);
     CHECK_THAT(all.front().message, Catch::Contains("are nested deeper than"));

@@ -5,7 +5,8 @@ using namespace aeolis;
 
 TEST_CASE("a state machine's diagram has its start and each of its transitions", "[dictionary][R48]") {
     dictionary::Dictionary dictionary;
-    dictionary.state_machines = {{"Door", "shut", {{"shut", "pushed", "open", "", 2}, {"open", "pulled", "shut", "", 3}}}};
+    dictionary.state_machines = {
+        {"Door", "shut", {{"shut", "pushed", "open", "", 2}, {"open", "pulled", "shut", "", 3}}}};
     CHECK(dictionary::autocoder::state_diagrams(dictionary) == "## Door\n\n"
                                                                "```mermaid\n"
                                                                "stateDiagram-v2\n"

@@ -11,9 +11,10 @@ TEST_CASE("each transition's code names its row of the spreadsheet, and its stat
     const std::string header = dictionary::autocoder::state_machines_header(dictionary);
     for (const auto& machine : dictionary.state_machines)
         for (const auto& row : machine.transitions)
-            CHECK_THAT(header, Catch::Contains("#line " + std::to_string(row.line) + " \"state_machines.csv\"\n        {" +
-                                               machine.name + "::" + row.from + ", " + machine.name + "Event::" + row.event +
-                                               ", " + machine.name + "::" + row.to + "},\n"));
+            CHECK_THAT(header,
+                       Catch::Contains("#line " + std::to_string(row.line) + " \"state_machines.csv\"\n        {" +
+                                       machine.name + "::" + row.from + ", " + machine.name + "Event::" + row.event +
+                                       ", " + machine.name + "::" + row.to + "},\n"));
 }
 
 TEST_CASE("flight's machines have the tables that ground reads", "[dictionary][R48]") {

@@ -11,16 +11,17 @@ TEST_CASE("each broken rule of the state machines gives one line, and nothing is
          "to 'aproach' is no label of the enumeration 'GncMode'"},
         {"unknown source", "state_machines.csv", "GncMode,off,enabled", "GncMode,of,enabled",
          "from 'of' is no label of the enumeration 'GncMode'"},
-        {"two initial states", "state_machines.csv", "EdlPhase,pre_edl,late_cruise_begins,late_cruise", "EdlPhase,,,landed",
-         "has an initial state already"},
+        {"two initial states", "state_machines.csv", "EdlPhase,pre_edl,late_cruise_begins,late_cruise",
+         "EdlPhase,,,landed", "has an initial state already"},
         {"not deterministic", "state_machines.csv", "GncMode,touchdown,flyaway_started,flyaway",
-         "GncMode,sky_crane,flyaway_started,touchdown", "event 'flyaway_started' leads from 'sky_crane' already, in line 24"},
+         "GncMode,sky_crane,flyaway_started,touchdown",
+         "event 'flyaway_started' leads from 'sky_crane' already, in line 24"},
         {"leads to itself", "state_machines.csv", "GncMode,off,enabled,approach", "GncMode,off,enabled,off",
          "leads to itself"},
-        {"event no name", "state_machines.csv", "GncMode,off,enabled,", "GncMode,off,ena bled,", "event has characters other"},
+        {"event no name", "state_machines.csv", "GncMode,off,enabled,", "GncMode,off,ena bled,",
+         "event has characters other"},
     };
-    for (const Planted& planted : all)
-        tests::check_planted(planted);
+    for (const Planted& planted : all) tests::check_planted(planted);
 }
 
 TEST_CASE("a state that cannot be reached, a machine without a start or without an enumeration, is found",
@@ -40,8 +41,9 @@ TEST_CASE("a state that cannot be reached, a machine without a start or without 
           "state_machines.csv:2: machine 'Door': state 'open' cannot be reached from 'shut'");
     CHECK(finding("Door,shut,pushed,open,\n") ==
           "state_machines.csv:2: machine 'Door' has no initial state: a row without from and event");
-    CHECK(finding("Window,,,shut,\n") == "state_machines.csv:2: machine 'Window': there is no enumeration of that name, "
-                                         "whose labels could be its states");
+    CHECK(finding("Window,,,shut,\n") ==
+          "state_machines.csv:2: machine 'Window': there is no enumeration of that name, "
+          "whose labels could be its states");
 }
 
 TEST_CASE("the phase of EDL and the mode of GNC are machines of the shipped dictionary", "[dictionary][R48]") {

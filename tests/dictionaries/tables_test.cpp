@@ -34,7 +34,8 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"time-out not above 0", "timeline.csv", "start_uhf,4", "start_uhf,0", "reply_timeout_s is not above 0"},
         {"dangling backtrack", "timeline.csv", "start_uhf,4,uhf_start", "start_uhf,4,uhf_begin",
          "there is no timepoint 'uhf_begin'"},
-        {"backtrack forward", "timeline.csv", "vent_coolant,4,descent_imu_power", "vent_coolant,4,touchdown", "comes later"},
+        {"backtrack forward", "timeline.csv", "vent_coolant,4,descent_imu_power", "vent_coolant,4,touchdown",
+         "comes later"},
         {"essential neither yes nor no", "timeline.csv", "uhf_start,yes", "uhf_start,maybe",
          "'maybe' is neither yes nor no"},
         {"name a keyword", "timeline.csv", "\ndetumble,", "\nreturn,", "is a keyword of C++", 1},
@@ -49,12 +50,16 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"named spare", "tones.csv", "\n255,spare,,", "\n255,spare,left_over,", "a spare tone has no name", 1},
         // parameters
         // the waveform
-        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[ours]\n", "is none that the waveform has", 1},
-        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[ours]\n", "is there twice", 5},
-        {"number of the waveform missing", "mfsk.csv", "symbol_s,10,s,A tone lasts this long,[facts]\n", "", "there is no symbol_s", -4},
+        {"number of the waveform unknown", "mfsk.csv", "source\n", "source\nmfsk_hz,1,Hz,Text,[ours]\n",
+         "is none that the waveform has", 1},
+        {"number of the waveform twice", "mfsk.csv", "source\n", "source\nsymbol_s,10,s,Text,[ours]\n",
+         "is there twice", 5},
+        {"number of the waveform missing", "mfsk.csv", "symbol_s,10,s,A tone lasts this long,[facts]\n", "",
+         "there is no symbol_s", -4},
         {"index in radians", "mfsk.csv", "32,deg", "0.5,rad", "is in 'rad', not in deg"},
         {"tones not orthogonal", "mfsk.csv", "spacing_hz,1,", "spacing_hz,0.05,", "the tones are not orthogonal", -3},
-        {"tones on a harmonic", "mfsk.csv", "first_tone_hz,300,", "first_tone_hz,100,", "reaches the third harmonic", -2},
+        {"tones on a harmonic", "mfsk.csv", "first_tone_hz,300,", "first_tone_hz,100,", "reaches the third harmonic",
+         -2},
         {"no carrier left", "mfsk.csv", "32,deg", "90,deg", "no carrier is left", -5},
         {"negative frequency", "mfsk.csv", "spacing_hz,1,", "spacing_hz,-1,", "is not above 0"},
         // parameters
@@ -100,8 +105,7 @@ TEST_CASE("each broken rule of the spreadsheets gives one line, and nothing is l
         {"open quote", "tones.csv", "\n255,spare,,Spare", "\n255,spare,,\"Spare",
          "the quote that opens here is never closed", 1},
     };
-    for (const Planted& planted : all)
-        tests::check_planted(planted);
+    for (const Planted& planted : all) tests::check_planted(planted);
 }
 
 TEST_CASE("a column too many is named", "[dictionary]") {

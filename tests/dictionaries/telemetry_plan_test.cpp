@@ -26,8 +26,7 @@ TEST_CASE("each broken rule of the telemetry plan gives one line, and nothing is
         {"rate too small", "telemetry_plan.csv", "GncRadar,normal,0,0,1", "GncRadar,normal,0,0,5000",
          "descent '5000' is not a whole number from 0 to 4096"},
     };
-    for (const Planted& planted : all)
-        tests::check_planted(planted);
+    for (const Planted& planted : all) tests::check_planted(planted);
 }
 
 TEST_CASE("each plan says what becomes of each packet, and what it leaves out is named", "[dictionary][R30]") {

@@ -118,12 +118,11 @@ void check_breaks_its_row(const Dictionary& d, const BoundProof& bound) {
 /// What adds up along the chain is the bound that it proves.
 double sum_of(const std::vector<ChainStep>& chain) {
     double sum_s = 0.0;
-    for (const ChainStep& step : chain)
-        sum_s += step.at_least_s;
+    for (const ChainStep& step : chain) sum_s += step.at_least_s;
     return sum_s;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the shipped timeline's explicit constraints imply every required one", "[timeline][R19]") {
     const Loaded loaded = load(tests::shipped_mission);
@@ -139,7 +138,7 @@ TEST_CASE("the shipped timeline's explicit constraints imply every required one"
         CHECK(*bound.slack_s >= 0.0);
         const ConstraintRow& proven = d.constraints[bound.constraint];
         CHECK(sum_of(bound.chain) - (bound.is_minimum ? *proven.minimum_s : -*proven.maximum_s) == *bound.slack_s);
-        check_schedule_is_real(d, bound.schedule); // the worst case is one that can happen
+        check_schedule_is_real(d, bound.schedule);  // the worst case is one that can happen
     }
 }
 
@@ -241,7 +240,8 @@ TEST_CASE("a timepoint with an undefined offset may fire at any time after its p
     CHECK(analysis.bounds[1].proof == Proof::refuted);
 }
 
-TEST_CASE("an analysis ends when it is asked to, says so, and proves nothing that it has not looked at", "[timeline][R19]") {
+TEST_CASE("an analysis ends when it is asked to, says so, and proves nothing that it has not looked at",
+          "[timeline][R19]") {
     unsigned asked = 0;
     const auto whole = analyse_timeline(tests::shipped_dictionary(), [&asked] { return ++asked == 0; });
     CHECK_FALSE(whole.stopped);
@@ -321,7 +321,7 @@ class BruteForce {
         const int base = row.anchor ? anchors_[row.anchor->value] : previous;
         const int due =
             std::max({previous, base + ticks(*row.desired_offset_s), previous + ticks(*row.minimum_offset_s)});
-        triggered_[index] = due; // never six: there are not so many
+        triggered_[index] = due;  // never six: there are not so many
         for (int reply = 0; reply <= ticks(row.reply_timeout_s.value_or(0.0)); ++reply) {
             fired_[index] = due + reply;
             fire(index + 1);
@@ -330,14 +330,10 @@ class BruteForce {
 
     int time(const Moment& moment) const {
         switch (moment.kind) {
-        case Kind::do_edl:
-            return 0;
-        case Kind::anchor:
-            return anchors_[moment.index];
-        case Kind::triggered:
-            return triggered_[moment.index];
-        case Kind::fired:
-            return fired_[moment.index];
+        case Kind::do_edl: return 0;
+        case Kind::anchor: return anchors_[moment.index];
+        case Kind::triggered: return triggered_[moment.index];
+        case Kind::fired: return fired_[moment.index];
         }
         return 0;
     }
@@ -385,13 +381,12 @@ Dictionary random_timeline(std::mt19937& random) {
     };
     const Moment from = moment();
     Moment to = moment();
-    while (to == from)
-        to = moment();
+    while (to == from) to = moment();
     constraints.push_back(constraint(required, from, to, up_to(8) - 4 * tick, up_to(12)));
     return timeline_of(std::move(anchors), std::move(rows), std::move(constraints));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("on small random timelines the analysis agrees with trying every schedule", "[timeline][R19]") {
     std::mt19937 random{20120806};

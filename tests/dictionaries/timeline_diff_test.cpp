@@ -50,19 +50,17 @@ std::string saved(const std::string& text, bool quote_all, bool carriage_returns
             if (i > 0) out += ',';
             const bool quoted = quote_all || cells[i].find_first_of(",\"\n") != std::string::npos;
             if (quoted) out += '"';
-            for (const char c : cells[i])
-                out += c == '"' && quoted ? std::string{"\"\""} : std::string{c};
+            for (const char c : cells[i]) out += c == '"' && quoted ? std::string{"\"\""} : std::string{c};
             if (quoted) out += '"';
         }
         out += carriage_returns ? "\r\n" : "\n";
     };
     write(sheet->header.cells);
-    for (const auto& row : sheet->rows)
-        write(row.cells);
+    for (const auto& row : sheet->rows) write(row.cells);
     return out;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a version does not differ from itself", "[timeline][R20]") {
     const tests::MissionCopy mission;
@@ -150,8 +148,7 @@ TEST_CASE("sheets written again with other quotes, other line ends and a mark in
             }
 }
 
-TEST_CASE("the shipped sheets quote only the cells that need it, and end lines with one octet",
-          "[timeline][R20]") {
+TEST_CASE("the shipped sheets quote only the cells that need it, and end lines with one octet", "[timeline][R20]") {
     const tests::MissionCopy mission;
     for (const char* file : {"timeline.csv", "anchors.csv", "constraints.csv"}) {
         INFO(file);

@@ -23,7 +23,8 @@ TEST_CASE("the mortar's action fires the mortar and tells GNC of the parachute a
     CHECK(f.configuration.parachute_time == f.context.now());
 }
 
-TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone", "[timeline][R26]") {
+TEST_CASE("leaving the cruise stage is a process of several actions, and GNC learns when it is gone",
+          "[timeline][R26]") {
     Fixture f;
     actions::vent_coolant(f.context);
     actions::cut_cruise_cables(f.context);
@@ -43,5 +44,6 @@ TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
     CHECK(switches[0].id == SwitchId::radar);
     CHECK(switches[1].id == SwitchId::uhf);
     CHECK(switches[2].id == SwitchId::entry_antenna);
-    CHECK(f.context.awaited() == ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna)});
+    CHECK(f.context.awaited() ==
+          ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna)});
 }

@@ -44,9 +44,9 @@ struct Sender {
     }
 };
 
-} // namespace
+}  // namespace
 
-static_assert(std::is_trivially_destructible_v<CfdpSource>); // part of a computer, which is copied as a value
+static_assert(std::is_trivially_destructible_v<CfdpSource>);  // part of a computer, which is copied as a value
 
 TEST_CASE("a file goes out as metadata, its octets once, and its end with size and checksum", "[flight]") {
     Sender sender;
@@ -71,7 +71,7 @@ TEST_CASE("what is asked for goes out again, once for each time it is asked for,
     nak.requests.push_back({3000, 4000});
     nak.requests.push_back({0, 0});
     sender.hear(nak);
-    sender.hear(nak); // heard twice before it was answered
+    sender.hear(nak);  // heard twice before it was answered
     CHECK(sender.source.to_repeat_octets() == 1200);
     CHECK(std::holds_alternative<cfdp::Metadata>(sender.next()->content));
     CHECK(sender.ranges() == std::vector<cfdp::Range>{{100, 1100}, {1100, 1200}, {2400, 2500}});
@@ -79,7 +79,8 @@ TEST_CASE("what is asked for goes out again, once for each time it is asked for,
     CHECK(sender.ranges().size() == 3);
 }
 
-TEST_CASE("the end is announced again until it is acknowledged, and the end of all is acknowledged each time", "[flight]") {
+TEST_CASE("the end is announced again until it is acknowledged, and the end of all is acknowledged each time",
+          "[flight]") {
     Sender sender;
     (void)sender.ranges();
     sender.source.repeat();

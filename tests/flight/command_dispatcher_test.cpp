@@ -27,7 +27,8 @@ std::vector<std::uint8_t> unlock() {
 }
 /// In sequence.
 std::vector<std::uint8_t> no_op_in_frame(std::uint8_t sequence) {
-    return test::cltu_of(packet_of(command::NO_OP::opcode, 0), {false, false, spacecraft_id, telecommand_channel, sequence});
+    return test::cltu_of(packet_of(command::NO_OP::opcode, 0),
+                         {false, false, spacecraft_id, telecommand_channel, sequence});
 }
 
 UplinkReceived received(const std::vector<std::uint8_t>& octets) {
@@ -102,7 +103,8 @@ TEST_CASE("any octets as uplink end in exactly one answer", "[commands][R4]") {
         for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
         if (round % 2 && octets.size() >= tc_overhead_octets && octets.size() < 200) {
             seal_tc_packet(octets, Apid{1}, 0, Opcode{static_cast<std::uint16_t>(0x0100 + random() % 8)});
-            octets = test::cltu_of(octets, {random() % 2 == 0, random() % 4 == 0, spacecraft_id, telecommand_channel, static_cast<std::uint8_t>(random())});
+            octets = test::cltu_of(octets, {random() % 2 == 0, random() % 4 == 0, spacecraft_id, telecommand_channel,
+                                            static_cast<std::uint8_t>(random())});
         }
         Fixture f;
         f.handle(received(octets));
@@ -114,7 +116,7 @@ TEST_CASE("any octets as uplink end in exactly one answer", "[commands][R4]") {
 TEST_CASE("frames in sequence are taken once each, and the report says which comes next", "[commands][R44]") {
     Fixture f;
     f.handle(received(no_op_in_frame(0)));
-    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0); // not before ground has unlocked the channel
+    CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);  // not before ground has unlocked the channel
     CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
     f.handle(received(unlock()));
     f.handle(received(no_op_in_frame(0)));
@@ -136,7 +138,8 @@ TEST_CASE("frames in sequence are taken once each, and the report says which com
 
 TEST_CASE("a frame for another spacecraft is not acted on", "[commands][R23]") {
     Fixture f;
-    f.handle(received(test::cltu_of(packet_of(command::NO_OP::opcode, 0), {true, false, spacecraft_id + 1, telecommand_channel, 0})));
+    f.handle(received(
+        test::cltu_of(packet_of(command::NO_OP::opcode, 0), {true, false, spacecraft_id + 1, telecommand_channel, 0})));
     CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);
     CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
 }

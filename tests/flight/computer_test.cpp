@@ -75,7 +75,8 @@ TEST_CASE("a cycle is timeline, GNC, timeline: each acts on the other in the sam
     const auto reported = [&](Apid apid, EvrId id) {
         telemetry::PacketStream packets{flight.out->nvm.span()};
         while (const auto packet = packets.next())
-            if (read_primary_header(*packet)->apid == apid && read_bits(*packet, tm_data_offset_octets * 8, 16) == id.value)
+            if (read_primary_header(*packet)->apid == apid &&
+                read_bits(*packet, tm_data_offset_octets * 8, 16) == id.value)
                 return true;
         return false;
     };

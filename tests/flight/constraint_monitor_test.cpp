@@ -70,8 +70,7 @@ struct Flight {
     std::vector<std::uint64_t> violated;
     std::size_t explained = 0, judged = 0;
 
-    explicit Flight(const simulation::Scenario& scenario)
-        : world(scenario, 1), computer(load(scenario), world.sclk()) {
+    explicit Flight(const simulation::Scenario& scenario) : world(scenario, 1), computer(load(scenario), world.sclk()) {
         world.set_nvm(0, 1U << 30);
         world.receive(test::set_parameters(world.solution()));
         for (int cycle = 0; cycle < 64; ++cycle) step();

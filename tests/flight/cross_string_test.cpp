@@ -82,9 +82,15 @@ TEST_CASE("without ground's enabling, before the end of pre-EDL, before do edl o
         CHECK_FALSE(backup.after_silence(100.0, 200.0));
     }
     StateHeader state = in_edl;
-    SECTION("in pre-EDL") { state.pre_edl = true; }
-    SECTION("before do edl") { state.begun = false; }
-    SECTION("after touchdown") { state.touchdown = true; }
+    SECTION("in pre-EDL") {
+        state.pre_edl = true;
+    }
+    SECTION("before do edl") {
+        state.begun = false;
+    }
+    SECTION("after touchdown") {
+        state.touchdown = true;
+    }
     Backup backup;
     if (state.pre_edl || !state.begun || state.touchdown) {
         backup.enable(90.0);

@@ -18,7 +18,8 @@ TEST_CASE("an attitude of the star scanner goes on to Edl", "[devices][R10]") {
 
 TEST_CASE("what is no unit quaternion is not used, and reported", "[devices][R4]") {
     test::Spoken<CruiseAttitudeControl> cruise{ModuleId::edl};
-    for (const double w : {0.0, 1.01, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (const double w :
+         {0.0, 1.01, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
         cruise.on(CruiseAttitude{{w, 0.0, 0.0, 0.0}});
         CHECK(cruise.recorder.sent<CruiseAttitude>().empty());
         CHECK(cruise.recorder.events<evr::CRUISE_ATTITUDE_UNUSABLE>() == 1);

@@ -120,7 +120,7 @@ TEST_CASE("the ground puts a product together from its packets in any order, equ
     telemetry::Decoded decoded;
     REQUIRE_FALSE(ground.decommutator.decode(rows->front(), decoded));
     CHECK(decoded.value[0] == 500.0);
-    CHECK(decoded.value[1] == 50.0); // delta_v_x_mps
+    CHECK(decoded.value[1] == 50.0);  // delta_v_x_mps
 }
 
 TEST_CASE("a computer that takes over under the parachute makes no burst of a mortar that it did not see",

@@ -92,7 +92,7 @@ TEST_CASE("a timepoint that waits for a reply, or for its minimum, is told after
     CHECK(told_at(1001.5) == std::pair{Quantity::clock_sclk, 1001.5});
     CHECK_FALSE(told_at(1002.0));
     CHECK(told_at(1005.5) == std::pair{Quantity::clock_sclk, 1005.5});
-    CHECK_FALSE(told_at(1009.5)); // the minimum has come: it fires
+    CHECK_FALSE(told_at(1009.5));  // the minimum has come: it fires
     CHECK(timeline.finished());
 }
 

@@ -31,7 +31,7 @@ std::vector<Message> one_of_each(std::index_sequence<I...>) {
     return {Message{std::in_place_index<I>}...};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a module writes the devices that it owns and no other, whatever it is told", "[flight][R5]") {
     std::vector<Message> messages = one_of_each(std::make_index_sequence<std::variant_size_v<Message>>{});
@@ -63,7 +63,7 @@ TEST_CASE("a module writes the devices that it owns and no other, whatever it is
             });
         }
     }
-    CHECK(written.size() >= 6); // else nothing was tried
+    CHECK(written.size() >= 6);  // else nothing was tried
 }
 
 TEST_CASE("an action commands the manager that owns it and no other", "[flight][R5]") {

@@ -21,9 +21,9 @@ Load backup_load() {
 }
 
 bool commands_something(const DeviceOutputs& out) {
-    return out.in_command || !out.pyros.empty() || !out.switches.empty() || !out.telecom.empty() || out.thrusters_enabled || out.engines.ignited ||
-           out.pay_out_bridle || out.tone || out.designate_b_prime || !out.cross_string.empty() ||
-           out.thrusters != ThrusterCommand{};
+    return out.in_command || !out.pyros.empty() || !out.switches.empty() || !out.telecom.empty() ||
+           out.thrusters_enabled || out.engines.ignited || out.pay_out_bridle || out.tone || out.designate_b_prime ||
+           !out.cross_string.empty() || out.thrusters != ThrusterCommand{};
 }
 
 /// A backup computer under a rain of random messages and inputs.
@@ -44,7 +44,9 @@ struct Rain {
         EdlMain prime{Load{}};
         const StateHeader header{
             .time = Sclk{1000.0}, .revision = 1, .begun = true, .pre_edl = false, .touchdown = touchdown, .units = {}};
-        StateFrame::of(header, prime).in_parts([&](const StatePart& part) { state.cross_string.on(part, state.outbox); });
+        StateFrame::of(header, prime).in_parts([&](const StatePart& part) {
+            state.cross_string.on(part, state.outbox);
+        });
     }
 
     template <typename Allowed>

@@ -46,7 +46,8 @@ TEST_CASE("parameters that cannot be true are refused: under the ground, entry i
     CHECK(f.recorder.sent<CommandOutcome>()[0].refused == CommandRefusal::bad_argument);
 }
 
-TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle", "[edl_bg][R23]") {
+TEST_CASE("a solution whose epoch is more than a day away is refused: GNC would fly there in one cycle",
+          "[edl_bg][R23]") {
     Fixture f;
     constexpr double solution_age_max_s = parameters.solution_age_max_s;
     auto old = possible_parameters();
@@ -83,7 +84,8 @@ TEST_CASE("radar solutions go to the filter once a second, and not before the ra
     CHECK(solutions <= 10);
 }
 
-TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and not when nobody wants it", "[edl_bg][R25]") {
+TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and not when nobody wants it",
+          "[edl_bg][R25]") {
     Fixture f;
     const auto losses = [&](double from_s, int seconds, bool wanted) {
         int reports = 0;
@@ -95,7 +97,7 @@ TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and 
         }
         return reports;
     };
-    CHECK(losses(1000.0, 55, true) == 0); // the first may take its time
+    CHECK(losses(1000.0, 55, true) == 0);  // the first may take its time
     CHECK(losses(1055.0, 30, true) == 1);
     Fixture quiet;
     std::swap(f, quiet);

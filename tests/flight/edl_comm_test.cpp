@@ -64,7 +64,8 @@ TEST_CASE("every record is sealed as a packet and appended to the recording", "[
     CHECK(second->primary.count == first->primary.count + 1);
 }
 
-TEST_CASE("what computer B says of itself has names of its own, what it says of the vehicle has none", "[edl_comm][R29]") {
+TEST_CASE("what computer B says of itself has names of its own, what it says of the vehicle has none",
+          "[edl_comm][R29]") {
     const auto recorded_as = [](Apid apid, String string) {
         Load load;
         load.string = string;
@@ -144,7 +145,8 @@ TEST_CASE("real time lost for want of room is never lost from the recording", "[
     CHECK(recorded == 400 * (30 + tm_overhead_octets));
 }
 
-TEST_CASE("when the recording is nearly full channels stop and events go on, and a tone says so", "[edl_comm][R29][R31]") {
+TEST_CASE("when the recording is nearly full channels stop and events go on, and a tone says so",
+          "[edl_comm][R29][R31]") {
     Fixture f;
     f.handle(NvmStatus{940'000, 1'000'000});
     f.recorder.bus->begin_cycle();
@@ -216,7 +218,7 @@ TEST_CASE("under any load and rate what is radiated keeps the rate, was recorded
         Fixture f{rate_bps};
         f.handle(PhaseChanged{EdlPhase::sky_crane});
         std::vector<std::vector<std::uint8_t>> recorded;
-        std::map<Apid, std::size_t> last_of; // index in the recording of the last radiated of each stream
+        std::map<Apid, std::size_t> last_of;  // index in the recording of the last radiated of each stream
         std::size_t chosen = 0;
         std::size_t sent = 0;
         double radiated_octets = 0.0;
@@ -242,12 +244,11 @@ TEST_CASE("under any load and rate what is radiated keeps the rate, was recorded
             for (const auto& packet : test::packets_in_pltus(f.recorder.bus->uhf.span())) {
                 ++sent;
                 const Apid apid = read_primary_header(packet)->apid;
-                const auto from = recorded.begin() + static_cast<std::ptrdiff_t>(
-                                                         last_of.contains(apid) ? last_of[apid] + 1 : 0);
-                const auto found = std::find_if(from, recorded.end(), [&](const auto& one) {
-                    return std::ranges::equal(one, packet);
-                });
-                REQUIRE(found != recorded.end()); // recorded, bit for bit, and in the stream's order
+                const auto from =
+                    recorded.begin() + static_cast<std::ptrdiff_t>(last_of.contains(apid) ? last_of[apid] + 1 : 0);
+                const auto found = std::find_if(from, recorded.end(),
+                                                [&](const auto& one) { return std::ranges::equal(one, packet); });
+                REQUIRE(found != recorded.end());  // recorded, bit for bit, and in the stream's order
                 last_of[apid] = static_cast<std::size_t>(found - recorded.begin());
             }
             const RealtimeQueue& queue = f.comm.queue();
@@ -298,7 +299,7 @@ TEST_CASE("the recording outlives a reset of the computer: what comes after stan
     Fixture before;
     before.handle(record(packet::GncImu::apid));
     std::vector<std::uint8_t> recording(before.recorder.bus->nvm.begin(), before.recorder.bus->nvm.end());
-    Fixture after; // made anew, as a reset does; NVM tells it how far it is used
+    Fixture after;  // made anew, as a reset does; NVM tells it how far it is used
     after.handle(NvmStatus{static_cast<std::uint32_t>(recording.size()), 100'000'000});
     after.handle(record(packet::GncImu::apid));
     recording.insert(recording.end(), after.recorder.bus->nvm.begin(), after.recorder.bus->nvm.end());

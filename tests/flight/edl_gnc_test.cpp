@@ -24,12 +24,11 @@ DeviceInputs inputs_at(Sclk now, std::uint32_t& count, const Vector3& force_B) {
     DeviceInputs in;
     in.now = now;
     const auto until = static_cast<std::uint32_t>((now.seconds - 1000.0) * 200.0);
-    while (count < until)
-        in.imu.push_back({++count, to_array(Vector3(force_B * imu_period_s)), {}});
+    while (count < until) in.imu.push_back({++count, to_array(Vector3(force_B * imu_period_s)), {}});
     return in;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("without a solution nothing is decided and nothing commanded", "[gnc][R27]") {
     EdlGnc gnc(Load{});
@@ -59,7 +58,8 @@ TEST_CASE("an old solution is brought up to now", "[gnc][R23]") {
 
 namespace {
 
-/// The attitude at tick 34 of a vehicle that spins at 2 rpm, told its attitude at tick 32 with the cycle of `told_tick`.
+/// The attitude at tick 34 of a vehicle that spins at 2 rpm, told its attitude at tick 32 with the cycle of
+/// `told_tick`.
 Quaternion attitude_when_told(int told_tick) {
     EdlGnc gnc(Load{});
     gnc.set_solution(above_gale(), {1000.0});
@@ -75,14 +75,16 @@ Quaternion attitude_when_told(int told_tick) {
     return to_quaternion(out.q_MB);
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a cruise attitude is as of its own tick, whether it comes before that tick's increments or after", "[gnc][R27]") {
+TEST_CASE("a cruise attitude is as of its own tick, whether it comes before that tick's increments or after",
+          "[gnc][R27]") {
     const double turned = 2.0 * seconds_per_tick * 0.2094;
     for (const int told_tick : {31, 32, 33, 34}) {
         INFO("told with tick " << told_tick);
         const Quaternion q = attitude_when_told(told_tick);
-        CHECK(2.0 * std::atan2(q.z(), q.w()) == Approx(turned).margin(0.2094 * imu_period_s)); // one of the IMU's samples
+        CHECK(2.0 * std::atan2(q.z(), q.w()) ==
+              Approx(turned).margin(0.2094 * imu_period_s));  // one of the IMU's samples
     }
 }
 
@@ -106,7 +108,7 @@ TEST_CASE("drag starts entry guidance once, and explains it", "[gnc][R17][R38]")
             REQUIRE(out.conditions.size() == 1);
             CHECK(out.conditions[0].quantity == Quantity::drag_mps2);
             CHECK(out.conditions[0].value >= 1.96);
-            CHECK(drag > 1.96); // filtered: later than the raw drag
+            CHECK(drag > 1.96);  // filtered: later than the raw drag
             CHECK(drag < 2.3);
         }
     }
@@ -127,7 +129,7 @@ TEST_CASE("before guidance starts the lift is held sideways", "[gnc][R27]") {
     configuration.turning_to_entry = true;
     gnc.cycle(inputs_at({1000.03125}, count, Vector3::Zero()), configuration, out);
     CHECK(out.attitude.mode == AttitudeCommand::Mode::entry_bank);
-    CHECK(out.bank_command_deg >= 72.0); // [facts]: +74 … 80
+    CHECK(out.bank_command_deg >= 72.0);  // [facts]: +74 … 80
     CHECK(out.bank_command_deg <= 80.0);
 }
 

@@ -201,7 +201,7 @@ TEST_CASE("the version of the timeline on board is in telemetry every second", "
         f.handle(Tick{Sclk{second}}, second);
         std::vector<std::uint64_t> versions;
         for (const auto& record : f.recorder.sent<Record>())
-            if (record.apid == packet::TimelineStatus::apid) 
+            if (record.apid == packet::TimelineStatus::apid)
                 versions.push_back(read_bits(record.data, position_bits, version->type.bits));
         CHECK(versions == std::vector<std::uint64_t>{loaded.dictionary->timeline_version});
     }

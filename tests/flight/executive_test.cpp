@@ -105,8 +105,10 @@ TEST_CASE("an interrupt and the tick of the clock are messages at once: handled 
     f.in.switch_replies.push_back({SwitchId::radar, true});
     f.in.switch_replies.push_back({SwitchId::uhf, true});
     f.cycle();
-    CHECK(answered(f, ModuleId::system_fault_protection, [](const Message& m) { return std::holds_alternative<InhibitEdl>(m); }));
-    CHECK(answered(f, ModuleId::command_dispatcher, [](const Message& m) { return std::holds_alternative<Record>(m); }));
+    CHECK(answered(f, ModuleId::system_fault_protection,
+                   [](const Message& m) { return std::holds_alternative<InhibitEdl>(m); }));
+    CHECK(
+        answered(f, ModuleId::command_dispatcher, [](const Message& m) { return std::holds_alternative<Record>(m); }));
     // Nobody had commanded these switches: that is reported.
     for (const ModuleId manager : {ModuleId::power, ModuleId::telecom})
         CHECK(answered(f, manager, [](const Message& m) { return std::holds_alternative<Record>(m); }));
@@ -114,9 +116,11 @@ TEST_CASE("an interrupt and the tick of the clock are messages at once: handled 
     CHECK(f.state->unexpected_messages == 0);
 }
 
-TEST_CASE("what a module outside the rate group sends is delivered at the start of the next cycle", "[executive][R18]") {
+TEST_CASE("what a module outside the rate group sends is delivered at the start of the next cycle",
+          "[executive][R18]") {
     Fixture f;
-    REQUIRE(f.state->mailboxes[static_cast<std::size_t>(ModuleId::mfsk)].try_push(ToneRequest{ToneId{61}, Sclk{1000.0}}));
+    REQUIRE(
+        f.state->mailboxes[static_cast<std::size_t>(ModuleId::mfsk)].try_push(ToneRequest{ToneId{61}, Sclk{1000.0}}));
     f.cycle();
     const auto is_record = [](const Envelope& e) { return std::holds_alternative<Record>(e.message); };
     CHECK(std::count_if(f.state->next_cycle.begin(), f.state->next_cycle.end(), is_record) > 0);
@@ -144,7 +148,8 @@ TEST_CASE("a computer is one value of fixed size with nothing that points into i
     const auto first = reinterpret_cast<std::uintptr_t>(original);
     const auto last = first + sizeof(ComputerState);
     const auto* octets = reinterpret_cast<const unsigned char*>(copy);
-    for (std::size_t at = 0; at + sizeof(std::uintptr_t) <= offsetof(ComputerState, mailboxes); at += sizeof(std::uintptr_t)) {
+    for (std::size_t at = 0; at + sizeof(std::uintptr_t) <= offsetof(ComputerState, mailboxes);
+         at += sizeof(std::uintptr_t)) {
         std::uintptr_t word = 0;
         std::memcpy(&word, octets + at, sizeof word);
         const bool points_inside = word >= first && word < last;
@@ -153,7 +158,8 @@ TEST_CASE("a computer is one value of fixed size with nothing that points into i
     }
 }
 
-TEST_CASE("random messages to random modules never end the computer, only count, before EDL and in it", "[executive][R4]") {
+TEST_CASE("random messages to random modules never end the computer, only count, before EDL and in it",
+          "[executive][R4]") {
     std::mt19937 random{5};
     Fixture both[] = {Fixture{}, begun()};
     for (Fixture& f : both) {

@@ -15,14 +15,16 @@ using Verdict = Farm::Verdict;
 Verdict in_sequence(Farm& farm, int sequence) {
     return farm.take({{.spacecraft = 76, .virtual_channel = 1, .sequence = static_cast<std::uint8_t>(sequence)}, {}});
 }
-Verdict by_bypass(Farm& farm) { return farm.take({{.bypass = true, .spacecraft = 76, .virtual_channel = 1}, {}}); }
+Verdict by_bypass(Farm& farm) {
+    return farm.take({{.bypass = true, .spacecraft = 76, .virtual_channel = 1}, {}});
+}
 Verdict control(Farm& farm, const std::vector<std::uint8_t>& command) {
     return farm.take({{.bypass = true, .control = true, .spacecraft = 76, .virtual_channel = 1}, command});
 }
 
-} // namespace
+}  // namespace
 
-static_assert(std::is_trivially_copyable_v<Farm>); // part of a computer, which is copied as a value
+static_assert(std::is_trivially_copyable_v<Farm>);  // part of a computer, which is copied as a value
 
 TEST_CASE("frames are taken in sequence, over the end of the count, and none twice", "[flight]") {
     Farm farm{settings};
@@ -71,7 +73,7 @@ TEST_CASE("a locked channel takes only by bypass, until it is unlocked", "[fligh
     CHECK(control(farm, {0x00}) == Verdict::executed);
     CHECK(control(farm, {0x82, 0x00, 9}) == Verdict::executed);
     CHECK(in_sequence(farm, 9) == Verdict::accepted);
-    CHECK(farm.clcw().farm_b == 0); // four by bypass
+    CHECK(farm.clcw().farm_b == 0);  // four by bypass
 }
 
 TEST_CASE("what is for others, or no control command, is refused and changes nothing", "[flight]") {
@@ -80,7 +82,8 @@ TEST_CASE("what is for others, or no control command, is refused and changes not
     CHECK(farm.take({{.spacecraft = 77, .virtual_channel = 1}, {}}) == Verdict::not_for_this_channel);
     CHECK(farm.take({{.spacecraft = 76, .virtual_channel = 0}, {}}) == Verdict::not_for_this_channel);
     CHECK(farm.take({{.control = true, .spacecraft = 76, .virtual_channel = 1}, {}}) == Verdict::no_such_control);
-    for (const auto& command : std::vector<std::vector<std::uint8_t>>{{}, {0x01}, {0x82, 0x00}, {0x82, 0x01, 5}, {0, 0}})
+    for (const auto& command :
+         std::vector<std::vector<std::uint8_t>>{{}, {0x01}, {0x82, 0x00}, {0x82, 0x01, 5}, {0, 0}})
         CHECK(control(farm, command) == Verdict::no_such_control);
     CHECK(farm.clcw() == before);
 }

@@ -35,16 +35,16 @@ double bank_of(const AttitudeState& state) {
     return -bank_error(0.0, state);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("nothing is steered in idle, and a tumbling vehicle comes to rest in detumble", "[gnc][R27]") {
     AttitudeState state = flying_east();
-    state.rate_B_rps = {0.02, -0.03, 0.21}; // 2 rpm and a little nutation
+    state.rate_B_rps = {0.02, -0.03, 0.21};  // 2 rpm and a little nutation
     CHECK(control_torque({}, state, inertia).isZero());
     AttitudeCommand command;
     command.mode = Mode::detumble;
     state = steered(state, command, 60.0);
-    CHECK(state.rate_B_rps.norm() <= 0.16 * degree); // its deadband
+    CHECK(state.rate_B_rps.norm() <= 0.16 * degree);  // its deadband
 }
 
 TEST_CASE("in vacuum the vehicle turns to its trim attitude at the wanted bank from anywhere", "[gnc][R27]") {
@@ -73,7 +73,7 @@ TEST_CASE("in the air bank is turned about the velocity the short way, and the a
     state = steered(state, command, 240.0);
     state.in_air = true;
     const Vector3 forward_B = state.q_MB.conjugate() * state.v_MB_M.normalized();
-    command.bank_rad = -170.0 * degree; // 20° further, not 340° back
+    command.bank_rad = -170.0 * degree;  // 20° further, not 340° back
     CHECK(control_torque(command, state, inertia).dot(forward_B) > 0.0);
     state = steered(state, command, 20.0);
     CHECK(std::abs(bank_error(command.bank_rad, state)) / degree < 1.5);

@@ -7,8 +7,8 @@ using namespace aeolis::flight::gnc::powered_descent;
 TEST_CASE("a sidestep of 304 m from rest peaks at 30 m/s in mid-way", "[gnc][R27]") {
     Divert divert;
     divert.start({304.0, 0.0, 0.0}, Vector3::Zero(), 18.6);
-    CHECK(divert.velocity_M(9.3).x() == Approx(1.875 * 304.0 / 18.6)); // closed form of the quintic
-    CHECK(divert.velocity_M(9.3).x() == Approx(30.0).epsilon(0.03));   // [facts]
+    CHECK(divert.velocity_M(9.3).x() == Approx(1.875 * 304.0 / 18.6));  // closed form of the quintic
+    CHECK(divert.velocity_M(9.3).x() == Approx(30.0).epsilon(0.03));    // [facts]
     CHECK(divert.position_M(9.3).x() == Approx(152.0));
 }
 

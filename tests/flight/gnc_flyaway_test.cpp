@@ -31,5 +31,5 @@ TEST_CASE("a burn of 6.66 s throws the stage 450 m and more", "[gnc][R27]") {
         x += dt * v;
         t += dt;
     }
-    CHECK(x.z() >= 450.0); // [facts]
+    CHECK(x.z() >= 450.0);  // [facts]
 }

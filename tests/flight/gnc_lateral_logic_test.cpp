@@ -10,7 +10,7 @@ namespace {
 constexpr Sclk now{1000.0};
 constexpr double interval_s = flight::parameters.reversal_interval_min_s;
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the deadband shrinks with velocity and is halved when lift is saturated", "[gnc][R27]") {
     CHECK(crossrange_deadband_m(5000.0, false) > crossrange_deadband_m(2000.0, false));
@@ -21,7 +21,7 @@ TEST_CASE("bank reverses when the target has left the deadband on the side away 
     LateralLogic logic;
     logic.start(1);
     const double edge_m = crossrange_deadband_m(3000.0, false);
-    CHECK_FALSE(logic.on(now, +2.0 * edge_m, 3000.0, false, true)); // lift already turns towards it
+    CHECK_FALSE(logic.on(now, +2.0 * edge_m, 3000.0, false, true));  // lift already turns towards it
     CHECK_FALSE(logic.on(now, -0.99 * edge_m, 3000.0, false, true));
     CHECK(logic.on(now, -1.01 * edge_m, 3000.0, false, true));
     CHECK(logic.sign() == -1);

@@ -14,7 +14,7 @@ double potential(const Vector3& p) {
     return mars_gm_m3ps2 / r * (1.0 - mars_j2 * a * a * 0.5 * (3.0 * s * s - 1.0));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("gravity is the gradient of the potential with J2", "[gnc][R27]") {
     const Vector3 p(1.2e6, -2.9e6, 1.5e6);

@@ -14,7 +14,7 @@ TEST_CASE("a turn by the phase plane ends in its deadband without going past it,
             rate_rps += change;
             left_rad -= rate_rps / 64.0;
             fastest_rps = std::max(fastest_rps, std::abs(rate_rps));
-            CHECK(left_rad * start_rad > 0.0); // never past the end
+            CHECK(left_rad * start_rad > 0.0);  // never past the end
         }
         CHECK(std::abs(left_rad) < 0.0125);
         CHECK(std::abs(rate_rps) < 1.0e-3);

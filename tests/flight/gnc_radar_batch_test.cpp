@@ -23,9 +23,9 @@ FixedVector<flight::RadarBeam, 6> beams_of(double altitude_m, const Vector3& v_M
 }
 
 const Vector3 up = Vector3::UnitX();
-const Quaternion down(Eigen::AngleAxisd(-pi / 2, Vector3::UnitY())); // z of B to −x of M
+const Quaternion down(Eigen::AngleAxisd(-pi / 2, Vector3::UnitY()));  // z of B to −x of M
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a steady descent comes out exactly: altitude and velocity", "[gnc][R25]") {
     RadarBatch batch;
@@ -46,8 +46,7 @@ TEST_CASE("no beams, one beam or lost beams give no solution", "[gnc][R25]") {
     CHECK_FALSE(batch.solve(Sclk{1.0}));
     for (int tick = 0; tick < 128; ++tick) {
         auto beams = beams_of(1000.0, Vector3::Zero(), down, up);
-        for (std::size_t i = 1; i < beams.size(); ++i)
-            beams[i].valid = false;
+        for (std::size_t i = 1; i < beams.size(); ++i) beams[i].valid = false;
         batch.on(Sclk::from_ticks(tick), beams.span(), down, up);
     }
     CHECK_FALSE(batch.solve(Sclk{2.0}));

@@ -33,7 +33,7 @@ struct Descent {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the first solution takes out kilometres of error, delay or not", "[gnc][R25]") {
     Descent descent;
@@ -51,7 +51,7 @@ TEST_CASE("corrections once a second of averages over five do not ring", "[gnc][
     Descent descent;
     descent.fly(6.0);
     REQUIRE(descent.update());
-    descent.error_m += 20.0; // a step that the filter's past does not know of
+    descent.error_m += 20.0;  // a step that the filter's past does not know of
     double largest_undershoot_m = 0.0;
     for (int i = 0; i < 30; ++i) {
         descent.fly(1.0);

@@ -20,7 +20,7 @@ RangeControlInput on_reference() {
     return {2000.0, 57.5, -150.0, 120000.0, 0.26};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("rows are linear between and held beyond", "[gnc][R27]") {
     const EntryReference reference = two_rows();

@@ -7,14 +7,13 @@ using namespace aeolis::flight::gnc::sky_crane;
 namespace {
 const Vector3 up = Vector3::UnitX();
 constexpr double dt = 1.0 / 64;
-} // namespace
+}  // namespace
 
 TEST_CASE("the rate settles and drift dies out", "[gnc][R27]") {
     RateControl control;
     control.start();
     Vector3 v(-1.5, 0.8, -0.4);
-    for (int i = 0; i < 64 * 8; ++i)
-        v += dt * control.command_M(v, up, 0.75, dt);
+    for (int i = 0; i < 64 * 8; ++i) v += dt * control.command_M(v, up, 0.75, dt);
     CHECK(v.x() == Approx(-0.75).margin(1e-3));
     CHECK((v - v.x() * up).norm() < 0.01);
 }

@@ -32,7 +32,7 @@ struct Spinning {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("what steers takes the spin out and what does not steer is left alone", "[gnc][R27]") {
     const Spinning untouched;

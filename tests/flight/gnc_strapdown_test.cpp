@@ -19,7 +19,7 @@ NavigatedState over_gale() {
     return state;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a vehicle held up against its weight stays where it is", "[gnc][R27]") {
     Strapdown strapdown;
@@ -27,8 +27,7 @@ TEST_CASE("a vehicle held up against its weight stays where it is", "[gnc][R27]"
     strapdown.start(state);
     const Vector3 hold = -free_acceleration(state.p_MoB_M, Vector3::Zero()) * imu_period_s;
     const Vector3 with_mars(0.0, 0.0, mars_spin_rps * imu_period_s);
-    for (std::uint32_t i = 1; i <= 200 * 60; ++i)
-        strapdown.on(sample(i, hold, with_mars), true);
+    for (std::uint32_t i = 1; i <= 200 * 60; ++i) strapdown.on(sample(i, hold, with_mars), true);
     CHECK((strapdown.state().p_MoB_M - state.p_MoB_M).norm() < 5e-3);
     CHECK(strapdown.state().v_MB_M.norm() < 1e-4);
     CHECK(strapdown.state().q_MB.angularDistance(state.q_MB) < 1e-9);
@@ -37,8 +36,7 @@ TEST_CASE("a vehicle held up against its weight stays where it is", "[gnc][R27]"
 TEST_CASE("an inertially fixed vehicle turns backwards relative to Mars", "[gnc][R27]") {
     Strapdown strapdown;
     strapdown.start(over_gale());
-    for (std::uint32_t i = 1; i <= 200 * 100; ++i)
-        strapdown.on(sample(i, Vector3::Zero(), Vector3::Zero()), true);
+    for (std::uint32_t i = 1; i <= 200 * 100; ++i) strapdown.on(sample(i, Vector3::Zero(), Vector3::Zero()), true);
     const Vector3 x_B_M = strapdown.state().q_MB * Vector3::UnitX();
     CHECK(std::atan2(x_B_M.y(), x_B_M.x()) == Approx(-mars_spin_rps * 100.0).epsilon(1e-6));
 }
@@ -53,8 +51,7 @@ TEST_CASE("coning at 1 rad/s leaves less than a milliradian in a minute", "[gnc]
     constexpr double w = 1.0;
     const Vector3 rate_B = tilt.conjugate() * Vector3(0.0, 0.0, w + mars_spin_rps);
     const Vector3 delta_angle = rate_B * imu_period_s;
-    for (std::uint32_t i = 1; i <= 200 * 60; ++i)
-        strapdown.on(sample(i, Vector3::Zero(), delta_angle), true);
+    for (std::uint32_t i = 1; i <= 200 * 60; ++i) strapdown.on(sample(i, Vector3::Zero(), delta_angle), true);
     const Quaternion truth = Quaternion(Eigen::AngleAxisd(60.0 * w, Vector3::UnitZ())) * tilt;
     CHECK(strapdown.state().q_MB.angularDistance(truth) < 1e-3);
 }
@@ -75,8 +72,7 @@ TEST_CASE("what the accelerometer tells in vacuum is learnt as its bias and take
     Strapdown strapdown;
     strapdown.start(over_gale());
     const Vector3 bias(3.0e-4, -2.0e-4, 1.0e-4);
-    for (std::uint32_t i = 1; i <= 2000; ++i)
-        strapdown.on(sample(i, bias * imu_period_s, Vector3::Zero()), false);
+    for (std::uint32_t i = 1; i <= 2000; ++i) strapdown.on(sample(i, bias * imu_period_s, Vector3::Zero()), false);
     CHECK((strapdown.bias_B_mps2() - bias).norm() < 1e-12);
     CHECK(strapdown.specific_force_B_mps2().norm() == 0.0);
     strapdown.on(sample(2001, (bias + Vector3::UnitX()) * imu_period_s, Vector3::Zero()), true);
@@ -107,7 +103,8 @@ TEST_CASE("what navigation believes is moved as a whole: place, velocity, attitu
     const NavigatedState before = over_gale();
     strapdown.start(before);
     const double half_rad = 0.5e-3;
-    strapdown.shift({{1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, {std::cos(half_rad), std::sin(half_rad), 0.0, 0.0}, {1e-3, 0, 0}});
+    strapdown.shift(
+        {{1.0, 2.0, 3.0}, {0.1, 0.2, 0.3}, {std::cos(half_rad), std::sin(half_rad), 0.0, 0.0}, {1e-3, 0, 0}});
     CHECK((strapdown.state().p_MoB_M - before.p_MoB_M - Vector3(1.0, 2.0, 3.0)).norm() < 1e-9);
     CHECK((strapdown.state().v_MB_M - Vector3(0.1, 0.2, 0.3)).norm() < 1e-12);
     CHECK(strapdown.state().q_MB.angularDistance(before.q_MB) == Approx(2.0 * half_rad));

@@ -9,13 +9,13 @@ namespace {
 constexpr double radius_m = 3391148.0;
 const Vector3 equator(3400000.0, 0.0, 0.0);
 const Vector3 east(0.0, 5000.0, -1000.0);
-} // namespace
+}  // namespace
 
 TEST_CASE("MSL at entry interface has 634.2 km to go", "[gnc][R27]") {
     const Vector3 p = 3522200.0 * direction_of(-3.9226 * degree, 126.703 * degree);
     const Vector3 v = Vector3::UnitZ().cross(p).normalized() * 5845.2;
     const TargetGeometry geometry = target_geometry(p, v, direction_of(-4.6019 * degree, 137.4102 * degree), radius_m);
-    CHECK(geometry.range_to_go_m == Approx(634200.0).epsilon(2e-3)); // [facts], on a sphere of the landing radius
+    CHECK(geometry.range_to_go_m == Approx(634200.0).epsilon(2e-3));  // [facts], on a sphere of the landing radius
 }
 
 TEST_CASE("a target to the right has positive crossrange, one ahead has none", "[gnc][R27]") {
@@ -23,7 +23,7 @@ TEST_CASE("a target to the right has positive crossrange, one ahead has none", "
     CHECK(ahead.crossrange_m == Approx(0.0).margin(1e-6));
     CHECK(ahead.downrange_m == Approx(0.1 * radius_m));
     const auto south = target_geometry(equator, {0, 5000, 0}, direction_of(-0.01, 0.1), radius_m);
-    CHECK(south.crossrange_m == Approx(0.01 * radius_m).epsilon(1e-3)); // flying east, south is right
+    CHECK(south.crossrange_m == Approx(0.01 * radius_m).epsilon(1e-3));  // flying east, south is right
     const auto passed = target_geometry(equator, {0, 5000, 0}, direction_of(0.0, -0.1), radius_m);
     CHECK(passed.downrange_m < 0.0);
     CHECK(passed.range_to_go_m == Approx(0.1 * radius_m));

@@ -1,5 +1,5 @@
-#include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "flight/devices/effectors.hpp"
+#include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace aeolis::flight::gnc;
@@ -10,11 +10,10 @@ constexpr double largest_N = 3603.0;
 const Vector3 up = Vector3::UnitX();
 double sum_N(const Thrust& thrust) {
     double sum = 0.0;
-    for (const double throttle : thrust.throttle)
-        sum += throttle * largest_N;
+    for (const double throttle : thrust.throttle) sum += throttle * largest_N;
     return sum;
 }
-} // namespace
+}  // namespace
 
 TEST_CASE("eight engines share the thrust that mass and acceleration need", "[gnc][R27]") {
     const Thrust thrust = allocate({6.9, 2.0, -1.0}, up, 2200.0, 8, largest_N);
@@ -25,8 +24,7 @@ TEST_CASE("eight engines share the thrust that mass and acceleration need", "[gn
 
 TEST_CASE("of four engines every other one runs", "[gnc][R27]") {
     const Thrust thrust = allocate(3.71 * up, up, 2040.0, 4, largest_N);
-    for (std::size_t i = 0; i < 8; ++i)
-        CHECK((thrust.throttle[i] > 0.0) == (i % 2 == 0));
+    for (std::size_t i = 0; i < 8; ++i) CHECK((thrust.throttle[i] > 0.0) == (i % 2 == 0));
     CHECK(sum_N(thrust) == Approx(2040.0 * 3.71));
 }
 
@@ -49,7 +47,8 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
     constexpr auto mounted = descent_engines();
     const powered_descent::TorqueAllocation allocation;
     for (const int engines : {8, 4}) {
-        for (const Vector3& torque : {Vector3{400.0, -250.0, 0.0}, Vector3{0.0, 0.0, 90.0}, Vector3{-30000.0, 0.0, 0.0}}) {
+        for (const Vector3& torque :
+             {Vector3{400.0, -250.0, 0.0}, Vector3{0.0, 0.0, 90.0}, Vector3{-30000.0, 0.0, 0.0}}) {
             double given_N = 0.0;
             auto throttle = powered_descent::throttles_for(1400.0 * engines, engines, 3603.0, given_N);
             allocation.add(torque, engines, 3603.0, throttle);
@@ -69,8 +68,7 @@ TEST_CASE("a torque is spread over eight engines or four without changing their 
             if (torque.norm() < 1000.0) {
                 CHECK(sum_N == Approx(given_N));
                 CHECK((turns - torque).norm() < 1e-6);
-            }
-            else { // too much: less of it, about the same axis
+            } else {  // too much: less of it, about the same axis
                 CHECK(turns.normalized().dot(torque.normalized()) > 0.999);
             }
         }

@@ -23,7 +23,7 @@ Vector3 given(const ThrusterCommand& command) {
     return sum;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a torque that thrusters can give is given in its cycle, about its own axis", "[gnc][R27]") {
     std::mt19937 random{5};
@@ -33,7 +33,7 @@ TEST_CASE("a torque that thrusters can give is given in its cycle, about its own
         const Vector3 torque = Vector3{any(random), any(random), any(random)}.normalized() * 900.0;
         const ThrusterCommand command = selection.select(torque);
         CHECK((given(command) - torque * seconds_per_tick).norm() < 2.0 * thruster_least_on_s * thruster_force_N * 2.2);
-        for (std::size_t mount = 0; mount < thruster_count; mount += 2) // never one against the other
+        for (std::size_t mount = 0; mount < thruster_count; mount += 2)  // never one against the other
             CHECK((command.on_s[mount] == 0.0 || command.on_s[mount + 1] == 0.0));
     }
 }
@@ -61,5 +61,5 @@ TEST_CASE("a torque beyond all thrusters is cut in proportion, and keeps its axi
     const ThrusterCommand command = selection.select(torque);
     CHECK(given(command).normalized().dot(torque.normalized()) > 0.999);
     CHECK(*std::max_element(command.on_s.begin(), command.on_s.end()) == Approx(seconds_per_tick));
-    CHECK(selection.select(Vector3::Zero()) == ThrusterCommand{}); // and none is owed afterwards
+    CHECK(selection.select(Vector3::Zero()) == ThrusterCommand{});  // and none is owed afterwards
 }

@@ -9,7 +9,7 @@ namespace {
 constexpr ParachuteBounds bounds{405.0, 6000.0};
 constexpr BackshellBounds design{1660.0, 79.1};
 
-} // namespace
+}  // namespace
 
 TEST_CASE("entry guidance starts at 0.2 g of drag", "[gnc][R17]") {
     CHECK_FALSE(all_hold(guidance_start(1.95)));
@@ -29,7 +29,7 @@ TEST_CASE("below its lowest altitude the parachute waits for its speed no longer
     CHECK(parachute_due({405.0, 12000.0, 110.0}, bounds));
     const auto low = parachute({500.0, 6000.0, 150.0}, bounds, 3);
     CHECK(all_hold(low));
-    CHECK(low[0].quantity == aeolis::flight::Quantity::altitude_m); // and says why
+    CHECK(low[0].quantity == aeolis::flight::Quantity::altitude_m);  // and says why
     CHECK_FALSE(all_hold(parachute({500.0, 6000.0, 150.0}, bounds, 2)));
 }
 
@@ -37,7 +37,7 @@ TEST_CASE("straightening up begins its lead time before the parachute's lowest a
           "[gnc][R17][R48]") {
     CHECK_FALSE(all_hold(sufr_start({600.0, 6000.0 + 18.1 * 150.0, 150.0}, 2.8, bounds)));
     CHECK(all_hold(sufr_start({600.0, 6000.0 + 17.9 * 150.0, 150.0}, 2.8, bounds)));
-    CHECK_FALSE(all_hold(sufr_start({600.0, 5000.0, -10.0}, 2.8, bounds))); // it climbs
+    CHECK_FALSE(all_hold(sufr_start({600.0, 5000.0, -10.0}, 2.8, bounds)));  // it climbs
 }
 
 TEST_CASE("the descent rate that ground expects at the backshell moves the altitude at which it goes",
@@ -52,7 +52,7 @@ TEST_CASE("a decision is near when its subject holds or is within a twentieth of
     CHECK(near(parachute({425.0, 12000.0, 110.0}, bounds, 0)));
     CHECK_FALSE(near(parachute({426.0, 12000.0, 110.0}, bounds, 0)));
     CHECK(near(heatshield(120.0, 142.0, 12.0)));
-    CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0))); // the speed is its subject, not the time
+    CHECK_FALSE(near(heatshield(200.0, 142.0, 25.0)));  // the speed is its subject, not the time
     CHECK_FALSE(near({}));
     Conditions timer;
     timer.push_back(at_least(Quantity::time_in_mode_s, 3.15, 3.2));
@@ -77,7 +77,8 @@ TEST_CASE("straightening up begins its lead time before the parachute's speed", 
     CHECK(all_hold(sufr_start({453.0, 14000.0, 120.0}, 2.8, bounds)));
     CHECK_FALSE(all_hold(sufr_start({460.0, 14000.0, 120.0}, 2.8, bounds)));
     CHECK_FALSE(all_hold(sufr_start({453.0, 14000.0, 120.0}, -1.0, bounds)));  // it gains speed
-    CHECK_FALSE(all_hold(sufr_start({600.0, 14000.0, 120.0}, 100.0, bounds))); // far above a straight line means nothing
+    CHECK_FALSE(
+        all_hold(sufr_start({600.0, 14000.0, 120.0}, 100.0, bounds)));  // far above a straight line means nothing
 }
 
 TEST_CASE("the heatshield stays on for twenty seconds after the mortar", "[gnc][R17]") {
@@ -97,5 +98,5 @@ TEST_CASE("the backshell goes at ground's altitude at 79.1 m/s, earlier when fas
 TEST_CASE("engines are primed a quarter of a minute before the backshell goes", "[gnc][R17]") {
     CHECK(all_hold(engine_priming(1660.0 + 82.0 * 15.4, 82.0, 1660.0)));
     CHECK_FALSE(all_hold(engine_priming(1660.0 + 82.0 * 15.6, 82.0, 1660.0)));
-    CHECK_FALSE(all_hold(engine_priming(1000.0, -3.0, 1660.0))); // it climbs
+    CHECK_FALSE(all_hold(engine_priming(1000.0, -3.0, 1660.0)));  // it climbs
 }

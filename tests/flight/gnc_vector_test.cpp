@@ -4,7 +4,7 @@
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("a quaternion of a message keeps its order w, x, y, z and comes back unit", "[gnc][R27]") {
-    const Quaternion q = to_quaternion({2.0, 0.0, 0.0, 2.0}); // 90° about z
+    const Quaternion q = to_quaternion({2.0, 0.0, 0.0, 2.0});  // 90° about z
     CHECK((q * Vector3::UnitX() - Vector3::UnitY()).norm() < 1e-15);
     CHECK(to_array(q)[0] == Approx(std::sqrt(0.5)));
     CHECK(to_array(q)[3] == Approx(std::sqrt(0.5)));

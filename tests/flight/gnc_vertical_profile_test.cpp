@@ -8,7 +8,7 @@ using namespace aeolis::flight::gnc::powered_descent;
 TEST_CASE("from OD137's powered approach start the net deceleration comes out as published", "[gnc][R27]") {
     ApproachProfile profile;
     profile.start(1380.0 + stage_height_at_touchdown_m, 90.5);
-    CHECK(profile.deceleration_mps2() == Approx(3.19).epsilon(0.03)); // [facts]
+    CHECK(profile.deceleration_mps2() == Approx(3.19).epsilon(0.03));  // [facts]
 }
 
 TEST_CASE("following the profile ends at 32 m/s at the altitude meant", "[gnc][R27]") {
@@ -42,11 +42,12 @@ TEST_CASE("constant deceleration takes 120 m from 32 m/s and ends at 0.75 m/s", 
         profile.advance(altitude_m, 0.01);
     }
     CHECK(altitude_m == Approx(sky_crane_altitude_m).margin(0.2));
-    CHECK(seconds == Approx(7.3).margin(0.1)); // [facts]: 400.0 → 407.3
+    CHECK(seconds == Approx(7.3).margin(0.1));  // [facts]: 400.0 → 407.3
     CHECK(profile.acceleration_mps2(0.75) == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("constant deceleration ends where it should though the radar corrects the altitude on the way", "[gnc][R27]") {
+TEST_CASE("constant deceleration ends where it should though the radar corrects the altitude on the way",
+          "[gnc][R27]") {
     for (const double error_m : {-5.0, 5.0}) {
         DecelerationProfile profile;
         double true_m = constant_deceleration_altitude_m(32.0) - error_m, seconds = 0.0;

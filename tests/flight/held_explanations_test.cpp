@@ -72,7 +72,7 @@ TEST_CASE("no more than two are told in a second, however many decisions are hel
     for (const Decision decision : decisions) counted += f.held.take_suppressed(decision);
     CHECK(told + counted == offered);
     CHECK(told <= 60);
-    CHECK(told >= 30); // each about every four seconds
+    CHECK(told >= 30);  // each about every four seconds
 }
 
 TEST_CASE("another timepoint is told at once, though one was told just before", "[explanation][R38]") {

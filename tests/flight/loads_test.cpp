@@ -22,11 +22,12 @@ std::vector<ModuleId> modules_of(Role role) {
 
 }  // namespace
 
-TEST_CASE("each load has the modules that it lists, and Second Chance goes without what only pre-EDL needs", "[loads][R33]") {
+TEST_CASE("each load has the modules that it lists, and Second Chance goes without what only pre-EDL needs",
+          "[loads][R33]") {
     using enum ModuleId;
-    CHECK(modules_of(Role::prime) ==
-          std::vector{sync, radar, imu, edl, pyro, descent_engines, thrusters, power, telecom, units,
-                      cruise_attitude, system_fault_protection, cross_string, command_dispatcher, edl_bg, mfsk, edl_comm});
+    CHECK(modules_of(Role::prime) == std::vector{sync, radar, imu, edl, pyro, descent_engines, thrusters, power,
+                                                 telecom, units, cruise_attitude, system_fault_protection, cross_string,
+                                                 command_dispatcher, edl_bg, mfsk, edl_comm});
     CHECK(modules_of(Role::second_chance) == std::vector{sync, radar, imu, edl, pyro, descent_engines, thrusters, power,
                                                          telecom, units, cross_string, command_dispatcher, edl_bg, mfsk,
                                                          edl_comm});

@@ -13,7 +13,7 @@ TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]"
     CHECK(phase.state() == EdlPhase::pre_edl);
     CHECK(phase.follow(gnc::Mode::off, configuration, true));
     CHECK(phase.state() == EdlPhase::late_cruise);
-    CHECK(phase.follow(gnc::Mode::off, configuration, false)); // a newer solution puts entry later
+    CHECK(phase.follow(gnc::Mode::off, configuration, false));  // a newer solution puts entry later
     CHECK(phase.state() == EdlPhase::pre_edl);
     CHECK_FALSE(phase.follow(gnc::Mode::off, configuration, false));
     configuration.cruise_stage_gone = true;
@@ -47,8 +47,9 @@ TEST_CASE("the vehicle has landed when its stage has flown away, not before", "[
     gnc::Configuration configuration;
     configuration.cruise_stage_gone = true;
     Phase phase;
-    for (const auto mode : {gnc::Mode::approach, gnc::Mode::wait_for_guidance_start, gnc::Mode::range_control,
-                            gnc::Mode::parachute_descent, gnc::Mode::free_fall, gnc::Mode::sky_crane, gnc::Mode::flyaway})
+    for (const auto mode :
+         {gnc::Mode::approach, gnc::Mode::wait_for_guidance_start, gnc::Mode::range_control,
+          gnc::Mode::parachute_descent, gnc::Mode::free_fall, gnc::Mode::sky_crane, gnc::Mode::flyaway})
         phase.follow(mode, configuration, true);
     CHECK(phase.state() == EdlPhase::flyaway);
     configuration.engines_off = true;

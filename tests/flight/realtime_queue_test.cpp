@@ -46,11 +46,11 @@ TEST_CASE("a full queue gives up the least important, of equals the oldest", "[r
     RealtimeQueue queue;
     for (std::uint32_t i = 0; i < RealtimeQueue::packets_max; ++i)
         CHECK(queue.offer(numbered(i), i < 2 ? TelemetryPriority::low : TelemetryPriority::normal));
-    CHECK_FALSE(queue.offer(numbered(1000), TelemetryPriority::normal)); // packet 0 gives way
-    CHECK_FALSE(queue.offer(numbered(1001), TelemetryPriority::low));    // packet 1 does, not the newcomer
-    CHECK_FALSE(queue.offer(numbered(1002), TelemetryPriority::first));  // and then 1001
+    CHECK_FALSE(queue.offer(numbered(1000), TelemetryPriority::normal));  // packet 0 gives way
+    CHECK_FALSE(queue.offer(numbered(1001), TelemetryPriority::low));     // packet 1 does, not the newcomer
+    CHECK_FALSE(queue.offer(numbered(1002), TelemetryPriority::first));   // and then 1001
     CHECK(queue.dropped(TelemetryPriority::low) == 3);
-    CHECK_FALSE(queue.offer(numbered(1003), TelemetryPriority::low)); // all that wait are more important
+    CHECK_FALSE(queue.offer(numbered(1003), TelemetryPriority::low));  // all that wait are more important
     CHECK(queue.dropped(TelemetryPriority::low) == 4);
     CHECK(queue.dropped() == 4);
     CHECK(queue.waiting() == RealtimeQueue::packets_max);
@@ -63,12 +63,12 @@ TEST_CASE("under any load the queue does what its rule says, and its counts add 
     for (unsigned seed = 1; seed <= 20; ++seed) {
         std::mt19937 random{seed};
         RealtimeQueue queue;
-        std::array<std::deque<std::uint32_t>, telemetry_priorities> wanted; // the rule, written out at length
+        std::array<std::deque<std::uint32_t>, telemetry_priorities> wanted;  // the rule, written out at length
         std::array<std::uint32_t, telemetry_priorities> dropped{};
         std::uint32_t offered = 0;
         std::uint32_t sent = 0;
         const auto waiting = [&] { return wanted[0].size() + wanted[1].size() + wanted[2].size() + wanted[3].size(); };
-        const unsigned load = 1 + seed % 4; // offers for each packet sent
+        const unsigned load = 1 + seed % 4;  // offers for each packet sent
         for (int step = 0; step < 3000; ++step) {
             if (random() % (load + 1) != 0) {
                 const std::size_t priority = random() % telemetry_priorities;

@@ -7,8 +7,8 @@
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/product_assembler.hpp"
 #include "tests/simulation/gale.hpp"
-#include "tests/support/radiated.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/radiated.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/telecommands.hpp"
 
@@ -111,14 +111,14 @@ TEST_CASE("all that a landing radiates is in its recording, bit for bit, and not
     double dropped = -1.0;
     for (const Octets& packet : flown().recorded)
         if (ground.name(packet) == "CommStatus") dropped = ground.value("uhf_dropped_packets");
-    CHECK(dropped == 0.0); // the plan of the mission is within 8 kb/s
+    CHECK(dropped == 0.0);  // the plan of the mission is within 8 kb/s
     CHECK(flown().counters.mailbox_overflows == 0);
     CHECK(flown().counters.unexpected_messages == 0);
 }
 
 TEST_CASE("UHF carries channels, events and products, chosen by the state of the vehicle", "[edl_comm][R30]") {
     Ground ground;
-    std::map<EdlPhase, std::map<std::string, int>> live; // by the phase in which it was recorded
+    std::map<EdlPhase, std::map<std::string, int>> live;  // by the phase in which it was recorded
     std::map<double, EdlPhase> phases{{0.0, EdlPhase::pre_edl}};
     for (const Octets& packet : flown().recorded)
         if (ground.name(packet) == "EDL_PHASE_CHANGED")
@@ -165,7 +165,8 @@ TEST_CASE("the products of a landing are what flight put in: every firing, and t
         if (product.kind == "as_flown") {
             as_flown_rows = rows->size();
             Octets flat;
-            for (std::size_t i = 0; i < rows->size(); ++i) flat.insert(flat.end(), firings[i].begin(), firings[i].end());
+            for (std::size_t i = 0; i < rows->size(); ++i)
+                flat.insert(flat.end(), firings[i].begin(), firings[i].end());
             CHECK(*content == flat);
             continue;
         }
@@ -185,7 +186,7 @@ TEST_CASE("the products of a landing are what flight put in: every firing, and t
         }
     }
     CHECK(imu_seen);
-    CHECK(as_flown_rows == timepoint_count); // products come in the order of their numbers: the last is whole
+    CHECK(as_flown_rows == timepoint_count);  // products come in the order of their numbers: the last is whole
     CHECK(mortar_s > 0.0);
 
     // Live, on a link without loss, the burst is whole before touchdown, and what was flown up to touchdown after it.
@@ -216,5 +217,5 @@ TEST_CASE("a landing tells what holds its decisions, live and without flooding t
     CHECK(held["heatshield"] >= 1);
     int all = 0;
     for (const auto& [decision, count] : held) all += count;
-    CHECK(all < 60); // of a whole landing: they are for what is near, not a log
+    CHECK(all < 60);  // of a whole landing: they are for what is near, not a log
 }

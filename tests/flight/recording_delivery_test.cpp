@@ -18,7 +18,8 @@ std::vector<std::uint8_t> recording_of(std::size_t packets) {
     std::mt19937 random{7};
     for (std::size_t i = 0; i < packets; ++i) {
         std::vector<std::uint8_t> packet(tm_overhead_octets + 20 + random() % 200);
-        seal_tm_packet(packet, Apid{0x10}, static_cast<std::uint16_t>(i & 0x3FFF), Sclk{1000.0 + static_cast<double>(i)}, 1);
+        seal_tm_packet(packet, Apid{0x10}, static_cast<std::uint16_t>(i & 0x3FFF),
+                       Sclk{1000.0 + static_cast<double>(i)}, 1);
         recording.insert(recording.end(), packet.begin(), packet.end());
     }
     return recording;
@@ -48,8 +49,9 @@ struct Delivery {
             const auto frame = read_pltu(std::span{pltu}.first(size));
             REQUIRE(frame);
             if (!lost())
-                ground.receive(frame->data.subspan(primary_header_octets), now(),
-                               [&](std::span<const std::uint8_t> file) { files.emplace_back(file.begin(), file.end()); });
+                ground.receive(
+                    frame->data.subspan(primary_header_octets), now(),
+                    [&](std::span<const std::uint8_t> file) { files.emplace_back(file.begin(), file.end()); });
         }
         ground.pass(now(), true);
         for (const auto& up : ground.take_pltus())
@@ -63,7 +65,7 @@ struct Delivery {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the recording arrives as files of whole packets, and both ends know it", "[file_delivery][R29]") {
     Delivery delivery;
@@ -99,11 +101,12 @@ TEST_CASE("frames lost either way are sent again until all has arrived, each oct
         auto received = delivery.files;
         std::size_t octets = 0;
         for (const auto& file : received) octets += file.size();
-        CHECK(octets == delivery.recording.size()); // files may end in another order
+        CHECK(octets == delivery.recording.size());  // files may end in another order
     }
 }
 
-TEST_CASE("a rover that forgot what it was doing begins again, and ground gives no packet out twice", "[file_delivery]") {
+TEST_CASE("a rover that forgot what it was doing begins again, and ground gives no packet out twice",
+          "[file_delivery]") {
     Delivery delivery;
     for (int i = 0; i < 9; ++i) delivery.second();
     delivery.rover = {};
@@ -126,7 +129,8 @@ TEST_CASE("PDUs that nobody of ours sent cost no file of the recording", "[file_
         forged(first, cfdp::Eof{.condition = cfdp::Condition::cancel_received}),
         forged(first, cfdp::Metadata{.file_octets = 5}),
         forged({.source = spacecraft_id, .sequence = 1, .destination = 99}, cfdp::FileData{0, octets}),
-        forged({.source = 5, .sequence = 1, .destination = RecordingDelivery::ground_entity}, cfdp::FileData{0, octets}),
+        forged({.source = 5, .sequence = 1, .destination = RecordingDelivery::ground_entity},
+               cfdp::FileData{0, octets}),
     };
     for (const auto& pdu : pdus) {
         Delivery delivery;
@@ -136,7 +140,8 @@ TEST_CASE("PDUs that nobody of ours sent cost no file of the recording", "[file_
         CHECK(delivery.ground.refused() > 0);
         CHECK(delivery.received().size() == delivery.recording.size());
         for (const auto& file : delivery.files)
-            CHECK(std::search(delivery.recording.begin(), delivery.recording.end(), file.begin(), file.end()) != delivery.recording.end());
+            CHECK(std::search(delivery.recording.begin(), delivery.recording.end(), file.begin(), file.end()) !=
+                  delivery.recording.end());
     }
 }
 
@@ -162,7 +167,8 @@ TEST_CASE("ground sets no memory aside for files longer, or more, than the rover
     server::RecordingReceiver ground{0.0};
     const std::vector<std::uint8_t> octets(100, 1);
     const auto receive = [&](std::uint64_t sequence, const cfdp::Content& content) {
-        const cfdp::Pdu pdu{{.source = spacecraft_id, .sequence = sequence, .destination = RecordingDelivery::ground_entity}, content};
+        const cfdp::Pdu pdu{
+            {.source = spacecraft_id, .sequence = sequence, .destination = RecordingDelivery::ground_entity}, content};
         std::vector<std::uint8_t> written(cfdp::octets_of(pdu));
         cfdp::write(pdu, written);
         ground.receive(written, Ert{0}, [](auto) { FAIL("no file is whole"); });

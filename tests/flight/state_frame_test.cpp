@@ -113,7 +113,8 @@ TEST_CASE("a state of another shape is not restored", "[cross_string][R33]") {
     CHECK_FALSE(frame.restore(smaller));
 }
 
-TEST_CASE("pieces out of order, of two states or at random never make a state; in order they do", "[cross_string][R33]") {
+TEST_CASE("pieces out of order, of two states or at random never make a state; in order they do",
+          "[cross_string][R33]") {
     Long state;
     const StateFrame frame = StateFrame::of(header, state);
     std::vector<StatePart> parts;

@@ -14,7 +14,8 @@ std::uint32_t every(Plan plan, EdlPhase phase, Apid apid) {
 
 }  // namespace
 
-TEST_CASE("the synthetic load goes out whole in its own plan and not at all in the mission's", "[telemetry_plan][R30]") {
+TEST_CASE("the synthetic load goes out whole in its own plan and not at all in the mission's",
+          "[telemetry_plan][R30]") {
     CHECK(every(Plan::wideband, EdlPhase::late_cruise, packet::Wideband::apid) == 1);
     CHECK(every(Plan::mission, EdlPhase::late_cruise, packet::Wideband::apid) == 0);
 }

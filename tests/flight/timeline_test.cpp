@@ -79,7 +79,8 @@ TEST_CASE("a timepoint that its anchor makes due still waits for its minimum off
 }
 
 TEST_CASE("a timepoint with an undefined anchor or offset never fires", "[timeline][R13]") {
-    for (const auto& spec : {row(parachute_anchor, 0.0, 0.0), row({}, MaybeOffset{}, 0.0), row({}, 0.0, MaybeOffset{})}) {
+    for (const auto& spec :
+         {row(parachute_anchor, 0.0, 0.0), row({}, MaybeOffset{}, 0.0), row({}, 0.0, MaybeOffset{})}) {
         Fixture f{{spec}};
         f.timeline.begin(at(0));
         for (int second = 0; second < 1000; ++second) REQUIRE(f.cycle(at(second)).empty());
@@ -109,7 +110,8 @@ TEST_CASE("at most five timepoints fire in one cycle, both passes together", "[t
     CHECK(f.timeline.finished());
 }
 
-TEST_CASE("a timepoint that waits for a reply is done when the reply comes, and its firing time is then", "[timeline][R14]") {
+TEST_CASE("a timepoint that waits for a reply is done when the reply comes, and its firing time is then",
+          "[timeline][R14]") {
     Fixture f{{row({}, 0.0, 0.0, fire_a_pyro, 1.0), row({}, 0.0, 0.0)}};
     f.timeline.begin(at(0));
     CHECK(f.cycle(at(0)).empty());
@@ -176,7 +178,8 @@ TEST_CASE("one sweep computes the whole tree of anchors, and undefined spreads d
     CHECK(timeline.anchor_time(AnchorId{3}).get()->seconds == 390.0);
 }
 
-TEST_CASE("firings keep the order of the rows whatever the offsets, and never come before their minimum", "[timeline][R19]") {
+TEST_CASE("firings keep the order of the rows whatever the offsets, and never come before their minimum",
+          "[timeline][R19]") {
     std::mt19937 random{11};
     for (int round = 0; round < 300; ++round) {
         std::vector<TimepointSpec> rows;
@@ -208,7 +211,8 @@ TEST_CASE("may_fire compares exactly at the tick", "[timeline][R11][R13]") {
     CHECK_FALSE(may_fire(MaybeTime{}, 2.0, Sclk{9.0}, 1.0, now));
 }
 
-TEST_CASE("the shipped timeline fits the engine, and every row that waits for a reply asks for one", "[timeline][R14][R20]") {
+TEST_CASE("the shipped timeline fits the engine, and every row that waits for a reply asks for one",
+          "[timeline][R14][R20]") {
     CHECK(timeline_specs.size() >= 60);
     for (const TimepointSpec& spec : timeline_specs) {
         if (!spec.reply_timeout_s) continue;

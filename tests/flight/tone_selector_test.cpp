@@ -47,7 +47,7 @@ std::vector<Told> told_in(const test::OutboxRecorder& recorder) {
         for (auto count = in.get(8); count > 0; --count) {
             Told::Condition condition{static_cast<Quantity>(in.get(16)), in.get_double(), in.get_double(), false};
             in.get(8);
-            condition.holds = in.get(8) != 0; // the flag and seven spare bits
+            condition.holds = in.get(8) != 0;  // the flag and seven spare bits
             told.conditions.push_back(condition);
         }
         all.push_back(told);

@@ -46,8 +46,9 @@ TEST_CASE("the channels of the selection name each device's unit", "[devices][R2
     for (const auto& record : units.recorder.sent<Record>()) {
         if (record.apid != packet::UnitsHeld::apid) continue;
         for (std::size_t device = 0; device < device_count; ++device)
-            CHECK(read_bits(record.data, device * 8, 8) ==
-                  (static_cast<Device>(device) == Device::pyro || static_cast<Device>(device) == Device::uhf ? 1U : 0U));
+            CHECK(
+                read_bits(record.data, device * 8, 8) ==
+                (static_cast<Device>(device) == Device::pyro || static_cast<Device>(device) == Device::uhf ? 1U : 0U));
     }
 }
 

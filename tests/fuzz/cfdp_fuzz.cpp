@@ -20,7 +20,7 @@ void check_same_when_written(const cfdp::Pdu& pdu) {
     if (!again || again->header != pdu.header || again->content.index() != pdu.content.index()) std::abort();
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const std::vector<std::uint8_t> file(5000, 0x5A);

@@ -27,7 +27,7 @@ std::vector<commands::NamedValue> arguments_of(const dictionary::Command& comman
     return arguments;
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;

@@ -35,28 +35,20 @@ bool read(unsigned sheet, std::string_view text, dictionary::Findings& findings)
     static const auto events = declared_events();
     static const auto enumerations = dictionary::enumerations_of(mission().packets, mission().commands);
     switch (sheet) {
-    case 0:
-        return dictionary::read_anchors(text, findings).has_value();
-    case 1:
-        return dictionary::read_tones(text, findings).has_value();
-    case 2:
-        return dictionary::read_parameters(text, findings).has_value();
+    case 0: return dictionary::read_anchors(text, findings).has_value();
+    case 1: return dictionary::read_tones(text, findings).has_value();
+    case 2: return dictionary::read_parameters(text, findings).has_value();
     case 3:
         return dictionary::read_timeline(text, {&mission().anchors, &mission().tones, &events}, findings).has_value();
-    case 4:
-        return dictionary::read_constraints(text, {&mission().timeline, &mission().anchors}, findings).has_value();
-    case 5:
-        return dictionary::read_telemetry_plan(text, &mission().packets, findings).has_value();
-    case 6:
-        return dictionary::read_state_machines(text, &enumerations, findings).has_value();
-    case 7:
-        return dictionary::read_owners(text, {&mission().timeline, &enumerations}, findings).has_value();
-    default:
-        return dictionary::read_csv(text, findings).has_value();
+    case 4: return dictionary::read_constraints(text, {&mission().timeline, &mission().anchors}, findings).has_value();
+    case 5: return dictionary::read_telemetry_plan(text, &mission().packets, findings).has_value();
+    case 6: return dictionary::read_state_machines(text, &enumerations, findings).has_value();
+    case 7: return dictionary::read_owners(text, {&mission().timeline, &enumerations}, findings).has_value();
+    default: return dictionary::read_csv(text, findings).has_value();
     }
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
@@ -64,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"sheet.csv", all};
     const bool sound = read(data[0] % 9U, text, findings);
-    if (!sound && all.empty()) std::abort(); // refused without a reason
+    if (!sound && all.empty()) std::abort();  // refused without a reason
     const auto lines = static_cast<unsigned>(std::ranges::count(text, '\n') + std::ranges::count(text, '\r')) + 1;
     for (const auto& finding : all)
         if (finding.line < 1 || finding.line > lines || finding.message.empty()) std::abort();

@@ -29,7 +29,7 @@ std::vector<std::uint8_t> sealed(const dictionary::Packet& wanted, std::span<con
     return octets;
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const telemetry::Decommutator decommutator{mission()};
@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         ours ? sealed(mission().packets[choice], rest) : std::vector<std::uint8_t>{rest.begin(), rest.end()};
 
     const auto refusal = decommutator.decode(octets, decoded);
-    if (ours && refusal) std::abort(); // every content of a packet of ours is decoded
+    if (ours && refusal) std::abort();  // every content of a packet of ours is decoded
     if (refusal) return 0;
 
     const auto& packet = mission().packets[decoded.packet];

@@ -1,5 +1,5 @@
-// Octets as a peer may send them for an HTTP request, through the parser with the server's limits, to every route: no file
-// outside the console's folder is given out, nothing takes long, and what is refused is refused in words.
+// Octets as a peer may send them for an HTTP request, through the parser with the server's limits, to every route: no
+// file outside the console's folder is given out, nothing takes long, and what is refused is refused in words.
 #include "server/api/api.hpp"
 #include "server/api/json.hpp"
 #include "server/net/web_server.hpp"
@@ -19,7 +19,8 @@ namespace http = boost::beast::http;
 
 constexpr const char* secret = "not for the console";
 
-/// All of `aeolis serve` but sockets and threads of its own. Nothing can be started: what a start checks is request_fuzz's.
+/// All of `aeolis serve` but sockets and threads of its own. Nothing can be started: what a start checks is
+/// request_fuzz's.
 struct Server {
     Server() {
         std::filesystem::create_directories(recorded.folder / "web/assets");
@@ -40,16 +41,23 @@ struct Server {
     ScenarioLibrary scenarios{AEOLIS_SOURCE_DIR "/simulation/scenarios"};
     StaticFiles console{recorded.folder / "web"};
     std::unique_ptr<QueryThreads> queries = std::move(QueryThreads::open(recorded.file(), recorded.dictionary)).value();
-    PipelineThread pipeline{std::move(archive::Archive::open(recorded.file())).value(), recorded.dictionary, PipelineThread::Faults::hold, {}};
+    PipelineThread pipeline{std::move(archive::Archive::open(recorded.file())).value(),
+                            recorded.dictionary,
+                            PipelineThread::Faults::hold,
+                            {}};
     StreamHub hub{recorded.dictionary.id, no_services()};
-    RehearsalDesk desk{scenarios, recorded.dictionary, pipeline, [](const auto& action) { action(); },
+    RehearsalDesk desk{scenarios,
+                       recorded.dictionary,
+                       pipeline,
+                       [](const auto& action) { action(); },
                        [](archive::RunId, const auto& done) { done(Error{"was not cut off"}); },
                        {[](archive::RunId, const auto&, bool, const auto& done) { done(std::string{}); },
                         [](archive::RunId, const auto& done) { done(TimelineCheck::Look{}); }},
                        {[](const auto&) {}, [](const auto&) {}}};
     campaign::CampaignDesk campaigns{recorded.folder / "campaigns", scenarios, recorded.dictionary};
     std::unique_ptr<Access> access = std::move(Access::open({})).value();
-    Api api{{recorded.dictionary, scenarios, *queries, desk, campaigns, hub, pipeline, console, *access, false, [] { return std::size_t{1}; }}};
+    Api api{{recorded.dictionary, scenarios, *queries, desk, campaigns, hub, pipeline, console, *access, false,
+             [] { return std::size_t{1}; }}};
 };
 
 HttpResponse ask(Server& server, const HttpRequest& request) {
@@ -66,10 +74,11 @@ HttpResponse ask(Server& server, const HttpRequest& request) {
     return response;
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    // OpenSSL cleans up behind itself at exit: first used here, that comes after the server has written its last entry of the audit.
+    // OpenSSL cleans up behind itself at exit: first used here, that comes after the server has written its last entry
+    // of the audit.
     static const std::string openssl_first = archive::audit_hash({}, {});
     static Server server;
     spdlog::set_level(spdlog::level::off);
@@ -84,7 +93,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto request = parser.release();
     const auto target = boost::urls::parse_origin_form({request.target().data(), request.target().size()});
     if (!target) return 0;
-    const HttpRequest asked{std::string{request.method_string()}, target->path(), std::string{target->encoded_query()}, request.body()};
+    const HttpRequest asked{std::string{request.method_string()}, target->path(), std::string{target->encoded_query()},
+                            request.body()};
     const auto answer = ask(server, asked);
     if (answer.status < 200 || answer.status > 599 || answer.status == 500 || answer.content_type.empty()) std::abort();
     if (answer.body.find(secret) != std::string::npos) std::abort();
@@ -97,7 +107,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             return 0;
         }
         const bool command = from_json(answer.body, refused).ok();
-        if (command ? refused.reason().empty() : !from_json(answer.body, reply).ok() || reply.error().empty()) std::abort();
+        if (command ? refused.reason().empty() : !from_json(answer.body, reply).ok() || reply.error().empty())
+            std::abort();
     }
     return 0;
 }

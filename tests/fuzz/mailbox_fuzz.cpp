@@ -19,7 +19,7 @@ namespace {
 using namespace aeolis;
 using namespace aeolis::flight;
 
-constexpr int steps_max = 200; // of one input, so that none is slow
+constexpr int steps_max = 200;  // of one input, so that none is slow
 
 /// What is needed once and costs time to make.
 struct Computers {
@@ -39,7 +39,9 @@ struct Computers {
             starts.push_back(std::make_unique<const ComputerState>(computer.state()));
         };
         const auto flown = std::make_unique<FlownComputers>();
-        const auto phase = [](FlownComputers& now) -> const gnc::Configuration& { return now.prime().gnc_configuration(); };
+        const auto phase = [](FlownComputers& now) -> const gnc::Configuration& {
+            return now.prime().gnc_configuration();
+        };
         keep(flown->prime());  // pre-EDL
         keep(flown->backup());
         flown->fly_until([](FlownComputers& now) { return now.world().truth().e_s >= 100.0; });
@@ -112,8 +114,7 @@ std::vector<std::uint8_t> telecommand(test::Source& from) {
 
 std::vector<std::uint8_t> octets_as_they_are(test::Source& from) {
     std::vector<std::uint8_t> octets(from.take<std::uint8_t>() * 2U);
-    for (std::uint8_t& octet : octets)
-        octet = from.take<std::uint8_t>();
+    for (std::uint8_t& octet : octets) octet = from.take<std::uint8_t>();
     return octets;
 }
 
@@ -125,7 +126,7 @@ void add_uplink(test::Source& from, DeviceInputs& in) {
     static_cast<void>(in.uplink.try_push_back(uplink));
 }
 
-} // namespace
+}  // namespace
 
 // Before the fuzzer's own clock begins.
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
@@ -148,7 +149,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             in.nvm_capacity_octets = 1U << 30U;
             if (what & 4U) fill_inputs(from, in);
             if (what & 8U) add_uplink(from, in);
-            Executive{state}.cycle(in, computers().out); // a CheckFailed is not caught: it ends the fuzzer
+            Executive{state}.cycle(in, computers().out);  // a CheckFailed is not caught: it ends the fuzzer
             continue;
         }
         const auto to = static_cast<ModuleId>(from.take<std::uint8_t>() % module_count);
@@ -158,6 +159,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (wakes(to, message)) state.ready |= bit_of(to);
         if (!expects(state, to, message)) ++unexpected;
     }
-    if (state.unexpected_messages + still_waiting(state) != unexpected) std::abort(); // one was lost in silence
+    if (state.unexpected_messages + still_waiting(state) != unexpected) std::abort();  // one was lost in silence
     return 0;
 }

@@ -12,9 +12,14 @@ std::vector<std::uint8_t> framed(std::span<const std::uint8_t> octets) {
     std::vector<std::uint8_t> stream;
     while (octets.size() >= 4) {
         const std::size_t size = std::min<std::size_t>(octets[0] + std::size_t{1}, octets.size() - 3);
-        const aeolis::ProximityHeader header{(octets[1] & 1) != 0, (octets[1] & 0x80) != 0,
+        const aeolis::ProximityHeader header{(octets[1] & 1) != 0,
+                                             (octets[1] & 0x80) != 0,
                                              static_cast<aeolis::Construction>((octets[1] >> 1) & 3),
-                                             static_cast<std::uint16_t>(octets[1] >> 4), 0, 0, false, octets[2]};
+                                             static_cast<std::uint16_t>(octets[1] >> 4),
+                                             0,
+                                             0,
+                                             false,
+                                             octets[2]};
         std::vector<std::uint8_t> pltu(aeolis::pltu_octets_max);
         pltu.resize(aeolis::write_pltu(header, octets.subspan(3, size), pltu));
         stream.insert(stream.end(), pltu.begin(), pltu.end());
@@ -24,14 +29,13 @@ std::vector<std::uint8_t> framed(std::span<const std::uint8_t> octets) {
     return stream;
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size < 2) return 0;
     const std::size_t piece = data[0] + std::size_t{1};
     const std::span<const std::uint8_t> given{data + 2, size - 2};
-    const auto stream =
-        (data[1] & 1) != 0 ? framed(given) : std::vector<std::uint8_t>{given.begin(), given.end()};
+    const auto stream = (data[1] & 1) != 0 ? framed(given) : std::vector<std::uint8_t>{given.begin(), given.end()};
     aeolis::telemetry::PltuReceiver receiver;
     aeolis::telemetry::ProximityPackets packets;
     std::size_t used = 0;
@@ -49,6 +53,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     receiver.end();
     take();
-    if (used + receiver.counters().skipped_octets != stream.size()) std::abort(); // something was skipped in silence
+    if (used + receiver.counters().skipped_octets != stream.size()) std::abort();  // something was skipped in silence
     return 0;
 }

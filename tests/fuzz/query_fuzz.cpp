@@ -1,5 +1,5 @@
-// The parameters of a question to a recorded run, as anyone may write them behind '?'. The first octet chooses the question
-// and the run. What cannot be answered is refused in words; each answer is of the type that it says.
+// The parameters of a question to a recorded run, as anyone may write them behind '?'. The first octet chooses the
+// question and the run. What cannot be answered is refused in words; each answer is of the type that it says.
 #include "server/api/json.hpp"
 #include "server/api/query_text.hpp"
 #include "server/api/run_questions.hpp"
@@ -12,15 +12,16 @@ namespace {
 
 using namespace aeolis;
 
-constexpr std::array questions{"", "channels", "packets", "tones", "events", "commands", "timepoints", "explanations", "recording",
-                               "proof", "report", "state", "alarms", "notes"};
+constexpr std::array questions{"",         "channels",   "packets",      "tones",     "events",
+                               "commands", "timepoints", "explanations", "recording", "proof",
+                               "report",   "state",      "alarms",       "notes"};
 
 struct Ground {
     test::RecordedRun recorded;
     archive::Reader reader = std::move(archive::Reader::open(recorded.file(), recorded.dictionary)).value();
 };
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static Ground ground;
@@ -28,7 +29,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto* question = server::run_question(questions[data[0] % questions.size()]);
     if (question == nullptr) std::abort();
     const archive::RunId run{1U + data[0] / 128U};
-    const auto query = server::QueryText::parse({reinterpret_cast<const char*>(data) + 1, size - 1}, question->parameters);
+    const auto query =
+        server::QueryText::parse({reinterpret_cast<const char*>(data) + 1, size - 1}, question->parameters);
     if (!query) {
         if (query.error().message.empty()) std::abort();
         return 0;

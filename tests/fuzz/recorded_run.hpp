@@ -21,7 +21,8 @@ class RecordedRun {
             if (!pipeline.begin(start)) std::abort();
             must(pipeline.accept({simulation::uhf_live_link, Ert{5}, true, "nominal"}));
             for (std::uint16_t i = 0; i < 1300; ++i)
-                must(pipeline.accept(live(navigation_packet(i, 1000.0 + i / 64.0, static_cast<float>(i), 6001.0F - i))));
+                must(
+                    pipeline.accept(live(navigation_packet(i, 1000.0 + i / 64.0, static_cast<float>(i), 6001.0F - i))));
             must(pipeline.accept(live(status_packet(0, 1001.0, 2))));
             must(pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))));
             must(pipeline.accept(live(fired_packet(0, 1002.0, 2))));
@@ -49,4 +50,4 @@ class RecordedRun {
     }
 };
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

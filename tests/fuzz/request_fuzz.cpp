@@ -1,5 +1,5 @@
-// JSON as a client may send it: a CommandRequest to a landing's command path, a StartRehearsal up to its first cycles. The
-// first octet chooses. It is refused in words, or it can be done.
+// JSON as a client may send it: a CommandRequest to a landing's command path, a StartRehearsal up to its first cycles.
+// The first octet chooses. It is refused in words, or it can be done.
 #include "server/api/json.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_library.hpp"
@@ -14,7 +14,7 @@ namespace {
 using namespace aeolis;
 using namespace aeolis::server;
 
-constexpr int requests_a_landing = 200; // then its queue is full, and another begins
+constexpr int requests_a_landing = 200;  // then its queue is full, and another begins
 constexpr int cycles_flown = 3;
 
 void must(bool holds) {
@@ -49,17 +49,17 @@ void command(std::string_view json) {
 void start(std::string_view json) {
     v1::StartRehearsal request;
     if (const auto parsed = from_json(json, request); !parsed) return must(!parsed.error().message.empty());
-    auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario()) : library().scenario(request.scenario());
+    auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
+                                                  : library().scenario(request.scenario());
     if (!scenario) return must(!scenario.error().message.empty());
     if (const auto script = check_script(*scenario, mission()); !script) return must(!script.error().message.empty());
     Rehearsal rehearsal{*scenario, request.seed(), 0, mission()};
-    for (int i = 0; i < cycles_flown; ++i)
-        (void)rehearsal.step();
+    for (int i = 0; i < cycles_flown; ++i) (void)rehearsal.step();
     must(!rehearsal.outcome().empty());
     (void)to_json(rehearsal.clocks());
 }
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;

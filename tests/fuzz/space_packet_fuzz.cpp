@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)aeolis::read_tc_packet(*packet);
     }
     if (read + stream.unreadable_octets() != size) {
-        std::abort(); // something was skipped in silence
+        std::abort();  // something was skipped in silence
     }
     return 0;
 }

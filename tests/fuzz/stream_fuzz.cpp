@@ -1,6 +1,6 @@
-// What a client of the stream may send, in both subprotocols, while items are published: each batch joins the one before, no
-// event is left out, and the session holds no more than it says. The first octet chooses the subprotocol; a message is
-// preceded by its length in two octets.
+// What a client of the stream may send, in both subprotocols, while items are published: each batch joins the one
+// before, no event is left out, and the session holds no more than it says. The first octet chooses the subprotocol; a
+// message is preceded by its length in two octets.
 #include "server/api/json.hpp"
 #include "server/net/stream_session.hpp"
 
@@ -47,16 +47,16 @@ struct Ground {
         v1::RunState state;
         state.set_run(1);
         hub.run_state(state);
-        publish(items_at_first / 2, false); // the hub does not hold these
+        publish(items_at_first / 2, false);  // the hub does not hold these
         publish(items_at_first / 2, true);
     }
     StreamHub::Services services() {
         StreamHub::Services services;
-        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds, const auto& done) {
+        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
+                                     archive::Reader::ItemKinds, const auto& done) {
             must(run.value == 1 && limit > 0);
             archive::ItemPage page;
-            for (auto seq = after + 1; seq <= last && page.items.size() < limit; ++seq)
-                page.items.push_back(item(seq));
+            for (auto seq = after + 1; seq <= last && page.items.size() < limit; ++seq) page.items.push_back(item(seq));
             page.complete_through = page.items.empty() ? after : page.items.back().seq();
             page.more = page.complete_through < last;
             answers.push_back([done, page] { done(page); });
@@ -71,8 +71,7 @@ struct Ground {
         batch->first_seq = last + 1;
         batch->last_seq = last + count;
         batch->built = built;
-        for (std::size_t i = 0; i < count && built; ++i)
-            batch->items.push_back(item(batch->first_seq + i));
+        for (std::size_t i = 0; i < count && built; ++i) batch->items.push_back(item(batch->first_seq + i));
         last = batch->last_seq;
         hub.published(batch);
     }
@@ -105,11 +104,11 @@ struct Client {
     }
 };
 
-} // namespace
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) return 0;
-    google::protobuf::SetLogHandler(nullptr); // as the server has it
+    google::protobuf::SetLogHandler(nullptr);  // as the server has it
     const auto format = data[0] % 2 == 0 ? StreamFormat::protobuf : StreamFormat::json;
     Ground ground;
     Client client{std::make_shared<StreamSession>(ground.hub, format, [] {}, StreamSession::follower())};
@@ -118,12 +117,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         for (;;) {
             while (const auto payload = client.session->next_message()) {
                 v1::ServerMessage message;
-                must(format == StreamFormat::json ? from_json(*payload, message).ok() : message.ParseFromString(*payload));
+                must(format == StreamFormat::json ? from_json(*payload, message).ok()
+                                                  : message.ParseFromString(*payload));
                 client.take(message, after);
             }
             if (ground.answers.empty()) return;
-            for (const auto& answer : std::exchange(ground.answers, {}))
-                answer();
+            for (const auto& answer : std::exchange(ground.answers, {})) answer();
         }
     };
     for (std::size_t at = 1; at + 2 <= size;) {
@@ -131,14 +130,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::string_view payload{reinterpret_cast<const char*>(data) + at + 2, length};
         at += 2 + length;
         v1::ClientMessage asked;
-        const bool parsed = format == StreamFormat::json ? from_json(payload, asked).ok() : asked.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
+        const bool parsed = format == StreamFormat::json
+                                ? from_json(payload, asked).ok()
+                                : asked.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
         // What was due before a subscription is not part of what comes after it.
         if (at % 3 == 0) drain();
         client.session->on_message(payload);
         const auto& subscribe = asked.subscribe();
         const bool follows = subscribe.run() <= 1 && subscribe.max_rate_hz() >= 0.0 && subscribe.max_rate_hz() <= 1e300;
         if (parsed && asked.has_subscribe() && follows) {
-            after = std::min(subscribe.after_seq(), ground.last); // of the future there is nothing yet
+            after = std::min(subscribe.after_seq(), ground.last);  // of the future there is nothing yet
             client.welcomed = false;
         }
         ground.publish(items_a_message, at % 5 != 0);

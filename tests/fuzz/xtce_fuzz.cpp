@@ -1,5 +1,6 @@
-// An XTCE file as anyone may have left it, to our own dictionary's reader and to that of other missions: what is wrong is
-// said with a line of the text; what is left decodes any octets. The first octet says where in the text a packet begins.
+// An XTCE file as anyone may have left it, to our own dictionary's reader and to that of other missions: what is wrong
+// is said with a line of the text; what is left decodes any octets. The first octet says where in the text a packet
+// begins.
 #include "dictionaries/xtce/packet_model.hpp"
 #include "dictionaries/xtce/space_system.hpp"
 #include "telemetry/other_mission.hpp"
@@ -16,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::vector<dictionary::Finding> all;
     dictionary::Findings findings{"t.xml", all};
     const auto ours = dictionary::xtce::read_space_system(text, findings);
-    if (!ours && all.empty()) std::abort(); // refused without a reason
+    if (!ours && all.empty()) std::abort();  // refused without a reason
     const auto model = dictionary::xtce::read_packet_model(text, findings);
     for (const auto& finding : all)
         if (finding.line < 1 || finding.line > lines || finding.message.empty()) std::abort();

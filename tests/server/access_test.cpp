@@ -40,13 +40,16 @@ struct Accounts {
         REQUIRE(opened);
         access = std::move(*opened);
     }
-    Result<Access::LoggedIn> log_in(const std::string& user, const std::string& with, const std::string& from = "127.0.0.1") {
+    Result<Access::LoggedIn> log_in(const std::string& user, const std::string& with,
+                                    const std::string& from = "127.0.0.1") {
         v1::LogIn asked;
         asked.set_user(user);
         asked.set_password(with);
         return access->log_in(asked, from);
     }
-    Operator who(const std::string& secret) { return access->identify({"theme=dark; aeolis_session=" + secret, "", "127.0.0.1"}); }
+    Operator who(const std::string& secret) {
+        return access->identify({"theme=dark; aeolis_session=" + secret, "", "127.0.0.1"});
+    }
     void add(const std::string& user, const std::string& role) {
         v1::NewUser wanted;
         wanted.set_user(user);
@@ -56,20 +59,21 @@ struct Accounts {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the first start makes one way in, which only lets its owner choose a password", "[access]") {
     Accounts accounts;
-    CHECK(accounts.log_in("administrator", accounts.access->first_password()).error().message == "user or password is wrong");
+    CHECK(accounts.log_in("administrator", accounts.access->first_password()).error().message ==
+          "user or password is wrong");
     const auto in = accounts.log_in("administrator", Accounts::password);
     REQUIRE(in);
     const auto who = accounts.who(in->secret);
     CHECK(who.user == "administrator");
     CHECK(may(who, Right::administer));
-    struct stat file {};
+    struct stat file{};
     REQUIRE(::stat(accounts.file.c_str(), &file) == 0);
     CHECK((file.st_mode & 0777) == 0600);
-    accounts.open(); // a second start finds its accounts, and no session
+    accounts.open();  // a second start finds its accounts, and no session
     CHECK(accounts.access->first_password().empty());
     CHECK_FALSE(accounts.who(in->secret).role);
 }
@@ -123,10 +127,13 @@ TEST_CASE("a server that does not come up makes no account: the one that does te
 TEST_CASE("without accounts browsers are told apart, and all programs without a cookie are one", "[access]") {
     auto access = Access::open({});
     REQUIRE(access);
-    const auto browser = [&](const std::string& cookie) { return (*access)->identify({cookie, "", "127.0.0.1"}).browser; };
+    const auto browser = [&](const std::string& cookie) {
+        return (*access)->identify({cookie, "", "127.0.0.1"}).browser;
+    };
     CHECK(browser("aeolis_browser=one") != browser("aeolis_browser=two"));
     CHECK(browser("theme=dark; aeolis_browser=one") == browser("aeolis_browser=one"));
-    CHECK_THAT(browser("aeolis_browser=one"), !Catch::Contains("one")); // what the audit and the archive keep lets nobody in its place
+    CHECK_THAT(browser("aeolis_browser=one"),
+               !Catch::Contains("one"));  // what the audit and the archive keep lets nobody in its place
     CHECK(browser("") == no_browser);
     CHECK(browser("aeolis_session=one") == no_browser);
 }
@@ -149,7 +156,7 @@ TEST_CASE("who guesses waits, longer each time, and the right password does not 
     for (unsigned i = 0; i < Access::tries_of_user; ++i)
         CHECK(accounts.log_in("administrator", "a wrong password").error().message == "user or password is wrong");
     CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 30 s"));
-    CHECK(accounts.log_in("administrator", Accounts::password, "192.0.2.7")); // from elsewhere its owner gets in
+    CHECK(accounts.log_in("administrator", Accounts::password, "192.0.2.7"));  // from elsewhere its owner gets in
     accounts.now += std::chrono::seconds{31};
     CHECK_FALSE(accounts.log_in("administrator", "a wrong password"));
     CHECK_THAT(accounts.log_in("administrator", Accounts::password).error().message, Catch::Contains("wait 60 s"));
@@ -165,8 +172,11 @@ TEST_CASE("who guesses from another address of the same /64 waits as well", "[ac
     CHECK(network_of("unknown") == "unknown");
     Accounts accounts;
     for (unsigned i = 0; i < Access::tries_of_user; ++i)
-        CHECK(accounts.log_in("administrator", "a wrong password", fmt::format("2001:db8:1:2::{:x}", i + 1)).error().message == "user or password is wrong");
-    CHECK_THAT(accounts.log_in("administrator", Accounts::password, "2001:db8:1:2:ffff::1").error().message, Catch::Contains("wait 30 s"));
+        CHECK(accounts.log_in("administrator", "a wrong password", fmt::format("2001:db8:1:2::{:x}", i + 1))
+                  .error()
+                  .message == "user or password is wrong");
+    CHECK_THAT(accounts.log_in("administrator", Accounts::password, "2001:db8:1:2:ffff::1").error().message,
+               Catch::Contains("wait 30 s"));
     CHECK(accounts.log_in("administrator", Accounts::password, "2001:db8:1:3::1"));
 }
 
@@ -186,11 +196,12 @@ TEST_CASE("wrong passwords of long ago are forgotten, and one user's many log-in
         accounts.now += std::chrono::seconds{1};
         REQUIRE(accounts.log_in("carl", "given by another"));
     }
-    CHECK_FALSE(accounts.who(carl->secret).role); // their own oldest
+    CHECK_FALSE(accounts.who(carl->secret).role);  // their own oldest
     CHECK(accounts.who(first->secret).role);
 }
 
-TEST_CASE("a log-in ends after a shift, by logging out, with its user, and when its password is changed elsewhere", "[access]") {
+TEST_CASE("a log-in ends after a shift, by logging out, with its user, and when its password is changed elsewhere",
+          "[access]") {
     Accounts accounts;
     accounts.add("dina", "director");
     const auto administrator = accounts.log_in("administrator", Accounts::password)->who;
@@ -224,22 +235,28 @@ TEST_CASE("nobody raises their own role, changes another's account, or takes the
     const auto carl = accounts.log_in("carl", "given by another")->who;
     v1::UserChange change;
     change.set_role("director");
-    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message, Catch::Contains("nobody changes their own"));
-    CHECK_THAT(accounts.access->change_user(carl, "administrator", change).error().message, Catch::Contains("only an administrator"));
-    CHECK_THAT(accounts.access->change_user(administrator, "administrator", change).error().message, Catch::Contains("nobody changes their own"));
+    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message,
+               Catch::Contains("nobody changes their own"));
+    CHECK_THAT(accounts.access->change_user(carl, "administrator", change).error().message,
+               Catch::Contains("only an administrator"));
+    CHECK_THAT(accounts.access->change_user(administrator, "administrator", change).error().message,
+               Catch::Contains("nobody changes their own"));
     CHECK(accounts.access->remove_user("administrator").error().message == "one administrator must remain");
     change.set_role("pope");
     CHECK_THAT(accounts.access->change_user(administrator, "carl", change).error().message, Catch::Contains("'pope'"));
     change.set_role("");
     change.set_password("short");
-    CHECK_THAT(accounts.access->change_user(administrator, "carl", change).error().message, Catch::Contains("12 to 128"));
+    CHECK_THAT(accounts.access->change_user(administrator, "carl", change).error().message,
+               Catch::Contains("12 to 128"));
     change.set_password("long enough, but whose?");
     change.set_current_password("a wrong password");
-    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message, Catch::StartsWith("current_password"));
+    CHECK_THAT(accounts.access->change_user(carl, "carl", change).error().message,
+               Catch::StartsWith("current_password"));
     CHECK_THAT(accounts.access->remove_user("nobody").error().message, Catch::Contains("'nobody'"));
 }
 
-TEST_CASE("an administrator says which commands an account or a program may send, and nobody says it of themselves", "[access]") {
+TEST_CASE("an administrator says which commands an account or a program may send, and nobody says it of themselves",
+          "[access]") {
     Accounts accounts;
     accounts.add("dina", "director");
     const auto administrator = accounts.log_in("administrator", Accounts::password)->who;
@@ -250,17 +267,20 @@ TEST_CASE("an administrator says which commands an account or a program may send
     const auto changed = accounts.access->change_user(administrator, "dina", change);
     REQUIRE(changed);
     CHECK(changed->commands_size() == 1);
-    CHECK(changed->role() == "director"); // as it was
-    CHECK(accounts.who(dina->secret).commands == std::vector<std::string>{"NO_OP"}); // at once, and the log-in goes on
-    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message, Catch::StartsWith("commands: nobody changes their own"));
+    CHECK(changed->role() == "director");                                             // as it was
+    CHECK(accounts.who(dina->secret).commands == std::vector<std::string>{"NO_OP"});  // at once, and the log-in goes on
+    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message,
+               Catch::StartsWith("commands: nobody changes their own"));
     v1::UserChange other_role;
     other_role.set_role("controller");
     REQUIRE(accounts.access->change_user(administrator, "dina", other_role));
     CHECK(accounts.who(dina->secret).commands.size() == 1);
     change.set_all_commands(true);
-    CHECK_THAT(accounts.access->change_user(administrator, "dina", change).error().message, Catch::Contains("one of them, not both"));
+    CHECK_THAT(accounts.access->change_user(administrator, "dina", change).error().message,
+               Catch::Contains("one of them, not both"));
     change.clear_commands();
-    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message, Catch::StartsWith("commands: nobody changes their own"));
+    CHECK_THAT(accounts.access->change_user(dina->who, "dina", change).error().message,
+               Catch::StartsWith("commands: nobody changes their own"));
     REQUIRE(accounts.access->change_user(administrator, "dina", change));
     CHECK(accounts.who(dina->secret).commands.empty());
 
@@ -271,8 +291,9 @@ TEST_CASE("an administrator says which commands an account or a program may send
     const auto token = accounts.access->add_token(wanted);
     REQUIRE(token);
     CHECK(token->commands_size() == 1);
-    CHECK(accounts.access->identify({"", "Bearer " + token->token(), "127.0.0.1"}).commands == std::vector<std::string>{"NO_OP"});
-    accounts.open(); // as the file has it
+    CHECK(accounts.access->identify({"", "Bearer " + token->token(), "127.0.0.1"}).commands ==
+          std::vector<std::string>{"NO_OP"});
+    accounts.open();  // as the file has it
     CHECK(accounts.access->tokens().tokens(0).commands(0) == "NO_OP");
 }
 
@@ -297,12 +318,14 @@ TEST_CASE("a token lets a program in with its role, until it expires or is taken
     CHECK_FALSE(accounts.access->remove_token("exporter"));
 }
 
-TEST_CASE("a server takes over what another program changed in the file, and keeps what it has when that is spoilt", "[access]") {
+TEST_CASE("a server takes over what another program changed in the file, and keeps what it has when that is spoilt",
+          "[access]") {
     Accounts accounts;
     auto changed = *read_accounts(accounts.file);
     const auto password = reset_account(changed, "helper");
     auto touch = [&, n = 0]() mutable {
-        std::filesystem::last_write_time(accounts.file, std::filesystem::file_time_type::clock::now() + std::chrono::seconds{++n});
+        std::filesystem::last_write_time(accounts.file,
+                                         std::filesystem::file_time_type::clock::now() + std::chrono::seconds{++n});
     };
     REQUIRE(write_accounts(accounts.file, changed));
     touch();
@@ -319,8 +342,7 @@ TEST_CASE("without accounts everybody may do all but administer", "[access]") {
     const auto access = Access::open({});
     REQUIRE(access);
     const auto who = (*access)->identify({"aeolis_session=x", "Bearer y", "127.0.0.1"});
-    for (const Right right : rights)
-        CHECK(may(who, right) == (right != Right::administer));
+    for (const Right right : rights) CHECK(may(who, right) == (right != Right::administer));
     CHECK_FALSE((*access)->log_in({}, ""));
     CHECK_FALSE((*access)->add_token({}));
 }
@@ -340,5 +362,6 @@ TEST_CASE("a password's hash matches that password only, and no hash matches not
     CHECK_FALSE(password_matches("$argon2id$nonsense", "x"));
     CHECK(new_secret() != new_secret());
     CHECK(new_secret().size() == 43);
-    CHECK(secret_hash("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"); // FIPS 180-4, example B.1
+    CHECK(secret_hash("abc") ==
+          "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4, example B.1
 }

@@ -7,7 +7,8 @@
 
 #include <atomic>
 
-// Alarms, what was done about them, notes and the words of all in one archive: over restart, rebuild and a second flight.
+// Alarms, what was done about them, notes and the words of all in one archive: over restart, rebuild and a second
+// flight.
 
 using namespace aeolis;
 using namespace aeolis::test;
@@ -47,12 +48,16 @@ struct Ground {
         archive.reset();
         archive.emplace(std::move(Archive::open(file)).value());
         pipeline.emplace(*archive, dictionary);
-        pipeline->on_publish([this](const auto& batch) { published.insert(published.end(), batch->items.begin(), batch->items.end()); });
+        pipeline->on_publish(
+            [this](const auto& batch) { published.insert(published.end(), batch->items.begin(), batch->items.end()); });
     }
     void begin() { REQUIRE(pipeline->begin({}).ok()); }
     void fly(std::uint16_t from, std::uint16_t to, float speed_mps) {
         for (std::uint16_t i = from; i < to; ++i)
-            REQUIRE(pipeline->accept(live(navigation_packet(i, 1000.0 + i, 9000.0F, speed_mps), std::int64_t{i} * 1'000'000)).ok());
+            REQUIRE(
+                pipeline
+                    ->accept(live(navigation_packet(i, 1000.0 + i, 9000.0F, speed_mps), std::int64_t{i} * 1'000'000))
+                    .ok());
     }
     archive::Sequence add(archive::Annotation annotation) {
         const auto added = pipeline->annotate(first_run, std::move(annotation));
@@ -64,8 +69,7 @@ struct Ground {
     std::string stored() const {
         std::string text;
         const auto page = reader().items(first_run, 0, 1000);
-        for (const auto& item : page->items)
-            text += item.ShortDebugString() + "\n";
+        for (const auto& item : page->items) text += item.ShortDebugString() + "\n";
         return text;
     }
     std::string states(std::int64_t at_s) const {
@@ -82,9 +86,10 @@ struct Ground {
     }
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("what is done about an alarm is an item of the run, the same when read back, and decides how it stands", "[alarms][archive]") {
+TEST_CASE("what is done about an alarm is an item of the run, the same when read back, and decides how it stands",
+          "[alarms][archive]") {
     Ground ground;
     ground.begin();
     ground.fly(0, 3, 6100.0F);
@@ -103,15 +108,15 @@ TEST_CASE("what is done about an alarm is an item of the run, the same when read
     CHECK(ground.reader().may(first_run, "speed_mps", telemetry::AlarmAct::reset, Ert{}).error().message ==
           "alarm speed_mps is not latched: there is nothing to reset");
     std::string published;
-    for (const auto& item : ground.published)
-        published += item.ShortDebugString() + "\n";
+    for (const auto& item : ground.published) published += item.ShortDebugString() + "\n";
     CHECK(published == ground.stored());
     const auto changes = ground.reader().alarms(first_run, 0, 3);
     CHECK(changes->changes_size() == 3);
     CHECK(ground.reader().alarms(first_run, changes->next_after(), 3)->changes_size() == 2);
 }
 
-TEST_CASE("a packet that does not come is an alarm under its own name, stored, and gone when it comes", "[alarms][staleness][archive]") {
+TEST_CASE("a packet that does not come is an alarm under its own name, stored, and gone when it comes",
+          "[alarms][staleness][archive]") {
     Ground ground;
     ground.begin();
     REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
@@ -127,11 +132,15 @@ TEST_CASE("a packet that does not come is an alarm under its own name, stored, a
     CHECK(ground.states(9) == "Navigation returned none by ; ");
 }
 
-TEST_CASE("a link whose silence nothing explains is an alarm under its own name, with the reason; a silence that was predicted is none", "[alarms][silence][archive]") {
+TEST_CASE("a link whose silence nothing explains is an alarm under its own name, with the reason; a silence that was "
+          "predicted is none",
+          "[alarms][silence][archive]") {
     Ground ground;
     ground.begin();
     const auto tell = [&](std::int64_t at_s, bool up, const char* reason, bool lost = false) {
-        REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::x_band_link, Ert{at_s * 1'000'000}, up, reason, lost}).ok());
+        REQUIRE(ground.pipeline
+                    ->accept(simulation::LinkState{simulation::x_band_link, Ert{at_s * 1'000'000}, up, reason, lost})
+                    .ok());
         REQUIRE(ground.pipeline->commit().ok());
     };
     tell(0, true, "nominal");
@@ -147,20 +156,25 @@ TEST_CASE("a link whose silence nothing explains is an alarm under its own name,
     CHECK(ground.reader().links().value() == std::vector<std::string>{"uhf_live", "relay", "x_band"});
     ground.add(action("x_band", "acknowledge", 21));
     tell(30, true, "nominal");
-    CHECK(ground.states(30).empty()); // seen, and over
-    CHECK(ground.reader().alarms(first_run, 0, 10)->changes_size() == 5); // all of a link that was lost, and the act
+    CHECK(ground.states(30).empty());                                      // seen, and over
+    CHECK(ground.reader().alarms(first_run, 0, 10)->changes_size() == 5);  // all of a link that was lost, and the act
     std::string published;
-    for (const auto& item : ground.published)
-        published += item.ShortDebugString() + "\n";
+    for (const auto& item : ground.published) published += item.ShortDebugString() + "\n";
     CHECK(published == ground.stored());
 }
 
-TEST_CASE("a link that is lost leaves its packets' alarms standing and names itself in them; one that is down takes them away", "[alarms][staleness]") {
+TEST_CASE("a link that is lost leaves its packets' alarms standing and names itself in them; one that is down takes "
+          "them away",
+          "[alarms][staleness]") {
     Ground ground;
     ground.begin();
     const auto lose = [&](std::int64_t at_s, bool lost) {
-        const std::string reason = lost ? "unexplained: nothing is predicted to silence it now" : "Earth set: predicted";
-        REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{at_s * 1'000'000}, false, reason, lost}).ok());
+        const std::string reason =
+            lost ? "unexplained: nothing is predicted to silence it now" : "Earth set: predicted";
+        REQUIRE(
+            ground.pipeline
+                ->accept(simulation::LinkState{simulation::uhf_live_link, Ert{at_s * 1'000'000}, false, reason, lost})
+                .ok());
         REQUIRE(ground.pipeline->commit().ok());
     };
     REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
@@ -169,24 +183,28 @@ TEST_CASE("a link that is lost leaves its packets' alarms standing and names its
     REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(8) == "uhf_live unacknowledged distress by ; Navigation unacknowledged warning by ; ");
-    CHECK(ground.published.back().staleness().reason() == "the link is lost: unexplained: nothing is predicted to silence it now");
+    CHECK(ground.published.back().staleness().reason() ==
+          "the link is lost: unexplained: nothing is predicted to silence it now");
     lose(9, false);
     CHECK(ground.states(9) == "Navigation returned none by ; uhf_live returned none by ; ");
 }
 
-TEST_CASE("another mission's packets that cannot come are missed: its link does not go down for a reason", "[alarms][staleness][downlink]") {
+TEST_CASE("another mission's packets that cannot come are missed: its link does not go down for a reason",
+          "[alarms][staleness][downlink]") {
     Ground ground;
     ground.begin();
     REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{true, "connected", Ert{0}}).ok());
     ground.fly(0, 3, 100.0F);
-    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{false, "ground fault: connection refused", Ert{3'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{false, "ground fault: connection refused", Ert{3'000'000}})
+                .ok());
     REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(8) == "downlink unacknowledged distress by ; Navigation unacknowledged warning by ; ");
     CHECK(ground.published.back().staleness().reason() == "the link is lost: ground fault: connection refused");
 }
 
-TEST_CASE("states, notes and words survive a restart and a rebuild, and verify finds no fault", "[alarms][notes][rebuild]") {
+TEST_CASE("states, notes and words survive a restart and a rebuild, and verify finds no fault",
+          "[alarms][notes][rebuild]") {
     Ground ground;
     ground.begin();
     ground.fly(0, 3, 6100.0F);
@@ -217,7 +235,8 @@ TEST_CASE("states, notes and words survive a restart and a rebuild, and verify f
     CHECK(ground.reader().events(first_run, mortar)->events_size() == 1);
 }
 
-TEST_CASE("a note is added to a run that is over, after its last item, and those who follow it get it", "[notes][archive]") {
+TEST_CASE("a note is added to a run that is over, after its last item, and those who follow it get it",
+          "[notes][archive]") {
     Ground ground;
     ground.begin();
     ground.fly(0, 2, 100.0F);
@@ -230,7 +249,8 @@ TEST_CASE("a note is added to a run that is over, after its last item, and those
     CHECK(pipeline::verify(ground.file, {}, ground.dictionary, nullptr, ground.folder / "")->faults.empty());
 }
 
-TEST_CASE("a run that is flown again keeps what people added, at its place, and goes on after it", "[notes][alarms][resume]") {
+TEST_CASE("a run that is flown again keeps what people added, at its place, and goes on after it",
+          "[notes][alarms][resume]") {
     Ground ground;
     ground.begin();
     ground.add(note("before anything"));
@@ -239,7 +259,7 @@ TEST_CASE("a run that is flown again keeps what people added, at its place, and 
     ground.fly(3, 4, 6100.0F);
     REQUIRE(ground.pipeline->commit().ok());
     const bool after_the_crash = GENERATE(false, true);
-    ground.open(); // cut off
+    ground.open();  // cut off
     if (after_the_crash) ground.add(note("it was cut off here"));
     const auto before = ground.stored();
 
@@ -248,8 +268,7 @@ TEST_CASE("a run that is flown again keeps what people added, at its place, and 
     CHECK(cut->annotations.size() == (after_the_crash ? 3 : 2));
     std::size_t compared = 0;
     const auto compare = [&](const pipeline::PublishedBatch& again) -> Result<void> {
-        for (const auto& item : again.items)
-            compared += item.item_case() == v1::Item::ITEM_NOT_SET ? 0 : 1;
+        for (const auto& item : again.items) compared += item.item_case() == v1::Item::ITEM_NOT_SET ? 0 : 1;
         return {};
     };
     REQUIRE(ground.pipeline->resume(first_run, {}, cut->last_seq, compare, cut->annotations).ok());
@@ -259,18 +278,18 @@ TEST_CASE("a run that is flown again keeps what people added, at its place, and 
     const auto caught_up = ground.pipeline->caught_up();
     REQUIRE(caught_up.ok());
     CHECK(*caught_up);
-    CHECK(compared == 9); // four units, their samples, one alarm
+    CHECK(compared == 9);  // four units, their samples, one alarm
     CHECK(ground.stored() == before);
     ground.add(note("and on"));
     ground.fly(4, 5, 6100.0F);
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.stored().starts_with(before));
     const auto page = ground.reader().items(first_run, 0, 1000);
-    for (std::size_t i = 0; i < page->items.size(); ++i)
-        CHECK(page->items[i].seq() == i + 1);
+    for (std::size_t i = 0; i < page->items.size(); ++i) CHECK(page->items[i].seq() == i + 1);
 }
 
-TEST_CASE("plain words find events, explanations, commands and notes, whatever signs people type", "[search][archive]") {
+TEST_CASE("plain words find events, explanations, commands and notes, whatever signs people type",
+          "[search][archive]") {
     Ground ground;
     ground.begin();
     REQUIRE(ground.pipeline->accept(live(mortar_packet(0, 1003.0, 405.0F), 3'000'000)).ok());
@@ -293,8 +312,9 @@ TEST_CASE("plain words find events, explanations, commands and notes, whatever s
     CHECK(events("MORT 405") == 1);
     CHECK(events("parachute_deploy") == 1);
     CHECK(events("mortar chute") == 0);
-    CHECK(events("ortar") == 0); // words, and their beginnings
-    for (const char* signs : {"\"mortar", "mortar*", "(mortar", "mortar)", "mortar -", "NEAR(mortar", "text:mortar^2", "mortar;--", "'mortar'"}) {
+    CHECK(events("ortar") == 0);  // words, and their beginnings
+    for (const char* signs : {"\"mortar", "mortar*", "(mortar", "mortar)", "mortar -", "NEAR(mortar", "text:mortar^2",
+                              "mortar;--", "'mortar'"}) {
         INFO(signs);
         CHECK_NOTHROW(events(signs));
     }
@@ -330,19 +350,25 @@ TEST_CASE("an archive of before gets its index of words when it is opened for wr
     ground.search_holds();
 }
 
-TEST_CASE("a formula gives exact values at its first channel's times, and thinned ones keep the extremes", "[expression][reader]") {
+TEST_CASE("a formula gives exact values at its first channel's times, and thinned ones keep the extremes",
+          "[expression][reader]") {
     Ground ground;
     ground.begin();
     for (std::uint16_t i = 0; i < 1000; ++i) {
         const auto altitude_m = i == 500 ? std::nullopt : std::optional(static_cast<float>(1000 - i));
-        REQUIRE(ground.pipeline->accept(live(navigation_packet(i, 1000.0 + i / 64.0, altitude_m, static_cast<float>(i)), i)).ok());
-        if (i % 64 == 32) REQUIRE(ground.pipeline->accept(live(status_packet(i / 64, 1000.0 + i / 64.0, static_cast<std::uint8_t>(i / 64)), i)).ok());
+        REQUIRE(
+            ground.pipeline->accept(live(navigation_packet(i, 1000.0 + i / 64.0, altitude_m, static_cast<float>(i)), i))
+                .ok());
+        if (i % 64 == 32)
+            REQUIRE(ground.pipeline
+                        ->accept(live(status_packet(i / 64, 1000.0 + i / 64.0, static_cast<std::uint8_t>(i / 64)), i))
+                        .ok());
     }
     REQUIRE(ground.pipeline->commit().ok());
     auto reader = ground.reader();
     const auto sum = reader.derived(first_run, "speed_mps + {GNC-0001}", {}, {});
     REQUIRE(sum.ok());
-    CHECK(sum->sclk_size() == 1000); // where the altitude is undefined, the one before counts
+    CHECK(sum->sclk_size() == 1000);  // where the altitude is undefined, the one before counts
     CHECK(sum->value(0) == 1000.0);
     CHECK(sum->value(999) == 1000.0);
     CHECK(sum->name() == "speed_mps + {GNC-0001}");

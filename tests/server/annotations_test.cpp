@@ -30,16 +30,20 @@ std::string refusal_of_note(const std::string& text, const std::string& by = "Ad
     return note ? "" : note.error().message;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("an act on an alarm is kept under the channel's own name, a stale packet's under the packet's, a lost link's under the link's", "[alarms][http]") {
+TEST_CASE("an act on an alarm is kept under the channel's own name, a stale packet's under the packet's, a lost link's "
+          "under the link's",
+          "[alarms][http]") {
     const auto dictionary = test::small_dictionary();
-    const auto by_alias = alarm_action_of(request("GNC-0002", "shelve", 60.0), dictionary, links, "Ada", Ert{5'000'000});
+    const auto by_alias =
+        alarm_action_of(request("GNC-0002", "shelve", 60.0), dictionary, links, "Ada", Ert{5'000'000});
     REQUIRE(by_alias);
     CHECK(by_alias->alarm == "speed_mps");
     CHECK(by_alias->by == "Ada");
     CHECK(by_alias->until == Ert{65'000'000});
-    CHECK(alarm_action_of(request("Navigation", "acknowledge"), dictionary, links, "Ada", Ert{})->alarm == "Navigation");
+    CHECK(alarm_action_of(request("Navigation", "acknowledge"), dictionary, links, "Ada", Ert{})->alarm ==
+          "Navigation");
     CHECK(alarm_action_of(request("x_band", "acknowledge"), dictionary, links, "Ada", Ert{})->alarm == "x_band");
 }
 

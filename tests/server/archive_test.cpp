@@ -43,12 +43,14 @@ std::int64_t ask(const std::filesystem::path& file, const char* sql) {
     return *answer;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a new archive is an SQLite file that names its program and schema", "[archive][R43]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    { REQUIRE(Archive::open(file).ok()); }
+    {
+        REQUIRE(Archive::open(file).ok());
+    }
     CHECK(ask(file, "PRAGMA application_id") == application_id);
     CHECK(ask(file, "PRAGMA user_version") == schema_version);
     CHECK(ask(file, "SELECT count(*) FROM packets") == 0);
@@ -78,7 +80,9 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
     }
     SECTION("a newer schema") {
         const auto file = folder / "newer.db";
-        { REQUIRE(Archive::open(file).ok()); }
+        {
+            REQUIRE(Archive::open(file).ok());
+        }
         {
             auto newer = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
             REQUIRE(newer->execute("PRAGMA user_version = 999").ok());
@@ -117,20 +121,25 @@ TEST_CASE("what root writes leaves a lock that whose the archive is can take", "
     if (::geteuid() != 0) return void(std::cout << "SKIPPED: only root has files that are not its own\n");
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    { REQUIRE(Archive::open(file).ok()); }
+    {
+        REQUIRE(Archive::open(file).ok());
+    }
     constexpr uid_t nobody = 65534;
     REQUIRE(::chown(file.c_str(), nobody, nobody) == 0);
     const auto held = Archive::open(file);
     REQUIRE(held.ok());
-    struct stat lock {};
+    struct stat lock{};
     REQUIRE(::stat((file.string() + "-writer").c_str(), &lock) == 0);
     CHECK(lock.st_uid == nobody);
 }
 
-TEST_CASE("a link in the place of the writer's lock is not followed, and what it leads to stays whose it was", "[archive]") {
+TEST_CASE("a link in the place of the writer's lock is not followed, and what it leads to stays whose it was",
+          "[archive]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db", other = folder / "another's";
-    { std::ofstream{other} << ""; }
+    {
+        std::ofstream{other} << "";
+    }
     std::filesystem::create_symlink(other, file.string() + "-writer");
     const auto refused = Archive::open(file);
     REQUIRE_FALSE(refused.ok());
@@ -158,7 +167,7 @@ TEST_CASE("a batch is stored whole or not at all, and may be given again", "[arc
     REQUIRE(archive->append(*run, units(1, 10)).ok());
 
     auto batch = units(11, 10);
-    batch.units.back().seq = 5; // taken: the ten before it must not be stored either
+    batch.units.back().seq = 5;  // taken: the ten before it must not be stored either
     CHECK_FALSE(archive->append(*run, batch).ok());
     CHECK(ask(file, "SELECT count(*) FROM units") == 10);
 
@@ -214,7 +223,7 @@ TEST_CASE("a run that was cut off is marked interrupted, with its last sequence 
         auto archive = Archive::open(file);
         const auto run = archive->begin_run({}, test::small_dictionary());
         auto batch = units(1, 7);
-        batch.units.back().sampled = true; // its samples are item 8
+        batch.units.back().sampled = true;  // its samples are item 8
         batch.last_seq = 8;
         REQUIRE(archive->append(*run, batch).ok());
     }

@@ -28,7 +28,7 @@ sqlite::Database opened(const std::filesystem::path& file) {
     return std::move(*database);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("entries of the audit come back in order and hang together", "[archive][audit]") {
     const test::TemporaryFolder folder;
@@ -49,10 +49,12 @@ TEST_CASE("entries of the audit come back in order and hang together", "[archive
 }
 
 TEST_CASE("an entry of the audit that was changed, taken out or put between is found", "[archive][audit]") {
-    for (const char* crime : {"UPDATE audit SET who = 'carl' WHERE entry = 3", "UPDATE audit SET detail = 'tw' , outcome = 'odone' WHERE entry = 2",
-                              "DELETE FROM audit WHERE entry = 2", "DELETE FROM audit WHERE entry = 1",
-                              "INSERT INTO audit SELECT 6, at, who, peer, action, detail, outcome, hash FROM audit WHERE entry = 5",
-                              "UPDATE audit SET hash = (SELECT hash FROM audit WHERE entry = 2) WHERE entry = 3"}) {
+    for (const char* crime :
+         {"UPDATE audit SET who = 'carl' WHERE entry = 3",
+          "UPDATE audit SET detail = 'tw' , outcome = 'odone' WHERE entry = 2", "DELETE FROM audit WHERE entry = 2",
+          "DELETE FROM audit WHERE entry = 1",
+          "INSERT INTO audit SELECT 6, at, who, peer, action, detail, outcome, hash FROM audit WHERE entry = 5",
+          "UPDATE audit SET hash = (SELECT hash FROM audit WHERE entry = 2) WHERE entry = 3"}) {
         const test::TemporaryFolder folder;
         write_five(folder / "a.db");
         auto database = opened(folder / "a.db");

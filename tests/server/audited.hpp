@@ -19,4 +19,4 @@ inline archive::AuditEntry only_audited(archive::Reader& reader) {
     return entries[0];
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

@@ -18,13 +18,14 @@ namespace {
 struct Guarded {
     static constexpr const char* password = "a password of my own";
     RunningServer server{RunningServer::WithAccounts{}};
-    std::map<std::string, Headers> as; ///< headers by role; "nobody": none
+    std::map<std::string, Headers> as;  ///< headers by role; "nobody": none
 
     Guarded() {
         as["nobody"];
         take_over("administrator", server.first_password());
         for (const char* role : {"observer", "controller", "director"}) {
-            const auto body = std::string{R"({"user":")"} + role + R"(","role":")" + role + R"(","password":"given by another"})";
+            const auto body =
+                std::string{R"({"user":")"} + role + R"(","role":")" + role + R"(","password":"given by another"})";
             REQUIRE(ask("administrator", "POST", "/api/v1/users", body).status == 201);
             take_over(role, "given by another");
         }
@@ -36,12 +37,14 @@ struct Guarded {
         REQUIRE(ask(user, "PATCH", "/api/v1/users/" + user, body).status == 200);
     }
     Headers log_in(const std::string& user, const std::string& given) const {
-        const auto reply = web_request(server.port(), "POST", "/api/v1/session", R"({"user":")" + user + R"(","password":")" + given + "\"}");
+        const auto reply = web_request(server.port(), "POST", "/api/v1/session",
+                                       R"({"user":")" + user + R"(","password":")" + given + "\"}");
         REQUIRE(reply.status == 201);
         CHECK_THAT(reply.set_cookie, Catch::Contains("HttpOnly") && Catch::Contains("SameSite=Strict"));
         return {{"Cookie", reply.set_cookie.substr(0, reply.set_cookie.find(';'))}};
     }
-    WebReply ask(const std::string& role, std::string_view method, std::string_view target, std::string_view body = {}) {
+    WebReply ask(const std::string& role, std::string_view method, std::string_view target,
+                 std::string_view body = {}) {
         return web_request(server.port(), method, target, body, as.at(role));
     }
 };
@@ -49,8 +52,8 @@ struct Guarded {
 /// What the outcome is for a role that has the right; any else gets 401 (nobody) or 403.
 struct Row {
     const char* method;
-    const char* route; ///< as in Api::routes()
-    const char* least; ///< the role from which on; "nobody": open
+    const char* route;  ///< as in Api::routes()
+    const char* least;  ///< the role from which on; "nobody": open
     const char* target;
     const char* body;
     unsigned status;
@@ -68,8 +71,10 @@ const Row rows[] = {
     {"DELETE", "/api/v1/tokens/{name}", "administrator", "/api/v1/tokens/none", "", 409},
     {"GET", "/api/v1/audit", "administrator", "/api/v1/audit?limit=1", "", 200},
     {"GET", "/api/v1/runs", "observer", "/api/v1/runs", "", 200},
-    {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})", 409},
-    {"POST", "/api/v1/runs/{run}/sequences", "controller", "/api/v1/runs/latest/sequences", R"({"commands":[{"command":"NO_OP"}]})", 409},
+    {"POST", "/api/v1/runs/{run}/commands", "controller", "/api/v1/runs/latest/commands", R"({"command":"NO_OP"})",
+     409},
+    {"POST", "/api/v1/runs/{run}/sequences", "controller", "/api/v1/runs/latest/sequences",
+     R"({"commands":[{"command":"NO_OP"}]})", 409},
     {"POST", "/api/v1/runs/{run}/alarms", "controller", "/api/v1/runs/latest/alarms", "{", 400},
     {"POST", "/api/v1/runs/{run}/notes", "controller", "/api/v1/runs/latest/notes", "{", 400},
     {"GET", "/api/v1/runs/{run}", "observer", "/api/v1/runs/latest", "", 404},
@@ -94,7 +99,7 @@ const Row rows[] = {
 };
 const char* const ladder[] = {"nobody", "observer", "controller", "director", "administrator"};
 
-} // namespace
+}  // namespace
 
 TEST_CASE("every route has its row in the table of authority, and its description", "[access][http]") {
     std::ifstream in{AEOLIS_SOURCE_DIR "/server/api/openapi.yaml"};
@@ -103,25 +108,24 @@ TEST_CASE("every route has its row in the table of authority, and its descriptio
     for (const auto& route : server::Api::routes()) {
         served.insert(std::string{route.method} + ' ' + std::string{route.path});
         INFO(route.method << ' ' << route.path);
-        if (route.path.find("{question}") == std::string_view::npos) { // each of those has its own path, below
+        if (route.path.find("{question}") == std::string_view::npos) {  // each of those has its own path, below
             const auto path = openapi.find("\n  " + std::string{route.path} + ":\n");
             REQUIRE(path != std::string::npos);
             auto end = openapi.find("\n  /", path + 4);
             std::string method{route.method};
-            for (char& letter : method)
-                letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+            for (char& letter : method) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
             CHECK(openapi.substr(path, end - path).find("\n    " + method + ":\n") != std::string::npos);
         }
     }
-    for (const auto& row : rows)
-        tabled.insert(std::string{row.method} + ' ' + row.route);
+    for (const auto& row : rows) tabled.insert(std::string{row.method} + ' ' + row.route);
     CHECK(served == tabled);
 }
 
 TEST_CASE("each role gets what its rights give on every route, and nothing more", "[access][http]") {
     Guarded guarded;
     for (const auto& row : rows) {
-        if (std::string_view{row.route} == "/api/v1/session" && std::string_view{row.method} == "DELETE") continue; // it would end the log-ins
+        if (std::string_view{row.route} == "/api/v1/session" && std::string_view{row.method} == "DELETE")
+            continue;  // it would end the log-ins
         bool allowed = false;
         for (const char* role : ladder) {
             allowed = allowed || std::string_view{row.least} == role;
@@ -139,7 +143,7 @@ namespace {
 struct Message {
     const char* json;
     const char* least;
-    const char* says; ///< what the rest of the server answers once the right is there
+    const char* says;  ///< what the rest of the server answers once the right is there
 };
 const Message messages[] = {
     {R"({"command":{"command":"NO_OP","request":7}})", "controller", "no run goes on"},
@@ -161,11 +165,12 @@ const Message messages[] = {
 std::string kind_of(const v1::ClientMessage& message) {
     const auto* descriptor = v1::ClientMessage::descriptor();
     std::string kind = descriptor->FindFieldByNumber(message.message_case())->name();
-    if (message.has_control()) kind += '.' + v1::RehearsalControl::descriptor()->FindFieldByNumber(message.control().action_case())->name();
+    if (message.has_control())
+        kind += '.' + v1::RehearsalControl::descriptor()->FindFieldByNumber(message.control().action_case())->name();
     return kind;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("everything that a client of the stream can say has its row in the table of authority", "[access][stream]") {
     std::set<std::string> sayable, tabled;
@@ -173,8 +178,7 @@ TEST_CASE("everything that a client of the stream can say has its row in the tab
     for (int i = 0; i < client->field_count(); ++i)
         if (const std::string name = client->field(i)->name(); name != "control") sayable.insert(name);
     const auto* actions = v1::RehearsalControl::descriptor()->FindOneofByName("action");
-    for (int i = 0; i < actions->field_count(); ++i)
-        sayable.insert("control." + actions->field(i)->name());
+    for (int i = 0; i < actions->field_count(); ++i) sayable.insert("control." + actions->field(i)->name());
     for (const auto& message : messages) {
         v1::ClientMessage parsed;
         REQUIRE(server::from_json(message.json, parsed));
@@ -204,32 +208,43 @@ TEST_CASE("each role may send over the stream what it may send by HTTP", "[acces
 
 TEST_CASE("a hazardous command by HTTP needs a director, and an account's own list binds it", "[access][http]") {
     Guarded guarded;
-    REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users",
-                        R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})").status == 201);
+    REQUIRE(guarded
+                .ask("administrator", "POST", "/api/v1/users",
+                     R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})")
+                .status == 201);
     guarded.take_over("nina", "given by another");
-    const auto send = [&](const char* role, const char* body) { return guarded.ask(role, "POST", "/api/v1/runs/latest/commands", body); };
+    const auto send = [&](const char* role, const char* body) {
+        return guarded.ask(role, "POST", "/api/v1/runs/latest/commands", body);
+    };
     const char* const landing = R"({"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL"})";
     CHECK(send("controller", landing).status == 403);
     CHECK_THAT(send("controller", landing).body, Catch::Contains("EDL_DO_EDL is hazardous: it needs a director"));
-    CHECK(send("director", landing).status == 409); // no run goes on
+    CHECK(send("director", landing).status == 409);  // no run goes on
     const auto file = std::string{R"({"commands":[{"command":"NO_OP"},)"} + landing + "]}";
-    CHECK_THAT(guarded.ask("controller", "POST", "/api/v1/runs/latest/sequences", file).body, Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
+    CHECK_THAT(guarded.ask("controller", "POST", "/api/v1/runs/latest/sequences", file).body,
+               Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
     CHECK_THAT(send("nina", landing).body, Catch::Contains("not among the commands"));
     CHECK_THAT(send("nina", R"({"action":"release","number":1})").body, Catch::Contains("acts on no others"));
-    const auto token = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"director"})").body;
+    const auto token =
+        guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"director"})").body;
     const auto at = token.find(R"("token":")") + 9;
     guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(at, 43)}};
     CHECK_THAT(send("robot", R"({"action":"approve","number":1})").body, Catch::Contains("token robot is none"));
     CHECK(send("nina", R"({"command":"NO_OP"})").status == 409);
     CHECK(guarded.ask("administrator", "PATCH", "/api/v1/users/nina", R"({"commands":["NO_SUCH"]})").status == 422);
     CHECK(guarded.ask("administrator", "PATCH", "/api/v1/users/nina", R"({"all_commands":true})").status == 200);
-    CHECK(send("nina", landing).status == 409); // only that no run goes on
-    const auto bound = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"ping","role":"director","commands":["NO_OP"]})").body;
+    CHECK(send("nina", landing).status == 409);  // only that no run goes on
+    const auto bound =
+        guarded
+            .ask("administrator", "POST", "/api/v1/tokens", R"({"name":"ping","role":"director","commands":["NO_OP"]})")
+            .body;
     guarded.as["ping"] = {{"Authorization", "Bearer " + bound.substr(bound.find(R"("token":")") + 9, 43)}};
     CHECK_THAT(send("ping", landing).body, Catch::Contains("token ping may not send EDL_DO_EDL"));
     CHECK(send("ping", R"({"command":"NO_OP"})").status == 409);
-    CHECK(guarded.ask("administrator", "POST", "/api/v1/users",
-                      R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})").status == 422);
+    CHECK(guarded
+              .ask("administrator", "POST", "/api/v1/users",
+                   R"({"user":"otto","role":"director","password":"given by another","commands":["NO_SUCH"]})")
+              .status == 422);
 }
 
 namespace {
@@ -239,7 +254,7 @@ struct OfTheQueue {
     const char* who;
     const char* action;
     int number;
-    const char* refusal; ///< for want of a right; empty: they may
+    const char* refusal;  ///< for want of a right; empty: they may
 };
 const char* const hazardous = "EDL_DO_EDL is hazardous: it needs a director, and carl is controller";
 const char* const not_listed = "nina may not send EDL_DO_EDL: it is not among the commands of this account";
@@ -272,7 +287,7 @@ const OfTheQueue of_the_queue[] = {
     {"director", "approve", 2, ""},
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("who may send a command that waits may act on it, and nobody else", "[access][http][stream]") {
     Guarded guarded;
@@ -281,12 +296,16 @@ TEST_CASE("who may send a command that waits may act on it, and nobody else", "[
         REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users", user).status == 201);
     guarded.take_over("carl", "given by another");
     guarded.take_over("nina", "given by another");
-    const auto token = guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"controller"})").body;
+    const auto token =
+        guarded.ask("administrator", "POST", "/api/v1/tokens", R"({"name":"robot","role":"controller"})").body;
     guarded.as["robot"] = {{"Authorization", "Bearer " + token.substr(token.find(R"("token":")") + 9, 43)}};
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
     const char* const commands = "/api/v1/runs/latest/commands";
     REQUIRE(guarded.ask("carl", "POST", commands, R"({"command":"NO_OP","hold":true})").status == 202);
-    REQUIRE(guarded.ask("director", "POST", commands, R"({"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL","hold":true})").status == 202);
+    REQUIRE(guarded
+                .ask("director", "POST", commands,
+                     R"({"command":"EDL_DO_EDL","armed":true,"confirmation":"EDL_DO_EDL","hold":true})")
+                .status == 202);
 
     for (const auto& [who, action, number, refusal] : of_the_queue) {
         const auto request = std::string{R"({"action":")"} + action + R"(","number":)" + std::to_string(number) + "}";
@@ -301,25 +320,35 @@ TEST_CASE("who may send a command that waits may act on it, and nobody else", "[
         CHECK((reply.status == 403) == !std::string_view{refusal}.empty());
         CHECK_THAT(reply.body, Catch::Contains(refusal));
         CHECK_THAT(*told, Catch::Contains(refusal));
-        if (number == 77 && std::string_view{refusal}.empty()) CHECK_THAT(reply.body, Catch::Contains("command 77 does not wait"));
+        if (number == 77 && std::string_view{refusal}.empty())
+            CHECK_THAT(reply.body, Catch::Contains("command 77 does not wait"));
     }
     const auto act = [&](const char* who, const char* request) { return guarded.ask(who, "POST", commands, request); };
     CHECK_THAT(act("carl", R"({"action":"release","number":1})").body, Catch::Contains(R"("accepted":true)"));
-    CHECK_THAT(act("director", R"({"action":"cancel","number":2})").body, Catch::Contains(R"("accepted":true)")); // it waited all the while
-    CHECK_THAT(act("carl", R"({"action":"cancel","number":2})").body, Catch::Contains(hazardous)); // what it is stays known
-    CHECK_THAT(guarded.ask("carl", "POST", "/api/v1/runs/latest/sequences", R"({"commands":[{"action":"release","number":1}]})").body,
-               Catch::Contains("action are not for a command of a sequence"));
+    CHECK_THAT(act("director", R"({"action":"cancel","number":2})").body,
+               Catch::Contains(R"("accepted":true)"));  // it waited all the while
+    CHECK_THAT(act("carl", R"({"action":"cancel","number":2})").body,
+               Catch::Contains(hazardous));  // what it is stays known
+    CHECK_THAT(
+        guarded
+            .ask("carl", "POST", "/api/v1/runs/latest/sequences", R"({"commands":[{"action":"release","number":1}]})")
+            .body,
+        Catch::Contains("action are not for a command of a sequence"));
 }
 
-TEST_CASE("the script of an inline scenario is bound by the account's list, by each way to start it", "[access][http][stream]") {
+TEST_CASE("the script of an inline scenario is bound by the account's list, by each way to start it",
+          "[access][http][stream]") {
     Guarded guarded;
-    REQUIRE(guarded.ask("administrator", "POST", "/api/v1/users",
-                        R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})").status == 201);
+    REQUIRE(guarded
+                .ask("administrator", "POST", "/api/v1/users",
+                     R"({"user":"nina","role":"director","password":"given by another","commands":["NO_OP"]})")
+                .status == 201);
     guarded.take_over("nina", "given by another");
     const std::string start =
         R"({"inline_scenario":{"name":"x","entry_scet":"2012-08-06T05:10:47.4","commands":[{"send_before_entry_s":900,"command":"NO_OP"},)"
         R"({"send_before_entry_s":800,"command":"EDL_DO_EDL"}]}})";
-    const auto says = Catch::Contains("inline_scenario.commands[1]: nina may not send EDL_DO_EDL: it is not among the commands of this account");
+    const auto says = Catch::Contains(
+        "inline_scenario.commands[1]: nina may not send EDL_DO_EDL: it is not among the commands of this account");
     const auto refused = guarded.ask("nina", "POST", "/api/v1/rehearsals", start);
     CHECK(refused.status == 403);
     CHECK_THAT(refused.body, says);
@@ -330,10 +359,11 @@ TEST_CASE("the script of an inline scenario is bound by the account's list, by e
     const auto reply = stream.receive();
     REQUIRE(reply);
     CHECK_THAT(*reply, says);
-    CHECK(guarded.ask("nina", "GET", "/api/v1/rehearsals/current").status == 404); // none was begun
+    CHECK(guarded.ask("nina", "GET", "/api/v1/rehearsals/current").status == 404);  // none was begun
 }
 
-TEST_CASE("a script that breaks the timeline's constraints is refused at the start, by the command's name", "[access][http][R19]") {
+TEST_CASE("a script that breaks the timeline's constraints is refused at the start, by the command's name",
+          "[access][http][R19]") {
     Guarded guarded;
     const std::string start =
         R"({"inline_scenario":{"name":"x","entry_scet":"2012-08-06T05:10:47.4","commands":[{"send_before_entry_s":900,"command":"EDL_SET_TIMEPOINT_OFFSET",)"
@@ -349,7 +379,7 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
     const std::string long_body(5'000, ' ');
     CHECK(guarded.ask("nobody", "POST", "/api/v1/session", long_body).status == 413);
     CHECK(guarded.ask("observer", "POST", "/api/v1/session", long_body).status == 400);
-    CHECK(guarded.ask("observer", "POST", "/api/v1/rehearsals", long_body).status == 413); // which they may not start
+    CHECK(guarded.ask("observer", "POST", "/api/v1/rehearsals", long_body).status == 413);  // which they may not start
     const std::string longer_body(50'000, ' ');
     CHECK(guarded.ask("director", "POST", "/api/v1/rehearsals", longer_body).status == 400);
     CHECK(guarded.ask("director", "POST", "/api/v1/runs/latest/notes", longer_body).status == 413);
@@ -360,7 +390,7 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
             ++entries;
         return entries;
     };
-    std::this_thread::sleep_for(std::chrono::milliseconds{100}); // what the set-up did is written
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});  // what the set-up did is written
     const auto before = count();
     for (int i = 0; i < 20; ++i) {
         guarded.ask("nobody", "POST", "/api/v1/session", R"({"user":"Not A Name","password":"x"})");
@@ -371,7 +401,9 @@ TEST_CASE("who has not logged in sends no long body, and fills no audit", "[acce
     CHECK(count() == before);
 }
 
-TEST_CASE("what an instructor does is told to those who may rehearse, to all others when the run is over, and bears the name of who is logged in", "[access][http][notes]") {
+TEST_CASE("what an instructor does is told to those who may rehearse, to all others when the run is over, and bears "
+          "the name of who is logged in",
+          "[access][http][notes]") {
     Guarded guarded;
     REQUIRE(guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
     const char* const note = R"({"note":{"text":"do they see it?","by":"someone else"}})";
@@ -395,9 +427,11 @@ TEST_CASE("what an instructor does is told to those who may rehearse, to all oth
 
     guarded.server.end();
     {
-        auto database = archive::sqlite::Database::open(guarded.server.archive().string(), archive::sqlite::Mode::read_write_create);
+        auto database = archive::sqlite::Database::open(guarded.server.archive().string(),
+                                                        archive::sqlite::Mode::read_write_create);
         REQUIRE(database);
-        REQUIRE(database->execute("UPDATE runs SET state = 'running', last_seq = NULL").ok()); // as a server leaves it that is cut off
+        REQUIRE(database->execute("UPDATE runs SET state = 'running', last_seq = NULL")
+                    .ok());  // as a server leaves it that is cut off
     }
     guarded.server.restart();
     guarded.as["observer"] = guarded.log_in("observer", Guarded::password);
@@ -420,7 +454,8 @@ TEST_CASE("a stream is closed when its log-in ends", "[access][stream]") {
 
 TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no password is", "[access][audit]") {
     Guarded guarded;
-    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4711","dry_run":true})");
+    guarded.ask("controller", "POST", "/api/v1/runs/latest/commands",
+                R"({"command":"NO_OP","request":"4711","dry_run":true})");
     guarded.ask("controller", "POST", "/api/v1/runs/latest/commands", R"({"command":"NO_OP","request":"4712"})");
     guarded.ask("controller", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
     guarded.ask("director", "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})");
@@ -431,18 +466,21 @@ TEST_CASE("what was done, by whom and with what outcome, is in the audit, and no
         audit = guarded.ask("administrator", "GET", "/api/v1/audit").body;
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
-    CHECK_THAT(audit, Catch::Contains(R"("who":"controller","from":"127.0.0.1","action":"rehearsal")") && Catch::Contains("refused (403)"));
+    CHECK_THAT(audit, Catch::Contains(R"("who":"controller","from":"127.0.0.1","action":"rehearsal")") &&
+                          Catch::Contains("refused (403)"));
     CHECK_THAT(audit, Catch::Contains(R"("who":"director","from":"127.0.0.1","action":"rehearsal")"));
     CHECK_THAT(audit, Catch::Contains("add 'observer' as observer"));
     CHECK_THAT(audit, Catch::Contains("change 'director'\",\"outcome\":\"refused"));
     CHECK_THAT(audit, Catch::Contains("user or password is wrong"));
-    CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711")); // a dry run is no action
-    CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) && !Catch::Contains("a wrong guess"));
+    CHECK_THAT(audit, Catch::Contains("4712") && !Catch::Contains("4711"));  // a dry run is no action
+    CHECK_THAT(audit, !Catch::Contains("given by another") && !Catch::Contains(Guarded::password) &&
+                          !Catch::Contains("a wrong guess"));
 }
 
-TEST_CASE("a password that was reset by hand is in the audit of the server that runs, or of the next, once", "[access][audit]") {
+TEST_CASE("a password that was reset by hand is in the audit of the server that runs, or of the next, once",
+          "[access][audit]") {
     Guarded guarded;
-    const auto reset = [&](const char* user) { // as `aeolis accounts reset`
+    const auto reset = [&](const char* user) {  // as `aeolis accounts reset`
         const server::AccountsLock lock{guarded.server.accounts()};
         auto accounts = server::read_accounts(guarded.server.accounts());
         REQUIRE(accounts);
@@ -456,12 +494,12 @@ TEST_CASE("a password that was reset by hand is in the audit of the server that 
     REQUIRE(reader);
     const auto told = [&](const char* user) {
         return std::ranges::count_if(reader->audit(0, 1'000).value(), [&](const auto& entry) {
-            return entry.who == "root" && entry.detail.find(fmt::format("a new password for '{}'", user)) != std::string::npos;
+            return entry.who == "root" &&
+                   entry.detail.find(fmt::format("a new password for '{}'", user)) != std::string::npos;
         });
     };
     reset("controller");
-    for (int i = 0; i < 500 && told("controller") == 0; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    for (int i = 0; i < 500 && told("controller") == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     CHECK(told("controller") == 1);
     guarded.server.end();
     reset("director");

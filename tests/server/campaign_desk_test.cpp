@@ -55,12 +55,15 @@ int idle_threads() {
     return idle;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a campaign flies in the server, each case told once in the order in which it came, and comes to what the program prints", "[campaign][http]") {
+TEST_CASE("a campaign flies in the server, each case told once in the order in which it came, and comes to what the "
+          "program prints",
+          "[campaign][http]") {
     RunningServer server;
     const auto port = server.port();
-    const auto started = web_request(port, "POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":2,"seed":"7"})");
+    const auto started =
+        web_request(port, "POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":2,"seed":"7"})");
     CHECK(started.status == 202);
     const auto begun = message_of<v1::CampaignState>(started);
     CHECK(begun.campaign() == "campaign-7");
@@ -107,14 +110,16 @@ TEST_CASE("a campaign flies in the server, each case told once in the order in w
     CHECK(found.margins_size() == static_cast<int>(summary->margins.size()));
 }
 
-TEST_CASE("a cancelled campaign keeps its cases and goes on when it is started again; meanwhile no other can be started", "[campaign][http]") {
+TEST_CASE(
+    "a cancelled campaign keeps its cases and goes on when it is started again; meanwhile no other can be started",
+    "[campaign][http]") {
     RunningServer server;
     const auto port = server.port();
     const auto start = [&](std::string_view body) { return web_request(port, "POST", "/api/v1/campaigns", body); };
     const auto idle_before = idle_threads();
     REQUIRE(start(R"({"scenario":"gnc_alone","cases":10000,"jobs":1})").status == 202);
     REQUIRE(comes([&] { return report(port, "gnc_alone-0").state().kept() >= 2; }));
-    CHECK(idle_threads() == idle_before + 1); // the one that flies; the one that keeps waits for nobody
+    CHECK(idle_threads() == idle_before + 1);  // the one that flies; the one that keeps waits for nobody
     const auto flying = report(port, "gnc_alone-0").state();
     CHECK(flying.state() == "flying");
     CHECK(flying.rate_per_s() > 0.0);
@@ -151,11 +156,14 @@ TEST_CASE("a cancelled campaign keeps its cases and goes on when it is started a
 TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by name", "[campaign][http]") {
     RunningServer server;
     const auto port = server.port();
-    std::ofstream{server.archive().parent_path() / "campaign-other-1.db"} << "this is no database, and long enough to be taken for one's first page";
+    std::ofstream{server.archive().parent_path() / "campaign-other-1.db"}
+        << "this is no database, and long enough to be taken for one's first page";
     {
-        auto database = archive::sqlite::Database::open((server.archive().parent_path() / "campaign-old-1.db").string(), archive::sqlite::Mode::read_write_create);
+        auto database = archive::sqlite::Database::open((server.archive().parent_path() / "campaign-old-1.db").string(),
+                                                        archive::sqlite::Mode::read_write_create);
         REQUIRE(database);
-        REQUIRE(database->execute("PRAGMA application_id = 0x4165436d; CREATE TABLE campaign (schema_version); INSERT INTO campaign VALUES (3)"));
+        REQUIRE(database->execute("PRAGMA application_id = 0x4165436d; CREATE TABLE campaign (schema_version); INSERT "
+                                  "INTO campaign VALUES (3)"));
     }
     struct Row {
         const char* method;
@@ -171,7 +179,8 @@ TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by nam
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign"})", 422, "cases: 0 is not within 1 … 10000"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":10001})", 422, "10001"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":3,"jobs":10000})", 422, "jobs: 10000"},
-        {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":3,"seed":"18446744073709551615"})", 422, "seed: 18446744073709551615"},
+        {"POST", "/api/v1/campaigns", R"({"scenario":"campaign","cases":3,"seed":"18446744073709551615"})", 422,
+         "seed: 18446744073709551615"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"../../etc/passwd","cases":3})", 422, "none of this name"},
         {"POST", "/api/v1/campaigns", R"({"scenario":"performance","cases":3})", 422, "performance"},
         {"GET", "/api/v1/campaigns/moon-1", "", 404, "moon-1"},

@@ -13,7 +13,7 @@ using namespace aeolis::server::campaign;
 TEST_CASE("mean and deviation of a known sample", "[campaign][statistics]") {
     Moments moments;
     for (const double value : {2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0})
-        moments.add(1.0e9 + value); // far from zero, where sums of squares would lose it
+        moments.add(1.0e9 + value);  // far from zero, where sums of squares would lose it
     CHECK(moments.mean() == 1.0e9 + 5.0);
     CHECK(moments.deviation() == Approx(std::sqrt(32.0 / 7.0)));
     CHECK(Moments{}.deviation() == 0.0);
@@ -22,8 +22,7 @@ TEST_CASE("mean and deviation of a known sample", "[campaign][statistics]") {
 TEST_CASE("percentiles of numbers that come in order are interpolated between neighbours", "[campaign][statistics]") {
     Percentile least{0.0, 5}, p10{0.1, 5}, p50{0.5, 5}, p99{0.99, 5}, most{1.0, 5};
     for (const double value : {10.0, 20.0, 30.0, 40.0, 50.0})
-        for (Percentile* each : {&least, &p10, &p50, &p99, &most})
-            each->add(value);
+        for (Percentile* each : {&least, &p10, &p50, &p99, &most}) each->add(value);
     CHECK(least.value() == 10.0);
     CHECK(p10.value() == Approx(14.0));
     CHECK(p50.value() == 30.0);

@@ -73,8 +73,7 @@ std::vector<std::string> rows_of(const std::filesystem::path& file) {
             REQUIRE(row);
             if (!*row) break;
             std::string& text = rows.emplace_back();
-            for (int column = 0; column < columns; ++column)
-                text += fmt::format("{}|", select->text(column));
+            for (int column = 0; column < columns; ++column) text += fmt::format("{}|", select->text(column));
         }
     }
     return rows;
@@ -84,7 +83,7 @@ std::int64_t count_of(const std::filesystem::path& file, const char* sql) {
     auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_only);
     if (!database) return 0;
     const auto count = database->integer_of(sql);
-    return count ? *count : 0; // it may be made just now
+    return count ? *count : 0;  // it may be made just now
 }
 
 Summary summary_of(const std::filesystem::path& file, std::uint64_t cases) {
@@ -125,8 +124,7 @@ struct Ended {
 pid_t start(const char* program, std::vector<std::string> arguments, const std::filesystem::path& out) {
     arguments.insert(arguments.begin(), {program, "campaign"});
     std::vector<char*> words;
-    for (auto& argument : arguments)
-        words.push_back(argument.data());
+    for (auto& argument : arguments) words.push_back(argument.data());
     words.push_back(nullptr);
     const pid_t child = fork();
     REQUIRE(child >= 0);
@@ -155,25 +153,23 @@ google::protobuf::Struct json_of(const std::string& text) {
 
 double number_at(const google::protobuf::Struct& object, std::initializer_list<const char*> path) {
     const auto* at = &object;
-    for (auto name = path.begin(); name + 1 != path.end(); ++name)
-        at = &at->fields().at(*name).struct_value();
+    for (auto name = path.begin(); name + 1 != path.end(); ++name) at = &at->fields().at(*name).struct_value();
     return at->fields().at(*(path.end() - 1)).number_value();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("case K of a campaign is the landing that rehearse --case K flies, bit for bit", "[campaign]") {
     const auto scenario = test::shipped_scenario("campaign");
     const auto& dictionary = tests::shipped_dictionary();
     const CaseFlights flights{scenario, 3, dictionary};
-    (void)flights.fly(6); // no case leaves anything to the next
+    (void)flights.fly(6);  // no case leaves anything to the next
     const auto result = flights.fly(7);
     REQUIRE(result);
     const CaseResult& flown = *result;
 
     Rehearsal rehearsal{scenario, 3, 7, dictionary};
-    while (rehearsal.landing().outcome() == simulation::Outcome::running)
-        rehearsal.step();
+    while (rehearsal.landing().outcome() == simulation::Outcome::running) rehearsal.step();
     CHECK(flown.outcome == rehearsal.outcome());
     CHECK(flown.reason == rehearsal.outcome_reason());
     CHECK(flown.end_cycle == rehearsal.cycles());
@@ -205,19 +201,16 @@ TEST_CASE("case K of a campaign is the landing that rehearse --case K flies, bit
 TEST_CASE("a copy of the common flight that takes a case is that case's landing, its whole recording bit for bit",
           "[campaign]") {
     auto scenario = test::shipped_scenario("campaign");
-    scenario.start_before_entry_s = 700.0; // commanded by nobody: it ends in the air, and soon
+    scenario.start_before_entry_s = 700.0;  // commanded by nobody: it ends in the air, and soon
     scenario.commands.clear();
     const auto& dictionary = tests::shipped_dictionary();
     ScriptedLanding whole{scenario, 1, 4, dictionary}, common{scenario, 1, 0, dictionary};
-    while (common.landing().truth().e_s < -10.0)
-        common.step();
+    while (common.landing().truth().e_s < -10.0) common.step();
     CHECK_FALSE(common.landing().dispersed());
     ScriptedLanding copy{common};
     copy.take_case(4);
-    while (copy.landing().outcome() == simulation::Outcome::running)
-        copy.step();
-    while (whole.landing().outcome() == simulation::Outcome::running)
-        whole.step();
+    while (copy.landing().outcome() == simulation::Outcome::running) copy.step();
+    while (whole.landing().outcome() == simulation::Outcome::running) whole.step();
     CHECK(copy.landing().dispersed());
     CHECK_THROWS_AS(copy.take_case(5), CheckFailed);
     CHECK(copy.landing().truth().p_MoB_M_m == whole.landing().truth().p_MoB_M_m);
@@ -289,7 +282,7 @@ TEST_CASE("a case that throws is lost, with its reason, and the campaign goes on
 
 TEST_CASE("a landing that diverges ends as lost with reason and cycle, or as what it came to", "[campaign]") {
     auto scenario = test::shipped_scenario("gnc_alone");
-    scenario.start_before_entry_s = 60.0; // still spinning behind the cruise stage: it cannot land
+    scenario.start_before_entry_s = 60.0;  // still spinning behind the cruise stage: it cannot land
     const CaseFlights flights{scenario, 1, tests::shipped_dictionary()};
     const auto result = flights.fly(1);
     REQUIRE(result);
@@ -320,7 +313,7 @@ TEST_CASE("results of another scenario, seed, dictionary or program are refused 
     other = identity;
     other.program = "fedcba9876543210";
     CHECK_THAT(refusal(file, other), Catch::Contains("program: "));
-    CHECK(rows_of(file).size() == 2 * 3); // as it was
+    CHECK(rows_of(file).size() == 2 * 3);  // as it was
 
     std::ofstream{folder / "text.db"} << "this is no database, and long enough to be read as one's first page, it is";
     CHECK_THAT(refusal(folder / "text.db", identity), Catch::Contains("text.db"));
@@ -355,7 +348,7 @@ TEST_CASE("kill -9 loses nothing that was committed and repeats nothing", "[camp
     CHECK(seen >= 1);
     CHECK(committed < 12);
 
-    arguments[5] = "2"; // jobs: what comes out does not depend on them
+    arguments[5] = "2";  // jobs: what comes out does not depend on them
     const auto resumed = wait_for(start(program(), arguments, out), out);
     const auto json = json_of(resumed.out);
     CHECK(number_at(json, {"kept"}) == 12);
@@ -381,11 +374,10 @@ TEST_CASE("an interrupt ends the program cleanly, with a report of what is kept"
         program(),
         {"--scenario", light_scenario(folder), "--cases", "5000", "--jobs", "1", "--json", "--results", file.string()},
         out);
-    for (int i = 0; i < 3000 && count_of(file, "SELECT count(*) FROM cases") < 1; ++i)
-        usleep(50'000);
+    for (int i = 0; i < 3000 && count_of(file, "SELECT count(*) FROM cases") < 1; ++i) usleep(50'000);
     kill(child, SIGINT);
     const auto ended = wait_for(child, out);
-    CHECK(ended.code == 1); // not all are flown
+    CHECK(ended.code == 1);  // not all are flown
     CHECK_FALSE(std::filesystem::exists(folder / "a.db-wal"));
     const auto kept = number_at(json_of(ended.out), {"kept"});
     CHECK(kept >= 1);
@@ -412,7 +404,8 @@ void check_bands(int cases) {
     CHECK(number_at(json, {"touchdown", "horizontal_mps", "max"}) <= 0.5);
     CHECK(number_at(json, {"touchdown", "ellipse_99", "major_km"}) < 20.0);
     CHECK(number_at(json, {"touchdown", "ellipse_99", "major_km"}) > 4.0);
-    CHECK(number_at(json, {"touchdown", "ellipse_99", "minor_km"}) < 13.0); // published 7: docs/validation.md says why not
+    CHECK(number_at(json, {"touchdown", "ellipse_99", "minor_km"}) <
+          13.0);  // published 7: docs/validation.md says why not
     CHECK(number_at(json, {"parachute", "mach", "min"}) > 1.4);
     CHECK(number_at(json, {"parachute", "mach", "max"}) < 2.2);
     CHECK(number_at(json, {"parachute", "dynamic_pressure_Pa", "min"}) > 200.0);
@@ -423,7 +416,7 @@ void check_bands(int cases) {
     CHECK(number_at(json, {"least_margin", "margin_s"}) >= 0.0);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("fifty dispersed cases land within the published bands", "[campaign]") {
     check_bands(50);
@@ -473,8 +466,7 @@ TEST_CASE("plots hold a dot a case and stay within their frames", "[campaign]") 
         CHECK(text.find("nan") == std::string::npos);
         CHECK(text.find("inf") == std::string::npos);
         int found = 0;
-        for (std::size_t at = 0; (at = text.find("class=\"dot\"", at)) != std::string::npos; ++at)
-            ++found;
+        for (std::size_t at = 0; (at = text.find("class=\"dot\"", at)) != std::string::npos; ++at) ++found;
         CHECK(found == dots);
     }
     CHECK_FALSE(write_plots(*results, *summary, folder / "a.db"));

@@ -18,9 +18,9 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
-#include <cstdio>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ namespace {
 
 struct Ended {
     int code = -1;
-    std::string text; ///< of both streams
+    std::string text;  ///< of both streams
 };
 
 Ended run(const std::string& program, const std::string& arguments) {
@@ -63,15 +63,17 @@ const char* program() {
     return given;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a command file is sent to a server by the program, whole or not at all, a line a command", "[cli][http][R44]") {
+TEST_CASE("a command file is sent to a server by the program, whole or not at all, a line a command",
+          "[cli][http][R44]") {
     if (program() == nullptr) return;
     aeolis::test::RunningServer server{aeolis::test::shipped_scenario("nominal"), 1.0};
     const aeolis::test::TemporaryFolder folder;
     const auto send = [&](const std::string& file, const std::string& options) {
         std::ofstream{folder / "commands.json"} << file;
-        return run(program(), fmt::format("send --server http://127.0.0.1:{} --file '{}' {}", server.port(), (folder / "commands.json").string(), options));
+        return run(program(), fmt::format("send --server http://127.0.0.1:{} --file '{}' {}", server.port(),
+                                          (folder / "commands.json").string(), options));
     };
     const auto count = [&] {
         const auto list = aeolis::test::web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body;
@@ -80,28 +82,34 @@ TEST_CASE("a command file is sent to a server by the program, whole or not at al
             ++commands;
         return commands;
     };
-    const std::string good = R"({"commands":[{"command":"NO_OP"},{"command":"EDL_SET_PARAMETERS","from_solution":true,"hold":true}]})";
+    const std::string good =
+        R"({"commands":[{"command":"NO_OP"},{"command":"EDL_SET_PARAMETERS","from_solution":true,"hold":true}]})";
     Ended tried;
-    for (int i = 0; i < 3000 && tried.code != 0; ++i) // until the run has begun
+    for (int i = 0; i < 3000 && tried.code != 0; ++i)  // until the run has begun
         tried = send(good, "--dry-run");
     INFO(tried.text);
     CHECK_THAT(tried.text, Catch::Contains("1  NO_OP  would be taken, ") && Catch::Contains("at the vehicle 2012-") &&
-                               Catch::Contains("to be there before ") && Catch::Contains("a dry run: nothing was sent"));
+                               Catch::Contains("to be there before ") &&
+                               Catch::Contains("a dry run: nothing was sent"));
     CHECK(count() == 0);
     const auto spoilt = send(R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})", "");
     CHECK(spoilt.code == 1);
-    CHECK_THAT(spoilt.text, Catch::Contains("2  EDL_DO_EDL  refused: ") && Catch::Contains("nothing was sent: commands[1]: EDL_DO_EDL is hazardous"));
+    CHECK_THAT(spoilt.text, Catch::Contains("2  EDL_DO_EDL  refused: ") &&
+                                Catch::Contains("nothing was sent: commands[1]: EDL_DO_EDL is hazardous"));
     CHECK(count() == 0);
     const auto sent = send(good, "--by ann");
     CHECK(sent.code == 0);
-    CHECK_THAT(sent.text, Catch::Contains("1  NO_OP  is command 1") && Catch::Contains("2  EDL_SET_PARAMETERS  is command 2"));
+    CHECK_THAT(sent.text,
+               Catch::Contains("1  NO_OP  is command 1") && Catch::Contains("2  EDL_SET_PARAMETERS  is command 2"));
     CHECK(count() == 2);
     const auto wrong = send(good, "--run 77");
     CHECK(wrong.code == 1);
     CHECK_THAT(wrong.text, Catch::Contains("77"));
 }
 
-TEST_CASE("a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and where to look", "[cli][http][R44]") {
+TEST_CASE(
+    "a command file whose answer is lost, or is none of ours, may have been taken: exit code 3, and where to look",
+    "[cli][http][R44]") {
     namespace asio = boost::asio;
     namespace http = boost::beast::http;
     if (program() == nullptr) return;
@@ -119,9 +127,10 @@ TEST_CASE("a command file whose answer is lost, or is none of ours, may have bee
             http::read(socket, buffer, request, ignored);
             asio::write(socket, asio::buffer(answer), ignored);
         }};
-        const auto ended = run(program(), fmt::format("send --server http://127.0.0.1:{} --run 7 --file '{}' {}", acceptor.local_endpoint().port(),
-                                                      (folder / "commands.json").string(), options));
-        asio::ip::tcp::socket nobody{io}; // in case that the program asked for nothing
+        const auto ended =
+            run(program(), fmt::format("send --server http://127.0.0.1:{} --run 7 --file '{}' {}",
+                                       acceptor.local_endpoint().port(), (folder / "commands.json").string(), options));
+        asio::ip::tcp::socket nobody{io};  // in case that the program asked for nothing
         boost::system::error_code ignored;
         nobody.connect(acceptor.local_endpoint(), ignored);
         nobody.close(ignored);
@@ -129,17 +138,22 @@ TEST_CASE("a command file whose answer is lost, or is none of ours, may have bee
         return ended;
     };
     const std::string page = "HTTP/1.1 502 Bad Gateway\r\nContent-Length: 6\r\n\r\n<html>";
-    for (const auto& [answer, says] : {std::pair<std::string, const char*>{"", "no answer: "}, {page.substr(0, 50), "no answer: "}, {page, "the answer (502) is not one of Aeolis"}}) {
+    for (const auto& [answer, says] : {std::pair<std::string, const char*>{"", "no answer: "},
+                                       {page.substr(0, 50), "no answer: "},
+                                       {page, "the answer (502) is not one of Aeolis"}}) {
         const auto ended = send_to_one_that_says(answer, "");
         INFO(answer << " -> " << ended.code << ": " << ended.text);
         CHECK(ended.code == 3);
-        CHECK_THAT(ended.text, Catch::Contains(says) && Catch::Contains("it is not known whether the commands were taken") && Catch::Contains("/api/v1/runs/7/commands"));
+        CHECK_THAT(ended.text, Catch::Contains(says) &&
+                                   Catch::Contains("it is not known whether the commands were taken") &&
+                                   Catch::Contains("/api/v1/runs/7/commands"));
         CHECK(std::count(ended.text.begin(), ended.text.end(), '\n') == 1);
     }
     const auto tried = send_to_one_that_says("", "--dry-run");
     CHECK(tried.code == 1);
     CHECK_THAT(tried.text, Catch::Contains("nothing was sent"));
-    const auto refused = send_to_one_that_says("HTTP/1.1 400 Bad Request\r\nContent-Length: 15\r\n\r\n{\"error\":\"bad\"}", "");
+    const auto refused =
+        send_to_one_that_says("HTTP/1.1 400 Bad Request\r\nContent-Length: 15\r\n\r\n{\"error\":\"bad\"}", "");
     CHECK(refused.code == 1);
     CHECK_THAT(refused.text, Catch::Contains("refused (400): bad"));
 }
@@ -181,27 +195,35 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
     }
 }
 
-TEST_CASE("each option of serve stands in an environment variable of its name, and the command line counts before it", "[cli]") {
+TEST_CASE("each option of serve stands in an environment variable of its name, and the command line counts before it",
+          "[cli]") {
     if (program() == nullptr) return;
     const auto said = run(program(), "serve --help").text;
-    for (const char* option : {"scenario", "seed", "pace", "downlink", "xtce", "format", "skip", "frame-octets", "dictionary", "scenarios", "log-level", "listen"}) {
+    for (const char* option : {"scenario", "seed", "pace", "downlink", "xtce", "format", "skip", "frame-octets",
+                               "dictionary", "scenarios", "log-level", "listen"}) {
         std::string variable = fmt::format("AEOLIS_{}", option);
         for (char& c : variable) c = c == '-' ? '_' : static_cast<char>(std::toupper(c));
         CHECK_THAT(said, Catch::Contains("(Env:" + variable + ")"));
     }
     CHECK_THAT(said, !Catch::Contains("AEOLIS_CONFIG"));
-    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve", program())).text, Catch::Contains("neither 0 nor within 1 … 1000: 0.5"));
-    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve --pace 0.7", program())).text, Catch::Contains("1000: 0.7"));
+    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve", program())).text,
+               Catch::Contains("neither 0 nor within 1 … 1000: 0.5"));
+    CHECK_THAT(run("env", fmt::format("AEOLIS_PACE=0.5 '{}' serve --pace 0.7", program())).text,
+               Catch::Contains("1000: 0.7"));
 }
 
-TEST_CASE("a settings file may name several hosts with commas between, and a path with blanks and commas", "[cli][http]") {
+TEST_CASE("a settings file may name several hosts with commas between, and a path with blanks and commas",
+          "[cli][http]") {
     if (program() == nullptr) return;
     using aeolis::test::web_request;
     const aeolis::test::TemporaryFolder folder;
     const auto archive = folder / "the archive, of today" / "a.db";
     const auto settings = folder / "aeolis.conf";
-    std::ofstream{settings} << "# ours\nlisten=127.0.0.1:0\nhost=first.example,second.example\narchive=" << archive.string() << '\n';
-    std::FILE* pipe = popen(fmt::format("echo $$; exec '{}' serve --config '{}' 2>&1 </dev/null", program(), settings.string()).c_str(), "r");
+    std::ofstream{settings} << "# ours\nlisten=127.0.0.1:0\nhost=first.example,second.example\narchive="
+                            << archive.string() << '\n';
+    std::FILE* pipe = popen(
+        fmt::format("echo $$; exec '{}' serve --config '{}' 2>&1 </dev/null", program(), settings.string()).c_str(),
+        "r");
     REQUIRE(pipe != nullptr);
     std::array<char, 4096> line{};
     REQUIRE(std::fgets(line.data(), line.size(), pipe) != nullptr);
@@ -214,7 +236,9 @@ TEST_CASE("a settings file may name several hosts with commas between, and a pat
     }
     INFO(said);
     CHECK(port != 0);
-    const auto status = [&](const char* host) { return web_request(static_cast<std::uint16_t>(port), "GET", "/healthz", {}, {{"Host", host}}).status; };
+    const auto status = [&](const char* host) {
+        return web_request(static_cast<std::uint16_t>(port), "GET", "/healthz", {}, {{"Host", host}}).status;
+    };
     if (port != 0) {
         CHECK(status("first.example") == 200);
         CHECK(status("second.example") == 200);
@@ -250,7 +274,8 @@ TEST_CASE("the entry reference is a table of falling speed, with every row a num
     CHECK(rows == static_cast<int>(aeolis::flight::EntryReference{}.rows.size()));
 }
 
-TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and pruned by the program", "[cli][archive][R43]") {
+TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and pruned by the program",
+          "[cli][archive][R43]") {
     if (program() == nullptr) return;
     const auto folder = std::filesystem::temp_directory_path() / ("aeolis-archive-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
@@ -265,14 +290,19 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     REQUIRE(run(program(), "rehearse --scenario nominal_auto --archive " + in("a.db")).code == 0);
     says("archive backup --archive " + in("a.db") + " --out " + in("b.db"), "all of ");
     says("archive verify --archive " + in("b.db"), "nothing wrong");
-    const auto rows = says("export --run 1 --channel altitude_m speed_mps --csv --archive " + in("b.db"), "sclk,e_s,channel,value,unit,source\n");
-    const auto objects = says("export --run 1 --channel altitude_m speed_mps --format jsonl --archive " + in("b.db"), R"("channel":"altitude_m")");
+    const auto rows = says("export --run 1 --channel altitude_m speed_mps --csv --archive " + in("b.db"),
+                           "sclk,e_s,channel,value,unit,source\n");
+    const auto objects = says("export --run 1 --channel altitude_m speed_mps --format jsonl --archive " + in("b.db"),
+                              R"("channel":"altitude_m")");
     CHECK(std::count(rows.begin(), rows.end(), '\n') == std::count(objects.begin(), objects.end(), '\n') + 1);
-    for (const char* names : {"--channel altitude_m --channel speed_mps", "--channel altitude_m,speed_mps", "--channels altitude_m,speed_mps --format csv"})
+    for (const char* names : {"--channel altitude_m --channel speed_mps", "--channel altitude_m,speed_mps",
+                              "--channels altitude_m,speed_mps --format csv"})
         CHECK(run(program(), fmt::format("export --run 1 {} --archive {}", names, in("b.db"))).text == rows);
-    const auto aligned = says("export --run 1 --channel altitude_m speed_mps --align 1 --archive " + in("b.db"), "sclk,e_s,altitude_m,speed_mps\n");
+    const auto aligned = says("export --run 1 --channel altitude_m speed_mps --align 1 --archive " + in("b.db"),
+                              "sclk,e_s,altitude_m,speed_mps\n");
     CHECK(std::count(aligned.begin(), aligned.end(), '\n') > 100);
-    says("archive samples --run 1 --channel altitude_m speed_mps --archive " + in("b.db") + " --out " + in("samples.db"),
+    says("archive samples --run 1 --channel altitude_m speed_mps --archive " + in("b.db") + " --out " +
+             in("samples.db"),
          (std::to_string(std::count(objects.begin(), objects.end(), '\n')) + " samples of run 1").c_str());
     says("archive rebuild --archive " + in("b.db"), "run 1: made again from its units");
     CHECK(run(program(), "export --run 1 --channel altitude_m speed_mps --archive " + in("b.db")).text == rows);
@@ -306,15 +336,17 @@ TEST_CASE("each question in SQL of docs/archive.md is answered on a landing that
             const auto row = statement->step();
             REQUIRE(row.ok());
             // Nobody wrote a note, nothing waited for a person, and every live unit is as it was recorded.
-            const bool of_people = question.find("shift_log") != std::string::npos || question.find("command_wait_log") != std::string::npos;
+            const bool of_people = question.find("shift_log") != std::string::npos ||
+                                   question.find("command_wait_log") != std::string::npos;
             CHECK(*row == !(of_people || question.find("r.octets <> u.octets") != std::string::npos));
         }
     }
     CHECK(questions >= 12);
 }
 
-TEST_CASE("a landing is reported as it was flown, each timepoint and event by plan, tone, UHF and recording, which agree",
-          "[cli][archive][R41][R43]") {
+TEST_CASE(
+    "a landing is reported as it was flown, each timepoint and event by plan, tone, UHF and recording, which agree",
+    "[cli][archive][R41][R43]") {
     if (program() == nullptr) return;
     const auto folder = std::filesystem::temp_directory_path() / ("aeolis-report-" + std::to_string(getpid()));
     std::filesystem::create_directories(folder);
@@ -339,9 +371,12 @@ TEST_CASE("a landing is reported as it was flown, each timepoint and event by pl
         INFO(row.name());
         CHECK(row.has_recorded_e_s());
         if (row.has_realtime_e_s()) CHECK(row.realtime_e_s() == row.recorded_e_s());
-        if (row.has_planned_e_s() && row.planned_e_s() > -900.0) CHECK(row.recorded_e_s() == Approx(row.planned_e_s()).margin(1.0));
-        // The design's landing, from the entry that the vehicle kept to: seconds off once drag and winds have had their say.
-        if (row.has_predicted_e_s()) CHECK(row.recorded_e_s() == Approx(row.predicted_e_s()).margin(row.has_planned_e_s() ? 1.0 : 15.0));
+        if (row.has_planned_e_s() && row.planned_e_s() > -900.0)
+            CHECK(row.recorded_e_s() == Approx(row.planned_e_s()).margin(1.0));
+        // The design's landing, from the entry that the vehicle kept to: seconds off once drag and winds have had their
+        // say.
+        if (row.has_predicted_e_s())
+            CHECK(row.recorded_e_s() == Approx(row.predicted_e_s()).margin(row.has_planned_e_s() ? 1.0 : 15.0));
         predicted += row.has_predicted_e_s() ? 1 : 0;
         if (row.has_tone_e_s()) CHECK(std::abs(row.tone_e_s() - row.recorded_e_s()) < 15.0);
         if (row.has_margin_s()) CHECK(row.margin_s() > -1.0 / 64.0);
@@ -354,28 +389,31 @@ TEST_CASE("a landing is reported as it was flown, each timepoint and event by pl
     double last_e_s = -1.0e9;
     for (const auto& event : report.events()) {
         INFO(event.name());
-        CHECK(events.emplace(event.name(), &event).second); // no name twice
+        CHECK(events.emplace(event.name(), &event).second);  // no name twice
         CHECK(event.has_recorded_e_s());
         if (event.has_realtime_e_s()) CHECK(event.realtime_e_s() == event.recorded_e_s());
         CHECK(event.recorded_e_s() >= last_e_s);
         CHECK_FALSE(event.text().empty());
         last_e_s = event.recorded_e_s();
     }
-    for (const char* name : {"guidance_start", "bank_reversal_1", "bank_reversal_2", "bank_reversal_3", "peak_deceleration", "heading_alignment", "sufr_start", "radar_lock",
-                             "powered_approach_start", "constant_velocity_start", "constant_deceleration_start", "sky_crane_start", "touchdown", "flyaway_end"}) {
+    for (const char* name :
+         {"guidance_start", "bank_reversal_1", "bank_reversal_2", "bank_reversal_3", "peak_deceleration",
+          "heading_alignment", "sufr_start", "radar_lock", "powered_approach_start", "constant_velocity_start",
+          "constant_deceleration_start", "sky_crane_start", "touchdown", "flyaway_end"}) {
         INFO(name);
         REQUIRE(events.contains(name));
         CHECK_THAT(printed.text, Catch::Contains(std::string{"\n"} + name + " "));
     }
-    CHECK(events.count("parachute_deploy") == 1); // GNC's word; the timepoint of that name reports nothing itself
-    CHECK(events.count("bridle_cut") == 0);       // the timepoint's own
+    CHECK(events.count("parachute_deploy") == 1);  // GNC's word; the timepoint of that name reports nothing itself
+    CHECK(events.count("bridle_cut") == 0);        // the timepoint's own
     CHECK(events.at("touchdown")->predicted_e_s() == 431.47);
     CHECK(std::abs(events.at("touchdown")->recorded_e_s() - 431.47) < 15.0);
     const auto csv = run(program(), "report --csv --run 1 --archive " + archive).text;
-    CHECK_THAT(csv, Catch::StartsWith("of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,tone,verdict,text\ntimepoint,") &&
+    CHECK_THAT(csv, Catch::StartsWith("of,name,planned_e_s,predicted_e_s,tone_e_s,realtime_e_s,recorded_e_s,margin_s,"
+                                      "tone,verdict,text\ntimepoint,") &&
                         Catch::Contains("\nevent,touchdown,,431.470000,"));
     CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + report.timepoints_size() + report.events_size());
-    CHECK(predicted >= report.timepoints_size() - 1); // not the first: it counts from "do edl"
+    CHECK(predicted >= report.timepoints_size() - 1);  // not the first: it counts from "do edl"
     CHECK(report.run().clock().version() == 1);
     CHECK(report.run().clock().scet() == "2012-219T05:10:47.400");
     CHECK_THAT(run(program(), "report --run 9 --archive " + archive).text, Catch::Contains("no run 9"));
@@ -396,7 +434,7 @@ TEST_CASE("the truth of a landing is written in even rows to where it stands", "
         CHECK(std::count(line.begin(), line.end(), ',') == 12);
         if (row > 0) CHECK(e_s - before_s == Approx(1.0 / 16.0).margin(1e-5));
     }
-    CHECK(altitude_m < 1000.0); // the stage, on its way off
+    CHECK(altitude_m < 1000.0);  // the stage, on its way off
     std::filesystem::remove(file);
 }
 
@@ -410,7 +448,8 @@ TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli
              {"rehearse --scenario no_such", "no_such"},
              {"entry reference --scenario no_such", "no_such"},
              {"rehearse --scenario gnc_alone --truth /nope/truth.csv", "/nope/truth.csv"},
-             {"rehearse --scenario " AEOLIS_SOURCE_DIR "/simulation/scenarios/od137.textproto --truth " AEOLIS_SOURCE_DIR
+             {"rehearse --scenario " AEOLIS_SOURCE_DIR
+              "/simulation/scenarios/od137.textproto --truth " AEOLIS_SOURCE_DIR
               "/simulation/scenarios/../scenarios/od137.textproto",
               "would be overwritten"},
              {"rehearse --scenario nominal_auto --archive /dev/null", "/dev/null"},
@@ -428,7 +467,8 @@ TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli
     }
 }
 
-TEST_CASE("the program proves the shipped timeline, and shows what two versions differ in", "[cli][timeline][R19][R20]") {
+TEST_CASE("the program proves the shipped timeline, and shows what two versions differ in",
+          "[cli][timeline][R19][R20]") {
     if (program() == nullptr) return;
     const std::filesystem::path shipped = std::filesystem::path{AEOLIS_SOURCE_DIR} / "dictionaries/msl";
     const auto proven = run(program(), "timeline analyse '" + shipped.string() + "'");
@@ -453,7 +493,8 @@ TEST_CASE("the program proves the shipped timeline, and shows what two versions 
 }
 
 // Times count for the program as it is built to be used, not for one that sanitizers watch.
-TEST_CASE("in the venue performance a whole landing keeps every budget of time and stack", "[.long][cli][R8][R36][R37]") {
+TEST_CASE("in the venue performance a whole landing keeps every budget of time and stack",
+          "[.long][cli][R8][R36][R37]") {
     if (program() == nullptr) return;
     const auto ended = run(program(), "rehearse --scenario performance --seed 1 --json");
     INFO(ended.text);
@@ -471,7 +512,8 @@ TEST_CASE("in the venue performance a whole landing keeps every budget of time a
     }
 }
 
-TEST_CASE("decode prints a row a packet of our own, whatever carried it, and says what it could not decode", "[cli][decode]") {
+TEST_CASE("decode prints a row a packet of our own, whatever carried it, and says what it could not decode",
+          "[cli][decode]") {
     using namespace aeolis;
     if (program() == nullptr) return;
     const auto directory = std::filesystem::temp_directory_path() / ("aeolis_decode_" + std::to_string(getpid()));
@@ -496,18 +538,21 @@ TEST_CASE("decode prints a row a packet of our own, whatever carried it, and say
         CHECK_THAT(ended.text, Catch::Contains("index,apid,count,time,values\n0,16,7,397501174.5,packet_version=0|0,"));
         CHECK_THAT(ended.text, Catch::Contains(",sclk_coarse=397501174|397501174,"));
     }
-    const auto write_text = [&](const char* name, const std::string& text) { return write(name, {text.begin(), text.end()}); };
+    const auto write_text = [&](const char* name, const std::string& text) {
+        return write(name, {text.begin(), text.end()});
+    };
     const std::string leaps = write_text("leaps.tls", tests::leap_second_kernel);
     const std::string clock = write_text("clock.tsc", "\\begindata\n" + tests::landing_clock);
     const auto timed = run(program(), xtce + bare + " --lsk " + leaps + " --sclk " + clock);
     INFO(timed.text);
     CHECK(timed.code == 0);
     CHECK_THAT(timed.text, Catch::Contains("0,16,7,2012-219T05:10:47.900,packet_version"));
-    for (const auto& [arguments, says] : {std::pair{" --sclk " + clock, std::string{"--sclk requires --lsk"}},
-                                          {" --lsk " + clock, "clock.tsc: it says no DELTET/DELTA_T_A"},
-                                          {" --lsk " + leaps + " --sclk " + leaps, "leaps.tls: it says no SCLK_DATA_TYPE_"},
-                                          {" --lsk " + bare, "bare:1: it has no line \\begindata"},
-                                          {" --lsk " + leaps + " --sclk " + clock + " --partition 2", "--partition 2: "}}) {
+    for (const auto& [arguments, says] :
+         {std::pair{" --sclk " + clock, std::string{"--sclk requires --lsk"}},
+          {" --lsk " + clock, "clock.tsc: it says no DELTET/DELTA_T_A"},
+          {" --lsk " + leaps + " --sclk " + leaps, "leaps.tls: it says no SCLK_DATA_TYPE_"},
+          {" --lsk " + bare, "bare:1: it has no line \\begindata"},
+          {" --lsk " + leaps + " --sclk " + clock + " --partition 2", "--partition 2: "}}) {
         const auto ended = run(program(), xtce + bare + arguments);
         INFO(arguments << ": " << ended.text);
         CHECK(ended.code == 2);
@@ -520,16 +565,20 @@ TEST_CASE("decode prints a row a packet of our own, whatever carried it, and say
     std::filesystem::remove_all(directory);
 }
 
-TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them", "[cli][tones][R31]") {
+TEST_CASE("a landing's samples and their predict are made together, and decode reads the tones out of them",
+          "[cli][tones][R31]") {
     if (program() == nullptr) return;
     const auto directory = std::filesystem::temp_directory_path() / ("aeolis_tones_cli_" + std::to_string(getpid()));
     std::filesystem::create_directories(directory);
-    const std::string samples = " '" + (directory / "s.cf32").string() + "' ", predict = " '" + (directory / "p.csv").string() + "' ";
-    const std::string simulate = "tones simulate --scenario nominal_auto --case 3 --from 60 --length 70 --out" + samples;
+    const std::string samples = " '" + (directory / "s.cf32").string() + "' ",
+                      predict = " '" + (directory / "p.csv").string() + "' ";
+    const std::string simulate =
+        "tones simulate --scenario nominal_auto --case 3 --from 60 --length 70 --out" + samples;
     const auto made = run(program(), simulate + "--predict-out" + predict);
     INFO(made.text);
     REQUIRE(made.code == 0);
-    const auto decoded = run(program(), "tones decode --rate 16384 --format cf32 --start 60 --json --samples" + samples + "--predict" + predict);
+    const auto decoded = run(program(), "tones decode --rate 16384 --format cf32 --start 60 --json --samples" +
+                                            samples + "--predict" + predict);
     INFO(decoded.text);
     CHECK(decoded.code == 0);
     int symbols = 0;
@@ -538,11 +587,11 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
         google::protobuf::Struct symbol;
         REQUIRE(aeolis::server::from_json(line, symbol));
         CHECK(symbol.fields().at("tone").has_number_value());
-        CHECK(std::abs(symbol.fields().at("doppler_hz").number_value()) > 100e3); // the predict is put back
+        CHECK(std::abs(symbol.fields().at("doppler_hz").number_value()) > 100e3);  // the predict is put back
         CHECK(symbol.fields().at("spectrum_db").list_value().values_size() == 128);
     }
     CHECK(symbols >= 3);
     CHECK(run(program(), simulate + "--predict-out" + predict + "--predict" + predict).code == 2);
-    CHECK(run(program(), simulate).code == 2); // some hundreds of kilohertz are outside of the samples
+    CHECK(run(program(), simulate).code == 2);  // some hundreds of kilohertz are outside of the samples
     std::filesystem::remove_all(directory);
 }

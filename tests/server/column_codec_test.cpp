@@ -35,20 +35,28 @@ bool survives(const Column& column) {
 template <typename Make>
 Column column_of(std::size_t samples, Make make) {
     Column column(samples);
-    for (std::size_t i = 0; i < samples; ++i)
-        column[i] = make(i);
+    for (std::size_t i = 0; i < samples; ++i) column[i] = make(i);
     return column;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a packed column keeps every bit of its samples, whatever they are", "[archive][codec]") {
     std::mt19937_64 random(20);
     const auto samples = static_cast<std::size_t>(GENERATE(0, 1, 2, 3, 7, 1023, 1024));
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-    const std::array odd{0.0, -0.0, nan, -nan, infinity, -infinity, std::bit_cast<double>(0x7FF0000000000001ULL),
-                         std::bit_cast<double>(0xFFFFFFFFFFFFFFFFULL), std::numeric_limits<double>::denorm_min(),
-                         std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest(), 1.0};
+    const std::array odd{0.0,
+                         -0.0,
+                         nan,
+                         -nan,
+                         infinity,
+                         -infinity,
+                         std::bit_cast<double>(0x7FF0000000000001ULL),
+                         std::bit_cast<double>(0xFFFFFFFFFFFFFFFFULL),
+                         std::numeric_limits<double>::denorm_min(),
+                         std::numeric_limits<double>::max(),
+                         std::numeric_limits<double>::lowest(),
+                         1.0};
     CHECK(survives(column_of(samples, [](std::size_t) { return 0.0; })));
     CHECK(survives(column_of(samples, [](std::size_t) { return -3.25; })));
     CHECK(survives(column_of(samples, [&](std::size_t) { return nan; })));
@@ -64,16 +72,15 @@ TEST_CASE("a packed column keeps every bit of its samples, whatever they are", "
     CHECK(survives(column_of(samples, [](std::size_t i) { return i % 2 == 0 ? 1e300 : -1e-300; })));
     CHECK(survives(column_of(samples, [](std::size_t i) { return std::bit_cast<double>(1ULL << (i % 64)); })));
     // One bit somewhere in a column of zeros.
-    CHECK(survives(column_of(samples, [&](std::size_t i) {
-        return i == samples / 2 ? std::bit_cast<double>(1ULL << 63U) : 0.0;
-    })));
+    CHECK(survives(column_of(
+        samples, [&](std::size_t i) { return i == samples / 2 ? std::bit_cast<double>(1ULL << 63U) : 0.0; })));
 }
 
 TEST_CASE("columns of random shape keep every bit", "[archive][codec]") {
     std::mt19937_64 random(4711);
     for (int round = 0; round < 300; ++round) {
         Column column(random() % 1100);
-        const std::uint64_t mask = ~0ULL << (random() % 64); // as of numbers with few bits
+        const std::uint64_t mask = ~0ULL << (random() % 64);  // as of numbers with few bits
         const auto jump = random() % 50;
         std::uint64_t word = random(), step = random() & mask;
         for (double& value : column) {
@@ -86,22 +93,32 @@ TEST_CASE("columns of random shape keep every bit", "[archive][codec]") {
     }
 }
 
-TEST_CASE("a constant and a regular clock take some twenty octets, a smooth float under three a sample", "[archive][codec]") {
+TEST_CASE("a constant and a regular clock take some twenty octets, a smooth float under three a sample",
+          "[archive][codec]") {
     ColumnCodec codec;
     CHECK(codec.pack(Column(1024, 42.5)).size() <= 16);
     CHECK(codec.pack(Column(1024, std::numeric_limits<double>::quiet_NaN())).size() <= 16);
-    CHECK(codec.pack(column_of(1024, [](std::size_t i) { return 1000.0 + static_cast<double>(i) / 64.0; })).size() <= 48);
-    CHECK(codec.pack(column_of(1024, [](std::size_t i) {
-              return static_cast<double>(static_cast<float>(3000.0 * std::sin(static_cast<double>(i) * 1e-3)));
-          })).size() < 3 * 1024);
+    CHECK(codec.pack(column_of(1024, [](std::size_t i) { return 1000.0 + static_cast<double>(i) / 64.0; })).size() <=
+          48);
+    CHECK(codec
+              .pack(column_of(1024,
+                              [](std::size_t i) {
+                                  return static_cast<double>(
+                                      static_cast<float>(3000.0 * std::sin(static_cast<double>(i) * 1e-3)));
+                              }))
+              .size() < 3 * 1024);
 }
 
-TEST_CASE("any octet of a packed column that is changed, lost or added is found, and never read past", "[archive][codec]") {
+TEST_CASE("any octet of a packed column that is changed, lost or added is found, and never read past",
+          "[archive][codec]") {
     std::mt19937_64 random(7);
     ColumnCodec codec;
-    const std::array columns{column_of(200, [&](std::size_t) { return std::bit_cast<double>(random()); }),
-                             column_of(200, [](std::size_t i) { return static_cast<double>(static_cast<float>(std::sin(static_cast<double>(i)))); }),
-                             column_of(200, [](std::size_t i) { return static_cast<double>(i) / 64.0; }), Column(200, 1.5)};
+    const std::array columns{
+        column_of(200, [&](std::size_t) { return std::bit_cast<double>(random()); }),
+        column_of(
+            200,
+            [](std::size_t i) { return static_cast<double>(static_cast<float>(std::sin(static_cast<double>(i)))); }),
+        column_of(200, [](std::size_t i) { return static_cast<double>(i) / 64.0; }), Column(200, 1.5)};
     for (const auto& column : columns) {
         const Octets good = packed(codec, column);
         Column back(column.size());
@@ -120,9 +137,10 @@ TEST_CASE("any octet of a packed column that is changed, lost or added is found,
         Octets longer = good;
         longer.push_back(0);
         CHECK_FALSE(codec.unpack(longer, back).ok());
-        for (const std::size_t wrong : {std::size_t{0}, std::size_t{1}, std::size_t{199}, std::size_t{201}, std::size_t{5000}}) {
+        for (const std::size_t wrong :
+             {std::size_t{0}, std::size_t{1}, std::size_t{199}, std::size_t{201}, std::size_t{5000}}) {
             Column other(wrong);
-            if (good[2] != 0) CHECK_FALSE(codec.unpack(good, other).ok()); // a constant knows no number
+            if (good[2] != 0) CHECK_FALSE(codec.unpack(good, other).ok());  // a constant knows no number
         }
     }
 }
@@ -133,8 +151,7 @@ TEST_CASE("octets that were never a packed column are refused", "[archive][codec
     Column back(64);
     for (int round = 0; round < 3000; ++round) {
         Octets octets(random() % 64);
-        for (auto& octet : octets)
-            octet = static_cast<std::uint8_t>(random() % (round % 2 == 0 ? 3 : 256));
+        for (auto& octet : octets) octet = static_cast<std::uint8_t>(random() % (round % 2 == 0 ? 3 : 256));
         const bool ok = codec.unpack(octets, back).ok();
         // A head of 16 bits of checksum may be met by chance; these seeds do not.
         REQUIRE_FALSE(ok);

@@ -80,13 +80,13 @@ std::vector<std::uint8_t> packet_of(const std::string& name,
     for (const auto& field : packet->fields)
         for (const auto& [wanted, value] : values)
             if (field.name == wanted) put(field, value);
-    if (packet->event) // the event's id stands first behind the secondary header
+    if (packet->event)  // the event's id stands first behind the secondary header
         BitWriter{std::span{octets}.subspan(tm_data_offset_octets)}.put(packet->event->value, 16);
     seal_tm_packet(octets, packet->apid, 0, Sclk{397500600.0}, dictionary.id);
     return octets;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the gateway refuses what must not be sent, with the reason", "[gateway][R44]") {
     Station station;
@@ -136,7 +136,7 @@ TEST_CASE("parameters come from ground's solution and leave the station as one p
     for (const char* stage : {"received", "accepted", "executed", "verified"}) {
         INFO(stage);
         REQUIRE(station.latest(stage) != nullptr);
-        CHECK(station.latest(stage)->status == "pending"); // nothing is green by default
+        CHECK(station.latest(stage)->status == "pending");  // nothing is green by default
     }
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("a stage is reached by the event that shows it, for that command only"
     REQUIRE(station.latest("accepted") != nullptr);
     CHECK(station.latest("accepted")->status == "ok");
     CHECK(station.latest("accepted")->command == 2);
-    CHECK(station.latest("received")->status == "ok"); // inferred, and says so
+    CHECK(station.latest("received")->status == "ok");  // inferred, and says so
     CHECK(std::ranges::none_of(station.stages, [](const auto& stage) { return stage.command == 1; }));
 }
 
@@ -167,7 +167,7 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     }
     SECTION("known") {
         Station station;
-        station.gateway.receive(packet_of("EdlStatus", {}), true, now, station.stages); // no parameters on board
+        station.gateway.receive(packet_of("EdlStatus", {}), true, now, station.stages);  // no parameters on board
         CHECK_THAT(station.refusal(go), Catch::Contains("parameters_received"));
     }
     SECTION("known from the recording only: that is the past") {
@@ -177,7 +177,8 @@ TEST_CASE("a precondition that is known not to hold refuses, with the value; wha
     }
 }
 
-TEST_CASE("do edl wants the parameters on board to be those that were sent: other ones refuse it, equal ones let it go", "[gateway][R23][R44]") {
+TEST_CASE("do edl wants the parameters on board to be those that were sent: other ones refuse it, equal ones let it go",
+          "[gateway][R23][R44]") {
     Station station;
     auto parameters = request("EDL_SET_PARAMETERS");
     parameters.set_from_solution(true);
@@ -197,11 +198,16 @@ TEST_CASE("do edl wants the parameters on board to be those that were sent: othe
             if (each.text().starts_with("EDL_SET_PARAMETERS held as sent")) text = each.state() + ": " + each.text();
         return std::pair{reply.accepted(), text};
     };
-    CHECK(said() == std::pair{true, std::string{"unknown: EDL_SET_PARAMETERS held as sent (command 1): not read back yet"}}); // left to flight
+    CHECK(said() ==
+          std::pair{true,
+                    std::string{
+                        "unknown: EDL_SET_PARAMETERS held as sent (command 1): not read back yet"}});  // left to flight
 
-    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
-    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
-    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages); // all zero: not what was sent
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now,
+                            station.stages);
+    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now,
+                            station.stages);
+    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages);  // all zero: not what was sent
     REQUIRE(station.latest("verified") != nullptr);
     REQUIRE(station.latest("verified")->status == "failed");
     const auto [sent, why] = said();
@@ -209,7 +215,8 @@ TEST_CASE("do edl wants the parameters on board to be those that were sent: othe
     CHECK(why == "fails: EDL_SET_PARAMETERS held as sent (command 1): the vehicle reports other values");
 }
 
-TEST_CASE("parameters that were sent anew are waited for: the vehicle may still hold the ones before", "[gateway][R23][R44]") {
+TEST_CASE("parameters that were sent anew are waited for: the vehicle may still hold the ones before",
+          "[gateway][R23][R44]") {
     Station station;
     auto parameters = request("EDL_SET_PARAMETERS");
     parameters.set_from_solution(true);
@@ -220,10 +227,13 @@ TEST_CASE("parameters that were sent anew are waited for: the vehicle may still 
     auto go = request("EDL_DO_EDL");
     go.set_armed(true);
     go.set_confirmation("EDL_DO_EDL");
-    CHECK_THAT(station.send(go).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet, wait for it"));
+    CHECK_THAT(
+        station.send(go).reason(),
+        Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet, wait for it"));
 }
 
-TEST_CASE("parameters that were refused on board leave what is known of those before as it was", "[gateway][R23][R44]") {
+TEST_CASE("parameters that were refused on board leave what is known of those before as it was",
+          "[gateway][R23][R44]") {
     Station station;
     const auto& command = *tests::shipped_dictionary().command("EDL_SET_PARAMETERS");
     const auto* report = commands::read_back_packet(tests::shipped_dictionary(), command);
@@ -232,9 +242,11 @@ TEST_CASE("parameters that were refused on board leave what is known of those be
     parameters.set_from_solution(true);
     REQUIRE(station.send(parameters).accepted());
     (void)station.radiated();
-    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
-    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now, station.stages);
-    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages); // all zero: not what was sent
+    station.gateway.receive(packet_of("COMMAND_ACCEPTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now,
+                            station.stages);
+    station.gateway.receive(packet_of("COMMAND_EXECUTED", {{"opcode", command.opcode.value}, {"count", 0}}), true, now,
+                            station.stages);
+    station.gateway.receive(packet_of(report->name, {}), true, now, station.stages);  // all zero: not what was sent
     REQUIRE(station.latest("verified")->status == "failed");
     REQUIRE(station.send(parameters).accepted());
     (void)station.radiated();
@@ -242,11 +254,15 @@ TEST_CASE("parameters that were refused on board leave what is known of those be
     go.set_armed(true);
     go.set_confirmation("EDL_DO_EDL");
     REQUIRE_THAT(station.send(go).reason(), Catch::Contains("(command 2): sent anew"));
-    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", command.opcode.value}, {"count", 1}}), true, now, station.stages);
-    CHECK_THAT(station.send(go).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 1): the vehicle reports other values"));
+    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", command.opcode.value}, {"count", 1}}), true, now,
+                            station.stages);
+    CHECK_THAT(station.send(go).reason(),
+               Catch::Contains("EDL_SET_PARAMETERS held as sent (command 1): the vehicle reports other values"));
 }
 
-TEST_CASE("a file is looked at as it would go: what a command before does to one behind is known before the first leaves", "[gateway][R23][R44]") {
+TEST_CASE(
+    "a file is looked at as it would go: what a command before does to one behind is known before the first leaves",
+    "[gateway][R23][R44]") {
     Station station;
     auto parameters = request("EDL_SET_PARAMETERS");
     parameters.set_from_solution(true);
@@ -255,13 +271,14 @@ TEST_CASE("a file is looked at as it would go: what a command before does to one
     go.set_confirmation("EDL_DO_EDL");
     const std::vector file{parameters, go};
     const auto first = station.gateway.look(file, now);
-    CHECK(first.at(1).accepted()); // of the first that is sent flight itself says whether it has it
+    CHECK(first.at(1).accepted());  // of the first that is sent flight itself says whether it has it
     REQUIRE(station.send(parameters).accepted());
     (void)station.radiated();
     const auto again = station.gateway.look(file, now);
     CHECK(again.at(0).accepted());
-    CHECK_THAT(again.at(1).reason(), Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet"));
-    CHECK(station.send(go).accepted()); // looking changed nothing
+    CHECK_THAT(again.at(1).reason(),
+               Catch::Contains("EDL_SET_PARAMETERS held as sent (command 2): sent anew and not read back yet"));
+    CHECK(station.send(go).accepted());  // looking changed nothing
 }
 
 TEST_CASE("do edl is left to flight when the parameters were not read back in their time", "[gateway][R23][R44]") {
@@ -277,7 +294,8 @@ TEST_CASE("do edl is left to flight when the parameters were not read back in th
     go.set_confirmation("EDL_DO_EDL");
     const auto reply = station.send(go);
     CHECK(reply.accepted());
-    CHECK(reply.preconditions(reply.preconditions_size() - 1).text() == "EDL_SET_PARAMETERS held as sent (command 1): not read back in its time");
+    CHECK(reply.preconditions(reply.preconditions_size() - 1).text() ==
+          "EDL_SET_PARAMETERS held as sent (command 1): not read back in its time");
 }
 
 TEST_CASE("a run has room for so many commands, and says how many it had", "[gateway][bounds]") {
@@ -286,7 +304,9 @@ TEST_CASE("a run has room for so many commands, and says how many it had", "[gat
         auto held = request("NO_OP");
         held.set_hold(true);
         REQUIRE(station.send(held).accepted());
-        if (i == 0) CHECK(station.gateway.takes(CommandGateway::commands_max).error().message == "this run has had 1 of its 4096 commands");
+        if (i == 0)
+            CHECK(station.gateway.takes(CommandGateway::commands_max).error().message ==
+                  "this run has had 1 of its 4096 commands");
     }
     CHECK(station.gateway.queued() == CommandGateway::commands_max);
     CHECK(station.send(request("NO_OP")).reason() == "this run has had its 4096 commands");
@@ -319,15 +339,17 @@ TEST_CASE("a frame that the vehicle misses is radiated again, and the history sa
     report(false, 2, Ert{now.microseconds + 15'000'000});
     CHECK(station.latest("received")->status == "ok");
     CHECK_THAT(station.latest("received")->evidence, Catch::Contains("CLCW"));
-    CHECK(station.latest("accepted")->status == "pending"); // a frame taken is no command accepted
+    CHECK(station.latest("accepted")->status == "pending");  // a frame taken is no command accepted
 }
 
-TEST_CASE("a frame that either computer reports is received: the backup's report counts when prime is silent", "[gateway][R33][R44]") {
+TEST_CASE("a frame that either computer reports is received: the backup's report counts when prime is silent",
+          "[gateway][R33][R44]") {
     Station station;
     const auto report = [&](std::uint8_t expected, Ert at) {
         std::array<std::uint8_t, clcw_octets> clcw{};
         write_clcw({.expected = expected}, clcw);
-        station.gateway.receive(packet_of("CommStatusB", {{"clcw_b", read_bits(clcw, 0, 32)}}), true, at, station.stages);
+        station.gateway.receive(packet_of("CommStatusB", {{"clcw_b", read_bits(clcw, 0, 32)}}), true, at,
+                                station.stages);
     };
     report(0, now);
     REQUIRE(station.send(request("NO_OP")).accepted());
@@ -335,7 +357,8 @@ TEST_CASE("a frame that either computer reports is received: the backup's report
     CHECK(station.latest("received")->status == "ok");
 }
 
-TEST_CASE("a vehicle that is not heard gets the expedited service, unless the controller asks otherwise", "[gateway][R44]") {
+TEST_CASE("a vehicle that is not heard gets the expedited service, unless the controller asks otherwise",
+          "[gateway][R44]") {
     Station station;
     REQUIRE(station.send(request("NO_OP")).accepted());
     CHECK_THAT(station.latest("released")->evidence, Catch::Contains("expedited (BD)"));
@@ -347,7 +370,8 @@ TEST_CASE("a vehicle that is not heard gets the expedited service, unless the co
     CHECK_THAT(station.send(asked).reason(), Catch::Contains("unknown service 'XY'"));
 }
 
-TEST_CASE("a dry run says what would happen, with every check and its values, and leaves all as it is", "[gateway][R44]") {
+TEST_CASE("a dry run says what would happen, with every check and its values, and leaves all as it is",
+          "[gateway][R44]") {
     Station station;
     auto asked = request("EDL_SET_PARAMETERS");
     asked.set_from_solution(true);
@@ -374,7 +398,8 @@ TEST_CASE("a dry run says what would happen, with every check and its values, an
     CHECK_FALSE(refused.accepted());
     CHECK_THAT(refused.reason(), Catch::Contains("armed"));
     // The dictionary's, and ground's own: that the parameters that have been sent are held.
-    CHECK(refused.preconditions_size() == static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()) + 1);
+    CHECK(refused.preconditions_size() ==
+          static_cast<int>(tests::shipped_dictionary().command("EDL_DO_EDL")->preconditions.size()) + 1);
 }
 
 TEST_CASE("where two persons are wanted a command leaves when another than who asked has approved it, and not before",
@@ -399,7 +424,7 @@ TEST_CASE("where two persons are wanted a command leaves when another than who a
     };
     CHECK_THAT(act("approve", " ann "), Catch::Contains("another controller must approve it"));
     CHECK_THAT(act("approve", ""), Catch::Contains("say who approves it"));
-    CHECK(act("release", "Ben").empty()); // of a hold that it has not: the approval is still wanted
+    CHECK(act("release", "Ben").empty());  // of a hold that it has not: the approval is still wanted
     CHECK(station.gateway.take_uplinks().empty());
     CHECK(act("approve", "Ben").empty());
     CHECK(station.gateway.take_uplinks().size() == 1);
@@ -413,7 +438,8 @@ TEST_CASE("where two persons are wanted a command leaves when another than who a
     CHECK_THAT(station.send(other).reason(), Catch::Contains("at most 64"));
 }
 
-TEST_CASE("without accounts the second person is one at another browser, whatever name is typed at the first", "[gateway][R23][R44]") {
+TEST_CASE("without accounts the second person is one at another browser, whatever name is typed at the first",
+          "[gateway][R23][R44]") {
     Station station{.second_person = {"NO_OP"}};
     auto asked = request("NO_OP");
     asked.set_controller("Ann");
@@ -427,7 +453,8 @@ TEST_CASE("without accounts the second person is one at another browser, whateve
         wanted.set_browser(browser);
         return station.send(wanted).reason();
     };
-    CHECK_THAT(approve("Ben", "b1"), Catch::Contains("asked for, as Ann, from where it would now be approved") && Catch::Contains("a browser of their own"));
+    CHECK_THAT(approve("Ben", "b1"), Catch::Contains("asked for, as Ann, from where it would now be approved") &&
+                                         Catch::Contains("a browser of their own"));
     CHECK_THAT(approve("Ann", "b2"), Catch::Contains("another controller must approve it"));
     CHECK(station.gateway.take_uplinks().empty());
     CHECK(approve("Ben", "b2").empty());
@@ -442,11 +469,13 @@ TEST_CASE("what a command of the scenario's script is refused for is its history
     CHECK(station.stages.front().command == 1);
     CHECK(station.stages.front().stage == "queued");
     CHECK(station.stages.front().status == "failed");
-    CHECK_THAT(station.stages.front().evidence, Catch::Contains("the scenario's script") && Catch::Contains("no station sees the vehicle"));
+    CHECK_THAT(station.stages.front().evidence,
+               Catch::Contains("the scenario's script") && Catch::Contains("no station sees the vehicle"));
     CHECK_THAT(station.stages.front().arguments, Catch::Contains("entry_sclk=397501715"));
-    CHECK(std::ranges::all_of(station.stages, [](const auto& stage) { return stage.status == "failed" && stage.command == 1; }));
+    CHECK(std::ranges::all_of(station.stages,
+                              [](const auto& stage) { return stage.status == "failed" && stage.command == 1; }));
     CHECK(station.send(request("NO_OP")).command() == 2);
-    CHECK(station.gateway.take_uplinks().size() == 1); // of the second: the first never leaves
+    CHECK(station.gateway.take_uplinks().size() == 1);  // of the second: the first never leaves
 }
 
 namespace {
@@ -455,7 +484,8 @@ v1::CommandRequest offset_change() {
     const auto& timeline = tests::shipped_dictionary().timeline;
     auto change = request("EDL_SET_TIMEPOINT_OFFSET");
     for (const auto& [name, value] : std::initializer_list<std::pair<const char*, double>>{
-             {"timepoint", static_cast<double>(std::ranges::find(timeline, "detumble", &dictionary::TimelineRow::name) - timeline.begin())},
+             {"timepoint", static_cast<double>(std::ranges::find(timeline, "detumble", &dictionary::TimelineRow::name) -
+                                               timeline.begin())},
              {"desired_offset_s", -516.0},
              {"minimum_offset_s", 0.0}}) {
         auto& argument = *change.add_arguments();
@@ -465,16 +495,18 @@ v1::CommandRequest offset_change() {
     return change;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a change of the timeline leaves after those that it was analysed with; when one is cancelled, only once that is analysed anew", "[gateway][R19][R44]") {
+TEST_CASE("a change of the timeline leaves after those that it was analysed with; when one is cancelled, only once "
+          "that is analysed anew",
+          "[gateway][R19][R44]") {
     Station station;
     auto held = offset_change();
     held.set_hold(true);
     REQUIRE(station.send(held).command() == 1);
     REQUIRE(station.send(held).command() == 2);
     REQUIRE(station.send(held).command() == 3);
-    std::uint64_t undone = 0; // when it was analysed
+    std::uint64_t undone = 0;  // when it was analysed
     const auto act = [&](const char* action, std::uint64_t number, const std::string& words = {}) {
         v1::CommandRequest said;
         said.set_action(action);
@@ -483,24 +515,27 @@ TEST_CASE("a change of the timeline leaves after those that it was analysed with
         said.set_request(undone);
         return station.send(said).accepted();
     };
-    CHECK(act("release", 2)); // it stays behind the first, which is held
+    CHECK(act("release", 2));  // it stays behind the first, which is held
     CHECK(station.gateway.take_uplinks().empty());
-    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("after command 1, with which its timeline was analysed"));
-    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold")); // nobody doubts it
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("after command 1, with which its timeline was analysed"));
+    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold"));  // nobody doubts it
     CHECK(act("cancel", 1));
     CHECK(station.gateway.take_uplinks().empty());
-    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("does not leave before its timeline is looked at again"));
-    CHECK_FALSE(act(timeline_holds_action, 2, "all bounds hold")); // with the first: that analysis began before it was cancelled
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("does not leave before its timeline is looked at again"));
+    CHECK_FALSE(act(timeline_holds_action, 2,
+                    "all bounds hold"));  // with the first: that analysis began before it was cancelled
     undone = 1;
     CHECK(act(timeline_holds_action, 2, "all bounds hold"));
     CHECK(station.gateway.take_uplinks().size() == 1);
     CHECK(act("release", 3));
-    CHECK(station.gateway.take_uplinks().empty()); // of it nothing has been said yet
+    CHECK(station.gateway.take_uplinks().empty());  // of it nothing has been said yet
     CHECK(act(timeline_refuted_action, 3, "it breaks one"));
     CHECK(station.latest("released")->status == "failed");
     CHECK_THAT(station.latest("released")->evidence, Catch::Contains("has changed: it breaks one"));
     undone = 2;
-    CHECK_FALSE(act(timeline_holds_action, 3, "all bounds hold")); // it waits no more
+    CHECK_FALSE(act(timeline_holds_action, 3, "all bounds hold"));  // it waits no more
     CHECK(station.gateway.take_uplinks().empty());
 }
 
@@ -510,23 +545,26 @@ TEST_CASE("a reply says until when a command is of use, and what it comes too la
     std::vector<archive::StageRecord> stages;
     auto asked = request("NO_OP");
     asked.set_dry_run(true);
-    const auto reply = gateway.submit(asked, now, stages); // there at E-172 s
+    const auto reply = gateway.submit(asked, now, stages);  // there at E-172 s
     REQUIRE(reply.accepted());
     CHECK(reply.leaves() == day_of_year_text(now));
     CHECK_FALSE(reply.useful_before().empty());
     const auto latest = ert_from_day_of_year(reply.latest_useful());
     REQUIRE(latest);
     CHECK(*latest > now);
-    CHECK(std::ranges::find(reply.too_late_for(), "coolant_vent") != reply.too_late_for().end()); // E-826 s
+    CHECK(std::ranges::find(reply.too_late_for(), "coolant_vent") != reply.too_late_for().end());  // E-826 s
     CHECK(std::ranges::find(reply.too_late_for(), reply.useful_before()) == reply.too_late_for().end());
     asked.set_dry_run(false);
     const auto taken = gateway.submit(asked, now, stages);
     CHECK(taken.latest_useful() == reply.latest_useful());
 }
 
-TEST_CASE("a command with a time leaves then, a held one when it is released, a cancelled one never", "[gateway][R44]") {
+TEST_CASE("a command with a time leaves then, a held one when it is released, a cancelled one never",
+          "[gateway][R44]") {
     Station station;
-    const auto later = [](double seconds) { return Ert{now.microseconds + static_cast<std::int64_t>(seconds * 1.0e6)}; };
+    const auto later = [](double seconds) {
+        return Ert{now.microseconds + static_cast<std::int64_t>(seconds * 1.0e6)};
+    };
     const auto act = [&](std::uint64_t number, const std::string& action) {
         v1::CommandRequest asked;
         asked.set_action(action);
@@ -581,9 +619,10 @@ commands::TrackingSchedule with_a_gap() {
     return commands::TrackingSchedule{{{"DSS-43", now, in_s(60.0)}, {"DSS-34", in_s(120.0), in_s(180.0)}}};
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("an uplink says by which station it goes, and one for a time at which none sees the vehicle is refused", "[gateway][tracking][R44]") {
+TEST_CASE("an uplink says by which station it goes, and one for a time at which none sees the vehicle is refused",
+          "[gateway][tracking][R44]") {
     Station station{.passes = with_a_gap()};
     auto asked = request("NO_OP");
     asked.set_dry_run(true);
@@ -593,13 +632,14 @@ TEST_CASE("an uplink says by which station it goes, and one for a time at which 
     CHECK(station.send(asked).station() == "DSS-34");
     asked.set_release_at(day_of_year_text(in_s(90.0)));
     const auto refused = [](const std::string& reason) {
-        CHECK_THAT(reason, Catch::Contains("no station sees the vehicle at " + day_of_year_text(in_s(90.0))) && Catch::Contains("DSS-43, ended") &&
+        CHECK_THAT(reason, Catch::Contains("no station sees the vehicle at " + day_of_year_text(in_s(90.0))) &&
+                               Catch::Contains("DSS-43, ended") &&
                                Catch::Contains("the next, of DSS-34, is " + day_of_year_text(in_s(120.0))));
     };
     refused(station.send(asked).reason());
     asked.set_dry_run(false);
     refused(station.refusal(asked));
-    asked.set_hold(true); // held, yet with that time
+    asked.set_hold(true);  // held, yet with that time
     refused(station.refusal(asked));
 
     REQUIRE(station.send(request("NO_OP")).station() == "DSS-43");
@@ -609,7 +649,8 @@ TEST_CASE("an uplink says by which station it goes, and one for a time at which 
     CHECK_THAT(late.reason(), Catch::Contains("no station sees the vehicle"));
 }
 
-TEST_CASE("what waits past a pass is held until the next one begins, or told that none comes", "[gateway][tracking][R44]") {
+TEST_CASE("what waits past a pass is held until the next one begins, or told that none comes",
+          "[gateway][tracking][R44]") {
     Station station{.second_person = {"NO_OP"}, .passes = with_a_gap()};
     auto asked = request("NO_OP");
     asked.set_controller("Ann");
@@ -624,13 +665,15 @@ TEST_CASE("what waits past a pass is held until the next one begins, or told tha
     };
     const auto in_the_gap = approve(1, in_s(90.0));
     CHECK(in_the_gap.accepted());
-    CHECK(in_the_gap.station() == "DSS-34"); // by which it leaves, and what follows from when
+    CHECK(in_the_gap.station() == "DSS-34");  // by which it leaves, and what follows from when
     CHECK(in_the_gap.station_until() == day_of_year_text(in_s(180.0)));
     CHECK(in_the_gap.arrives() == day_of_year_text(in_s(120.0)));
     CHECK(in_the_gap.effect_seen() == day_of_year_text(in_s(120.0)));
     CHECK(station.gateway.take_uplinks().empty());
-    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
-    CHECK(std::ranges::none_of(station.stages, [](const auto& stage) { return stage.evidence == "then leaves at once"; }));
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
+    CHECK(std::ranges::none_of(station.stages,
+                               [](const auto& stage) { return stage.evidence == "then leaves at once"; }));
     station.gateway.pass(in_s(119.0), station.stages);
     CHECK(station.gateway.take_uplinks().empty());
     station.gateway.pass(in_s(120.0), station.stages);
@@ -640,16 +683,20 @@ TEST_CASE("what waits past a pass is held until the next one begins, or told tha
     const char* const none_comes = "none comes after it";
     const auto too_late = approve(2, in_s(180.0));
     CHECK_FALSE(too_late.accepted());
-    CHECK_THAT(too_late.reason(), Catch::Contains("command 2 can no longer leave") && Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
-    station.gateway.pass(in_s(180.5), station.stages); // nobody can approve it any more: it is not left to wait
+    CHECK_THAT(too_late.reason(), Catch::Contains("command 2 can no longer leave") &&
+                                      Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
+    station.gateway.pass(in_s(180.5), station.stages);  // nobody can approve it any more: it is not left to wait
     CHECK(station.gateway.take_uplinks().empty());
     CHECK(station.latest("released")->status == "failed");
     CHECK(station.latest("released")->command == 2);
-    CHECK_THAT(approve(2, in_s(181.0)).reason(), Catch::Contains("command 2 does not wait") && Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
-    CHECK_THAT(station.latest("released")->evidence, Catch::Contains("DSS-34, ended") && Catch::Contains("none comes after it"));
+    CHECK_THAT(approve(2, in_s(181.0)).reason(), Catch::Contains("command 2 does not wait") &&
+                                                     Catch::Contains("DSS-34, ended") && Catch::Contains(none_comes));
+    CHECK_THAT(station.latest("released")->evidence,
+               Catch::Contains("DSS-34, ended") && Catch::Contains("none comes after it"));
 }
 
-TEST_CASE("a held command is not released while no station sees the vehicle, and stays held", "[gateway][tracking][R44]") {
+TEST_CASE("a held command is not released while no station sees the vehicle, and stays held",
+          "[gateway][tracking][R44]") {
     Station station{.passes = with_a_gap()};
     auto held = request("NO_OP");
     held.set_hold(true);
@@ -665,13 +712,14 @@ TEST_CASE("a held command is not released while no station sees the vehicle, and
     CHECK(station.gateway.take_uplinks().size() == 1);
 }
 
-TEST_CASE("a frame that is not acknowledged is not sent again before a station sees the vehicle", "[gateway][tracking][R44]") {
+TEST_CASE("a frame that is not acknowledged is not sent again before a station sees the vehicle",
+          "[gateway][tracking][R44]") {
     Station station{.passes = with_a_gap()};
     auto asked = request("NO_OP");
     asked.set_service("AD");
     REQUIRE(station.send(asked).accepted());
     CHECK(station.gateway.take_uplinks().size() == 1);
-    station.gateway.pass(in_s(100.0), station.stages); // long after CommandLink::report_s
+    station.gateway.pass(in_s(100.0), station.stages);  // long after CommandLink::report_s
     CHECK(station.gateway.take_uplinks().empty());
     station.gateway.pass(in_s(120.0), station.stages);
     CHECK(station.gateway.take_uplinks().size() == 1);
@@ -695,9 +743,11 @@ v1::CommandRequest do_edl() {
     return go;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("when a change of the timeline is refused on board, what was analysed with it waits again if it is at the uplink, and is told if it has left", "[gateway][R19][R44]") {
+TEST_CASE("when a change of the timeline is refused on board, what was analysed with it waits again if it is at the "
+          "uplink, and is told if it has left",
+          "[gateway][R19][R44]") {
     Station station;
     auto change = offset_change();
     change.set_service("AD");
@@ -715,7 +765,8 @@ TEST_CASE("when a change of the timeline is refused on board, what was analysed 
     const auto& dictionary = tests::shipped_dictionary();
     const auto* refused = dictionary.command("EDL_SET_TIMEPOINT_OFFSET");
     REQUIRE(refused != nullptr);
-    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", refused->opcode.value}, {"count", 0}}), true, now, station.stages);
+    station.gateway.receive(packet_of("COMMAND_REFUSED", {{"opcode", refused->opcode.value}, {"count", 0}}), true, now,
+                            station.stages);
     const auto told = [&](std::uint64_t number, const std::string& stage) {
         const archive::StageRecord* last = nullptr;
         for (const auto& each : station.stages)
@@ -724,14 +775,17 @@ TEST_CASE("when a change of the timeline is refused on board, what was analysed 
         return last->status + ": " + last->evidence;
     };
     CHECK_THAT(told(1, "accepted"), Catch::StartsWith("failed"));
-    CHECK(told(2, "radiated") == "ok: has left Earth, and its timeline was analysed with command 1, which came to nothing");
-    CHECK_THAT(told(3, "released"), Catch::StartsWith("pending: taken back from the uplink, which had not radiated it when command 1 came to nothing"));
+    CHECK(told(2, "radiated") ==
+          "ok: has left Earth, and its timeline was analysed with command 1, which came to nothing");
+    CHECK_THAT(told(3, "released"),
+               Catch::StartsWith(
+                   "pending: taken back from the uplink, which had not radiated it when command 1 came to nothing"));
 
     tell_room(station, true, now);
     station.gateway.pass(now, station.stages);
     CHECK_THAT(told(3, "released"), Catch::Contains("does not leave before its timeline is looked at again"));
     CHECK_THAT(told(4, "released"), Catch::StartsWith("ok"));
-    CHECK(station.gateway.take_uplinks().size() == 1); // the fourth: nobody doubts it
+    CHECK(station.gateway.take_uplinks().size() == 1);  // the fourth: nobody doubts it
     v1::CommandRequest holds;
     holds.set_action(timeline_holds_action);
     holds.set_number(3);
@@ -741,7 +795,8 @@ TEST_CASE("when a change of the timeline is refused on board, what was analysed 
     CHECK(station.gateway.take_uplinks().size() == 1);
 }
 
-TEST_CASE("what the uplink has not radiated when the last pass ends is told as failed, with the reason", "[gateway][tracking][R44]") {
+TEST_CASE("what the uplink has not radiated when the last pass ends is told as failed, with the reason",
+          "[gateway][tracking][R44]") {
     Station station{.passes = commands::TrackingSchedule{{{"DSS-43", now, in_s(60.0)}}}};
     tell_room(station, false, now);
     auto asked = request("NO_OP");
@@ -757,30 +812,34 @@ TEST_CASE("what the uplink has not radiated when the last pass ends is told as f
     CHECK(station.latest("radiated") == nullptr);
     station.gateway.pass(in_s(60.0), station.stages);
     REQUIRE(station.latest("radiated") != nullptr);
-    const auto first = std::ranges::find_if(station.stages, [](const auto& stage) { return stage.command == 1 && stage.stage == "radiated"; });
+    const auto first = std::ranges::find_if(
+        station.stages, [](const auto& stage) { return stage.command == 1 && stage.stage == "radiated"; });
     REQUIRE(first != station.stages.end());
     CHECK(first->status == "failed");
     CHECK_THAT(first->evidence, Catch::Contains("DSS-43, ended") && Catch::Contains("none comes after it"));
     CHECK(station.latest("received")->status == "failed");
     CHECK_THAT(station.latest("received")->evidence, Catch::Contains("never left Earth"));
-    CHECK(station.latest("released")->command == 2); // what was held can never leave either
+    CHECK(station.latest("released")->command == 2);  // what was held can never leave either
     CHECK(station.latest("released")->status == "failed");
 
     tell_room(station, true, in_s(61.0));
     CHECK(station.gateway.take_uplinks().empty());
-    CHECK_THAT(station.gateway.submit(held, in_s(61.0), station.stages).reason(), Catch::Contains("none comes after it"));
+    CHECK_THAT(station.gateway.submit(held, in_s(61.0), station.stages).reason(),
+               Catch::Contains("none comes after it"));
 }
 
-TEST_CASE("what waits in the uplink when a pass ends waits for the next, and its preconditions are looked at when that begins",
+TEST_CASE("what waits in the uplink when a pass ends waits for the next, and its preconditions are looked at when that "
+          "begins",
           "[gateway][tracking][R23][R44]") {
     Station station{.passes = with_a_gap()};
     tell_room(station, false, now);
-    REQUIRE(station.send(do_edl()).accepted()); // what it needs is not known yet
+    REQUIRE(station.send(do_edl()).accepted());  // what it needs is not known yet
     CHECK(station.latest("released")->status == "ok");
     station.gateway.pass(in_s(61.0), station.stages);
     CHECK(station.latest("released")->status == "pending");
     CHECK_THAT(station.latest("released")->evidence,
-               Catch::Contains("taken back from the uplink") && Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
+               Catch::Contains("taken back from the uplink") &&
+                   Catch::Contains("leaves at " + day_of_year_text(in_s(120.0)) + " by DSS-34"));
     tell_room(station, true, in_s(110.0));
     CHECK(station.gateway.take_uplinks().empty());
 
@@ -791,11 +850,13 @@ TEST_CASE("what waits in the uplink when a pass ends waits for the next, and its
         CHECK_THAT(station.latest("radiated")->evidence, Catch::Contains("left DSS-34"));
     }
     SECTION("one does not hold any more") {
-        station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0), station.stages); // no parameters on board
+        station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0),
+                                station.stages);  // no parameters on board
         station.gateway.pass(in_s(120.0), station.stages);
         CHECK(station.gateway.take_uplinks().empty());
         CHECK(station.latest("released")->status == "failed");
-        CHECK_THAT(station.latest("released")->evidence, Catch::Contains("must not be sent now") && Catch::Contains("parameters_received"));
+        CHECK_THAT(station.latest("released")->evidence,
+                   Catch::Contains("must not be sent now") && Catch::Contains("parameters_received"));
     }
     SECTION("it is cancelled meanwhile") {
         v1::CommandRequest cancel;
@@ -808,16 +869,18 @@ TEST_CASE("what waits in the uplink when a pass ends waits for the next, and its
     }
 }
 
-TEST_CASE("what was not acknowledged before a gap is not radiated again when it must not be sent any more", "[gateway][tracking][R23][R44]") {
+TEST_CASE("what was not acknowledged before a gap is not radiated again when it must not be sent any more",
+          "[gateway][tracking][R23][R44]") {
     Station station{.passes = with_a_gap()};
     REQUIRE(station.send(do_edl()).accepted());
     CHECK(station.gateway.take_uplinks().size() == 1);
     station.gateway.pass(in_s(100.0), station.stages);
-    station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0), station.stages); // no parameters on board
+    station.gateway.receive(packet_of("EdlStatus", {}), true, in_s(119.0), station.stages);  // no parameters on board
     station.stages.clear();
     station.gateway.pass(in_s(120.0), station.stages);
     REQUIRE(station.latest("radiated") != nullptr);
-    CHECK_THAT(station.latest("radiated")->evidence, Catch::StartsWith("not acknowledged, and not radiated again") && Catch::Contains("parameters_received"));
+    CHECK_THAT(station.latest("radiated")->evidence,
+               Catch::StartsWith("not acknowledged, and not radiated again") && Catch::Contains("parameters_received"));
     // What goes out instead tells the vehicle the sequence anew, and carries no command.
     for (const auto& unit : station.gateway.take_uplinks()) {
         std::vector<std::uint8_t> information(cltu_information_octets_max);

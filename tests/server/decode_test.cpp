@@ -35,7 +35,7 @@ std::string expected_text(const Datum& datum) {
     return "sha256:" + digest.text() + ":" + std::to_string(octets->size());
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("an instrument's packets decode by its own XTCE file to its published values", "[server][decode]") {
     if (!std::filesystem::exists(suda / "expected.csv")) {
@@ -56,7 +56,7 @@ TEST_CASE("an instrument's packets decode by its own XTCE file to its published 
     for (std::size_t index = 0; const auto packet = source.next(); ++index) {
         const auto contents = decoder.decode(*packet);
         CHECK(contents.problem.empty());
-        REQUIRE(contents.time); // SHCOARSE and SHFINE of the first packet: 389900330 and 31649
+        REQUIRE(contents.time);  // SHCOARSE and SHFINE of the first packet: 389900330 and 31649
         if (index == 0) CHECK(contents.time->seconds == 389900330.0 + 31649.0 / 65536.0);
         for (const auto& value : contents.values)
             rows.push_back(std::to_string(index) + ",1425," + value.name + "," + expected_text(value.raw) + "," +

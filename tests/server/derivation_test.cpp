@@ -1,5 +1,5 @@
-#include "server/archive/sqlite.hpp"
 #include "server/archive/schema.hpp"
+#include "server/archive/sqlite.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
@@ -28,7 +28,7 @@ struct Recorded {
             for (std::size_t i = 0; i < 3000; ++i) {
                 const double sclk_s = 1000.0 + static_cast<double>(i) / 64.0;
                 const auto count = static_cast<std::uint16_t>(i);
-                const float speed_mps = i / 500 % 2 == 0 ? 5000.0F : 7000.0F; // in and out of its limit
+                const float speed_mps = i / 500 % 2 == 0 ? 5000.0F : 7000.0F;  // in and out of its limit
                 const auto altitude_m = i % 7 == 0 ? std::nullopt : std::optional(static_cast<float>(i));
                 auto packet = navigation_packet(count, sclk_s, altitude_m, speed_mps);
                 REQUIRE(pipeline.accept(live(packet)).ok());
@@ -38,7 +38,8 @@ struct Recorded {
                 if (i % 900 == 0) {
                     packet.back() ^= 1U;
                     REQUIRE(pipeline.accept(live(packet)).ok());
-                    REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, Ert{5}, false, "blackout"}).ok());
+                    REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, Ert{5}, false, "blackout"})
+                                .ok());
                 }
             }
             pipeline.relay_progress(0.5);
@@ -56,14 +57,15 @@ struct Recorded {
         std::string all;
         for (const auto& table : archive::run_tables) {
             if (!table.derived) continue;
-            auto names = database.prepare("SELECT group_concat('quote(' || name || ')', '||'',''||') FROM pragma_table_info(?1)");
+            auto names = database.prepare(
+                "SELECT group_concat('quote(' || name || ')', '||'',''||') FROM pragma_table_info(?1)");
             REQUIRE(names.ok());
             names->bind(1, std::string_view(table.name));
             REQUIRE(*names->step());
-            auto rows = database.prepare(("SELECT " + std::string(names->text(0)) + " AS row FROM " + table.name + " ORDER BY row").c_str());
+            auto rows = database.prepare(
+                ("SELECT " + std::string(names->text(0)) + " AS row FROM " + table.name + " ORDER BY row").c_str());
             REQUIRE(rows.ok());
-            while (*rows->step())
-                all.append(table.name).append(rows->text(0)).append("\n");
+            while (*rows->step()) all.append(table.name).append(rows->text(0)).append("\n");
         }
         return all;
     }
@@ -74,45 +76,50 @@ struct Recorded {
     std::vector<std::string> faults() const {
         const auto found = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
         REQUIRE(found.ok());
-        for (const auto& note : found->notes) // a rebuild is in the audit, whose last hash is told
+        for (const auto& note : found->notes)  // a rebuild is in the audit, whose last hash is told
             CHECK_THAT(note, Catch::StartsWith("audit: "));
         return found->faults;
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("everything derived is made again from the raw units, identical", "[archive][rebuild][R43]") {
     const Recorded recorded;
     const auto before = recorded.derived_rows();
     REQUIRE(before.size() > 100'000);
-    for (const char* table : {"segment_columns", "pyramid_columns", "events", "timepoint_firings", "alarms", "recordings", "units"})
+    for (const char* table :
+         {"segment_columns", "pyramid_columns", "events", "timepoint_firings", "alarms", "recordings", "units"})
         REQUIRE(before.find(table) != std::string::npos);
     SECTION("as they are") {}
     SECTION("after damage to each of them") {
-        recorded.spoil("UPDATE events SET text = 'nothing happened'; DELETE FROM alarms; UPDATE segment_columns SET value = x'00';"
-                       "DELETE FROM segments WHERE run = 2; DELETE FROM pyramid; UPDATE pyramid_columns SET nodes = x'';"
-                       "UPDATE timepoint_firings SET fired_sclk = 0; UPDATE recordings SET realtime = 7; UPDATE units SET standing = 0;"
-                       "UPDATE units SET sampled = 0, packet = NULL WHERE key & 3 = 1");
+        recorded.spoil(
+            "UPDATE events SET text = 'nothing happened'; DELETE FROM alarms; UPDATE segment_columns SET value = x'00';"
+            "DELETE FROM segments WHERE run = 2; DELETE FROM pyramid; UPDATE pyramid_columns SET nodes = x'';"
+            "UPDATE timepoint_firings SET fired_sclk = 0; UPDATE recordings SET realtime = 7; UPDATE units SET "
+            "standing = 0;"
+            "UPDATE units SET sampled = 0, packet = NULL WHERE key & 3 = 1");
     }
     const auto rebuilt = pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {});
     REQUIRE(rebuilt.ok());
     CHECK(rebuilt->left.empty());
     CHECK(rebuilt->runs == std::vector<RunId>{RunId{1}, RunId{2}});
-    CHECK((recorded.derived_rows() == before)); // in two brackets: it is long
+    CHECK((recorded.derived_rows() == before));  // in two brackets: it is long
     CHECK(recorded.faults().empty());
     CHECK_FALSE(std::filesystem::exists(recorded.folder / "a.db-rebuild"));
 }
 
-TEST_CASE("a rebuild that is stopped says how far it was, and leaves each run as it was or made again", "[archive][rebuild][R43]") {
+TEST_CASE("a rebuild that is stopped says how far it was, and leaves each run as it was or made again",
+          "[archive][rebuild][R43]") {
     const Recorded recorded;
     const auto before = recorded.derived_rows();
     std::vector<std::uint32_t> seen;
-    const auto rebuilt = pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {}, [&](const pipeline::Work& work) {
-        CHECK((work.units <= work.of_units && work.of_units > 0));
-        seen.push_back(work.run.value);
-        return work.run == RunId{1};
-    });
+    const auto rebuilt =
+        pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {}, [&](const pipeline::Work& work) {
+            CHECK((work.units <= work.of_units && work.of_units > 0));
+            seen.push_back(work.run.value);
+            return work.run == RunId{1};
+        });
     REQUIRE(rebuilt.ok());
     CHECK(rebuilt->stopped);
     CHECK(rebuilt->runs == std::vector<RunId>{RunId{1}});
@@ -120,7 +127,8 @@ TEST_CASE("a rebuild that is stopped says how far it was, and leaves each run as
     CHECK((recorded.derived_rows() == before));
     CHECK(recorded.faults().empty());
     CHECK_FALSE(std::filesystem::exists(recorded.folder / "a.db-rebuild"));
-    const auto compared = pipeline::verify(recorded.file, {}, recorded.dictionary, nullptr, recorded.folder / "", [](const pipeline::Work&) { return false; });
+    const auto compared = pipeline::verify(recorded.file, {}, recorded.dictionary, nullptr, recorded.folder / "",
+                                           [](const pipeline::Work&) { return false; });
     REQUIRE(compared.ok());
     CHECK(compared->stopped);
 }
@@ -136,7 +144,9 @@ TEST_CASE("verify names what is wrong, and finds nothing in a good archive", "[a
         return faults.front();
     };
     SECTION("an event's text") {
-        CHECK(only("UPDATE events SET text = 'all is well' WHERE key = (SELECT min(key) FROM events WHERE key > 2 << 40)").find("run 2: events: item ") == 0);
+        CHECK(
+            only("UPDATE events SET text = 'all is well' WHERE key = (SELECT min(key) FROM events WHERE key > 2 << 40)")
+                .find("run 2: events: item ") == 0);
     }
     SECTION("an alarm that is gone leaves a number that no item has") {
         recorded.spoil("DELETE FROM alarms WHERE key = (SELECT min(key) FROM alarms)");
@@ -147,24 +157,29 @@ TEST_CASE("verify names what is wrong, and finds nothing in a good archive", "[a
         CHECK(faults[1].find("is missing: a unit says it") != std::string::npos);
     }
     SECTION("a sample's octets") {
-        CHECK(only("UPDATE segment_columns SET value = CAST(substr(value, 1, 60) || x'0102' || substr(value, 63) AS BLOB) WHERE key = (8388608 + 1) * 65536")
+        CHECK(only("UPDATE segment_columns SET value = CAST(substr(value, 1, 60) || x'0102' || substr(value, 63) AS "
+                   "BLOB) WHERE key = (8388608 + 1) * 65536")
                   .find("run 1: segment_columns: segment 8388609, channel altitude_m is damaged: ") == 0);
     }
     SECTION("samples that are whole but not those of the units") {
-        CHECK(only("UPDATE segment_columns SET value = (SELECT value FROM segment_columns WHERE key = 8388608 * 65536 + 1) WHERE key = 8388608 * 65536")
-                  .find("run 1: segment_columns: segment 8388608, channel altitude_m its samples are not those of its units") == 0);
+        CHECK(only("UPDATE segment_columns SET value = (SELECT value FROM segment_columns WHERE key = 8388608 * 65536 "
+                   "+ 1) WHERE key = 8388608 * 65536")
+                  .find("run 1: segment_columns: segment 8388608, channel altitude_m its samples are not those of its "
+                        "units") == 0);
     }
     SECTION("a node of the pyramid") {
         CHECK(only("UPDATE pyramid_columns SET nodes = zeroblob(length(nodes)) WHERE key = 8388608 * 65536 + 1")
                   .find("run 1: pyramid_columns: block 8388608, channel speed_mps is not what its unit says") == 0);
     }
     SECTION("a raw unit") {
-        recorded.spoil("UPDATE units SET octets = CAST(substr(octets, 1, 20) || x'FF' || substr(octets, 22) AS BLOB) WHERE key = (1 << 40) + 40");
+        recorded.spoil("UPDATE units SET octets = CAST(substr(octets, 1, 20) || x'FF' || substr(octets, 22) AS BLOB) "
+                       "WHERE key = (1 << 40) + 40");
         const auto faults = recorded.faults();
-        CHECK_FALSE(faults.empty()); // its own row, and all that followed from it
+        CHECK_FALSE(faults.empty());  // its own row, and all that followed from it
     }
     SECTION("the last number") {
-        CHECK(only("UPDATE runs SET last_seq = last_seq + 5 WHERE run = 1").find("run 1: its last item should be ") == 0);
+        CHECK(only("UPDATE runs SET last_seq = last_seq + 5 WHERE run = 1").find("run 1: its last item should be ") ==
+              0);
     }
 }
 
@@ -194,16 +209,19 @@ TEST_CASE("a run that this program would tell otherwise is left as it is", "[arc
     CHECK(pipeline::rebuild(recorded.file, RunId{9}, recorded.dictionary, nullptr, {}).error().message == "no run 9");
 }
 
-TEST_CASE("an archive is not rebuilt while another writes it, and one that is not there is not made", "[archive][rebuild]") {
+TEST_CASE("an archive is not rebuilt while another writes it, and one that is not there is not made",
+          "[archive][rebuild]") {
     const Recorded recorded;
     {
         const auto writer = Archive::open(recorded.file);
         REQUIRE(writer.ok());
-        CHECK(pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {}).error().message.find("is being written by another process") !=
-              std::string::npos);
+        CHECK(pipeline::rebuild(recorded.file, {}, recorded.dictionary, nullptr, {})
+                  .error()
+                  .message.find("is being written by another process") != std::string::npos);
     }
     const auto none = recorded.folder / "none.db";
-    CHECK(pipeline::rebuild(none, {}, recorded.dictionary, nullptr, {}).error().message == none.string() + ": there is no such file");
+    CHECK(pipeline::rebuild(none, {}, recorded.dictionary, nullptr, {}).error().message ==
+          none.string() + ": there is no such file");
     CHECK_FALSE(pipeline::verify(none, {}, recorded.dictionary, nullptr, recorded.folder / "").ok());
     CHECK_FALSE(std::filesystem::exists(none));
 }

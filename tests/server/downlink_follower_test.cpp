@@ -1,8 +1,8 @@
 // aeolis serve --downlink: another mission's octets over real sockets, and what the API then says of them.
-#include "server/downlink/downlink_follower.hpp"
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/access/this_user.hpp"
+#include "server/downlink/downlink_follower.hpp"
 #include "server/net/console_backend.hpp"
 #include "telemetry/other_mission.hpp"
 #include "tests/server/audited.hpp"
@@ -57,10 +57,15 @@ constexpr const char* small_xtce = R"(<SpaceSystem name="Small"><TelemetryMetaDa
 </ContainerSet></TelemetryMetaData></SpaceSystem>)";
 
 Octets power_packet(std::uint16_t count, std::uint32_t coarse, std::uint16_t raw_volts, unsigned apid = 77) {
-    Octets packet{static_cast<std::uint8_t>(0x08 | apid >> 8), static_cast<std::uint8_t>(apid),
-                  static_cast<std::uint8_t>(0xC0 | count >> 8), static_cast<std::uint8_t>(count), 0, 0};
+    Octets packet{static_cast<std::uint8_t>(0x08 | apid >> 8),
+                  static_cast<std::uint8_t>(apid),
+                  static_cast<std::uint8_t>(0xC0 | count >> 8),
+                  static_cast<std::uint8_t>(count),
+                  0,
+                  0};
     for (int shift = 24; shift >= 0; shift -= 8) packet.push_back(static_cast<std::uint8_t>(coarse >> shift));
-    packet.insert(packet.end(), {0x80, 0x00, static_cast<std::uint8_t>(raw_volts >> 8), static_cast<std::uint8_t>(raw_volts), 2, 3, 7, 8, 9});
+    packet.insert(packet.end(), {0x80, 0x00, static_cast<std::uint8_t>(raw_volts >> 8),
+                                 static_cast<std::uint8_t>(raw_volts), 2, 3, 7, 8, 9});
     packet[5] = static_cast<std::uint8_t>(packet.size() - 7);
     return packet;
 }
@@ -149,7 +154,9 @@ class Follower {
     Follower(const Follower&) = delete;
     Follower& operator=(const Follower&) = delete;
 
-    std::string ask(const std::string& target) const { return web_request(backend_->port(), "GET", "/api/v1" + target).body; }
+    std::string ask(const std::string& target) const {
+        return web_request(backend_->port(), "GET", "/api/v1" + target).body;
+    }
     /// The answer once it says so; else the last one.
     std::string ask_until(const std::string& target, const std::function<bool(const std::string&)>& says) const {
         std::string answer;
@@ -182,27 +189,32 @@ void send_datagram(std::uint16_t port, const Octets& octets) {
     to.sin_family = AF_INET;
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
-    REQUIRE(::sendto(socket, octets.data(), octets.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to) == static_cast<ssize_t>(octets.size()));
+    REQUIRE(::sendto(socket, octets.data(), octets.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to) ==
+            static_cast<ssize_t>(octets.size()));
     ::close(socket);
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a run that the API shows", "[server][downlink]") {
+TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a run that the API shows",
+          "[server][downlink]") {
     const auto mission = mission_of(small_xtce);
     Sender sender;
-    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "pltu", .skip = 0, .frame_octets = {}}};
+    Follower follower{
+        *mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "pltu", .skip = 0, .frame_octets = {}}};
     Octets stream;
     std::mt19937 random{11};
     for (std::uint16_t i = 0; i < 200; ++i) {
         for (int n = static_cast<int>(random() % 40); n > 0; --n) stream.push_back(static_cast<std::uint8_t>(random()));
-        const auto pltu = in_pltu(power_packet(i, 1000U + i, static_cast<std::uint16_t>(2 * i)), static_cast<std::uint8_t>(i));
+        const auto pltu =
+            in_pltu(power_packet(i, 1000U + i, static_cast<std::uint16_t>(2 * i)), static_cast<std::uint8_t>(i));
         stream.insert(stream.end(), pltu.begin(), pltu.end());
     }
     sender.give(stream);
     const auto values = follower.ask_until("/runs/1/channels?names=BUS_VOLTAGE&format=csv",
                                            [](const std::string& text) { return count_of(text, "\n") == 201; });
-    CHECK(values.starts_with("channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1000.5,0,realtime\nBUS_VOLTAGE,V,1001.5,1,realtime\n"));
+    CHECK(values.starts_with(
+        "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1000.5,0,realtime\nBUS_VOLTAGE,V,1001.5,1,realtime\n"));
     CHECK(values.ends_with("BUS_VOLTAGE,V,1199.5,199,realtime\n"));
     CHECK(count_of(follower.ask("/runs/1/channels?names=LIST%5B2%5D&format=csv"), ",9,realtime") == 200);
     CHECK(count_of(follower.ask("/runs/1/channels?names=MODE&format=csv"), ",2,realtime") == 200);
@@ -222,7 +234,8 @@ TEST_CASE("packets in frames with garbage between, over TCP in odd pieces, are a
 TEST_CASE("a link that drops is connected again, and nothing that came is lost or doubled", "[server][downlink]") {
     const auto mission = mission_of(small_xtce);
     Sender sender;
-    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 2, .frame_octets = {}}};
+    Follower follower{
+        *mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 2, .frame_octets = {}}};
     const auto prefixed = [](std::uint16_t i) {
         Octets octets{0xFF, 0xFF};
         const auto packet = power_packet(i, i, i);
@@ -230,18 +243,20 @@ TEST_CASE("a link that drops is connected again, and nothing that came is lost o
         return octets;
     };
     auto first = prefixed(1), second = prefixed(2), third = prefixed(3);
-    first.insert(first.end(), second.begin(), second.begin() + 9); // the link drops within the second
+    first.insert(first.end(), second.begin(), second.begin() + 9);  // the link drops within the second
     sender.give(first);
-    second.insert(second.end(), {0, 0, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE}); // and here no packet begins
+    second.insert(second.end(), {0, 0, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE, 0xEE});  // and here no packet begins
     sender.give(second);
     sender.give(third);
     const auto says_all = [](const std::string& text) { return count_of(text, "\"Power\"") == 3; };
     CHECK(count_of(follower.ask_until("/runs/1/packets", says_all), "\"hex\"") == 3);
     CHECK(follower.ask("/runs/1/channels?names=BUS_VOLTAGE&format=csv") ==
-          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1.5,0.5,realtime\nBUS_VOLTAGE,V,2.5,1,realtime\nBUS_VOLTAGE,V,3.5,1.5,realtime\n");
+          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,1.5,0.5,realtime\nBUS_VOLTAGE,V,2.5,1,realtime\nBUS_VOLTAGE,"
+          "V,3.5,1.5,realtime\n");
 }
 
-TEST_CASE("each datagram stands for itself: garbage and packets of nobody are kept and named, the next is read", "[server][downlink]") {
+TEST_CASE("each datagram stands for itself: garbage and packets of nobody are kept and named, the next is read",
+          "[server][downlink]") {
     const auto mission = mission_of(small_xtce);
     Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
     const auto port = follower.downlink_port();
@@ -257,12 +272,14 @@ TEST_CASE("each datagram stands for itself: garbage and packets of nobody are ke
     const auto last = power_packet(5, 14, 10);
     two.insert(two.end(), last.begin(), last.end());
     send_datagram(port, two);
-    const auto packets = follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"Power\"") == 3; });
+    const auto packets =
+        follower.ask_until("/runs/1/packets", [](const std::string& text) { return count_of(text, "\"Power\"") == 3; });
     CHECK(count_of(packets, "\"Power\"") == 3);
     CHECK(count_of(packets, "\"hex\"") == 4);
     CHECK_THAT(packets, Catch::Contains("not decoded: no container describes it: Header is abstract"));
     CHECK(follower.ask("/runs/1/channels?names=BUS_VOLTAGE&format=csv") ==
-          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,10.5,2,realtime\nBUS_VOLTAGE,V,13.5,4,realtime\nBUS_VOLTAGE,V,14.5,5,realtime\n");
+          "channel,unit,sclk_s,value,source\nBUS_VOLTAGE,V,10.5,2,realtime\nBUS_VOLTAGE,V,13.5,4,realtime\nBUS_VOLTAGE,"
+          "V,14.5,5,realtime\n");
 }
 
 TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][downlink]") {
@@ -273,7 +290,8 @@ TEST_CASE("who follows a downlink rehearses nothing, and says so", "[server][dow
     CHECK_THAT(reply.body, Catch::Contains("follows the downlink of another mission"));
 }
 
-TEST_CASE("a downlink that the program was started to follow is in the audit, with who started it", "[server][downlink][audit]") {
+TEST_CASE("a downlink that the program was started to follow is in the audit, with who started it",
+          "[server][downlink][audit]") {
     const auto mission = mission_of(small_xtce);
     Follower follower{*mission, "udp://127.0.0.1:0", {.name = "packets", .skip = 0, .frame_octets = {}}};
     auto reader = archive::Reader::open(follower.archive(), mission->dictionary(), mission.get());
@@ -304,17 +322,21 @@ TEST_CASE("an instrument's own packets over TCP give its published values throug
         if (line.find(",SHCOARSE,") != std::string::npos) ++packets;
     REQUIRE(packets > 0);
     Sender sender;
-    Follower follower{*mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 4, .frame_octets = {}}};
+    Follower follower{
+        *mission, "tcp://127.0.0.1:" + std::to_string(sender.port), {.name = "packets", .skip = 4, .frame_octets = {}}};
     sender.give({file.begin(), file.end()});
-    const auto rows = follower.ask_until("/runs/1/packets", [&](const std::string& text) { return count_of(text, "\"hex\"") == packets; });
+    const auto rows = follower.ask_until("/runs/1/packets",
+                                         [&](const std::string& text) { return count_of(text, "\"hex\"") == packets; });
     CHECK(count_of(rows, "\"hex\"") == packets);
     CHECK(count_of(rows, "not decoded") == 0);
     CHECK_THAT(rows, Catch::Contains("\"name\":\"SHCOARSE\",\"text\":\"389900330\""));
-    CHECK_THAT(follower.ask("/runs/1/channels?names=IDX__SCIFETCHTIME32&format=csv"), Catch::Contains(",350845307,realtime"));
+    CHECK_THAT(follower.ask("/runs/1/channels?names=IDX__SCIFETCHTIME32&format=csv"),
+               Catch::Contains(",350845307,realtime"));
 }
 
 TEST_CASE("addresses that cannot be are refused in one line", "[server][downlink]") {
-    for (const char* text : {"", "tcp://", "tcp://host", "tcp://:1", "tcp://h:0", "tcp://h:65536", "http://h:1", "tcp://h:1x"}) {
+    for (const char* text :
+         {"", "tcp://", "tcp://host", "tcp://:1", "tcp://h:0", "tcp://h:65536", "http://h:1", "tcp://h:1x"}) {
         INFO(text);
         CHECK_FALSE(DownlinkAddress::parse(text));
     }

@@ -24,8 +24,10 @@ class EventServer {
         server::WebServer::Handlers handlers;
         handlers.request = [](const server::HttpRequest&, const server::Respond& respond) { respond({}); };
         handlers.admit_stream = [](const server::Credentials&) { return server::HttpResponse{}; };
-        handlers.open_stream = [this](const server::Credentials&, server::StreamFormat format, std::function<void()> wake) {
-            return std::make_shared<server::StreamSession>(*hub_, format, std::move(wake), server::StreamSession::follower());
+        handlers.open_stream = [this](const server::Credentials&, server::StreamFormat format,
+                                      std::function<void()> wake) {
+            return std::make_shared<server::StreamSession>(*hub_, format, std::move(wake),
+                                                           server::StreamSession::follower());
         };
         auto opened = server::WebServer::open(settings, handlers);
         if (!opened) throw std::runtime_error(opened.error().message);
@@ -44,8 +46,8 @@ class EventServer {
     }
     std::uint16_t port() const { return server_->port(); }
     std::thread& network() { return network_; }
-    archive::Sequence last_seq() const { return seq_; } ///< published
-    std::uint64_t octets_given() const { ///< to all clients, as far as their sockets take them
+    archive::Sequence last_seq() const { return seq_; }  ///< published
+    std::uint64_t octets_given() const {                 ///< to all clients, as far as their sockets take them
         std::promise<std::uint64_t> octets;
         server_->post([&] { octets.set_value(hub_->figures.octets); });
         return octets.get_future().get();
@@ -70,8 +72,7 @@ class EventServer {
             batches.push_back(std::move(batch));
         }
         server_->post([this, batches = std::move(batches)] {
-            for (const auto& batch : batches)
-                hub_->published(batch);
+            for (const auto& batch : batches) hub_->published(batch);
         });
     }
 
@@ -82,4 +83,4 @@ class EventServer {
     archive::Sequence seq_ = 0;
 };
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

@@ -13,7 +13,7 @@ std::string refusal(const std::string& text) {
     return parsed ? "" : parsed.error().message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a formula computes with channels by name, and in braces by any name", "[expression]") {
     auto speed = Expression::parse("sqrt(vx_mps^2 + {GNC-0102}^2) * 2 - vx_mps");
@@ -36,7 +36,8 @@ TEST_CASE("an error names the character of the formula as it was written", "[exp
     CHECK_THAT(refusal(""), Catch::StartsWith("expression"));
 }
 
-TEST_CASE("a formula only computes: it assigns nothing, holds no texts, gives one value, and has a limited length", "[expression]") {
+TEST_CASE("a formula only computes: it assigns nothing, holds no texts, gives one value, and has a limited length",
+          "[expression]") {
     CHECK(refusal("a = 3") == "expression, character 3: nothing can be assigned; a comparison is ==");
     CHECK(refusal("a == 3").empty());
     CHECK(refusal("a <= 3 && a != 2").empty());
@@ -44,7 +45,6 @@ TEST_CASE("a formula only computes: it assigns nothing, holds no texts, gives on
     CHECK_THAT(refusal("a, b"), Catch::Contains("one is wanted"));
     CHECK(refusal("a" + std::string(1000, ' ')) == "expression: 1001 octets, at most 1000");
     std::string many = "c0";
-    for (int i = 1; i <= 16; ++i)
-        many += "+c" + std::to_string(i);
+    for (int i = 1; i <= 16; ++i) many += "+c" + std::to_string(i);
     CHECK_THAT(refusal(many), Catch::Contains("more than 16 channels"));
 }

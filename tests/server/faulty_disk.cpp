@@ -17,7 +17,7 @@
 namespace aeolis::test {
 namespace {
 
-constexpr std::size_t sector_octets = 512; // what a disk writes whole or not at all
+constexpr std::size_t sector_octets = 512;  // what a disk writes whole or not at all
 constexpr const char* shim_name = "aeolis-faulty-disk";
 
 /// A write, or with no octets a change of size.
@@ -36,10 +36,10 @@ void apply(const Change& change, std::vector<std::uint8_t>& contents) {
 /// A file that a crash can spoil.
 struct Kept {
     std::vector<std::uint8_t> synced;
-    std::vector<Change> written; ///< since then
-    bool named = false;          ///< its name is synced
-    bool removed = false;        ///< but that is not synced
-    bool syncs_folder = false;   ///< SQLite syncs the folder with the first sync of a new journal or WAL
+    std::vector<Change> written;  ///< since then
+    bool named = false;           ///< its name is synced
+    bool removed = false;         ///< but that is not synced
+    bool syncs_folder = false;    ///< SQLite syncs the folder with the first sync of a new journal or WAL
 };
 
 enum class Kind : std::uint8_t { open, read, write, sync, truncate, remove, shared_memory };
@@ -58,7 +58,7 @@ int error_code(Kind kind, FaultyDisk::Fault fault) {
     return SQLITE_IOERR;
 }
 
-} // namespace
+}  // namespace
 
 struct FaultyDisk::State {
     /// What an operation comes to before the disk is asked: SQLITE_OK, or the code that it fails with.
@@ -70,7 +70,7 @@ struct FaultyDisk::State {
     sqlite3_vfs shim{};
     sqlite3_io_methods methods{};
     std::map<std::string, Kept*> files;
-    std::list<Kept> kept; ///< also of names that are gone: a connection may still have the file open
+    std::list<Kept> kept;  ///< also of names that are gone: a connection may still have the file open
 
     std::uint64_t fail_nth = 0, operations = 0, failed = 0;
     Fault fault{};
@@ -87,9 +87,9 @@ using State = FaultyDisk::State;
 struct File {
     sqlite3_file base;
     State* state;
-    Kept* kept; ///< null: a temporary file
+    Kept* kept;  ///< null: a temporary file
 };
-static_assert(sizeof(File) % 8 == 0); // as SQLite aligns its own
+static_assert(sizeof(File) % 8 == 0);  // as SQLite aligns its own
 
 File& shim_of(sqlite3_file* file) {
     return *reinterpret_cast<File*>(file);
@@ -101,7 +101,7 @@ State& state_of(sqlite3_vfs* vfs) {
     return *static_cast<State*>(vfs->pAppData);
 }
 
-} // namespace
+}  // namespace
 
 int FaultyDisk::State::strike(Kind kind) {
     const bool changing = kind == Kind::write || kind == Kind::sync || kind == Kind::truncate || kind == Kind::remove;
@@ -109,7 +109,8 @@ int FaultyDisk::State::strike(Kind kind) {
     if (cut) return error_code(kind, Fault::input_output);
     if (fail_nth == 0) return SQLITE_OK;
     if (fault == Fault::full && kind != Kind::write && kind != Kind::shared_memory) return SQLITE_OK;
-    if (fault == Fault::read_only && kind != Kind::write && kind != Kind::truncate && kind != Kind::remove) return SQLITE_OK;
+    if (fault == Fault::read_only && kind != Kind::write && kind != Kind::truncate && kind != Kind::remove)
+        return SQLITE_OK;
     ++operations;
     if (operations != fail_nth && (!lasting || operations < fail_nth)) return SQLITE_OK;
     ++failed;
@@ -118,8 +119,7 @@ int FaultyDisk::State::strike(Kind kind) {
 
 void FaultyDisk::State::sync_folder() {
     std::erase_if(files, [](const auto& entry) { return entry.second->removed; });
-    for (auto& [name, file] : files)
-        file->named = true;
+    for (auto& [name, file] : files) file->named = true;
 }
 
 namespace {
@@ -171,8 +171,7 @@ int sync_file(sqlite3_file* file, int flags) {
         return code;
     }
     if (kept != nullptr) {
-        for (const auto& change : kept->written)
-            apply(change, kept->synced);
+        for (const auto& change : kept->written) apply(change, kept->synced);
         kept->written.clear();
         if (kept->syncs_folder) state.sync_folder();
         kept->syncs_folder = false;
@@ -227,9 +226,11 @@ int open_file(sqlite3_vfs* vfs, const char* name, sqlite3_file* file, int flags,
     auto& opened = *new (file) File{{nullptr}, &state, nullptr};
     const std::scoped_lock lock{state.mutex};
     if (const int code = state.strike(Kind::open); code != SQLITE_OK) return code;
-    const bool keep = name != nullptr && (flags & (SQLITE_OPEN_MAIN_DB | SQLITE_OPEN_MAIN_JOURNAL | SQLITE_OPEN_WAL)) != 0;
+    const bool keep =
+        name != nullptr && (flags & (SQLITE_OPEN_MAIN_DB | SQLITE_OPEN_MAIN_JOURNAL | SQLITE_OPEN_WAL)) != 0;
     const bool there = keep && std::filesystem::exists(name);
-    if (const int code = state.real->xOpen(state.real, name, real_of(file), flags, flags_out); code != SQLITE_OK) return code;
+    if (const int code = state.real->xOpen(state.real, name, real_of(file), flags, flags_out); code != SQLITE_OK)
+        return code;
     opened.base.pMethods = &state.methods;
     if (!keep) return SQLITE_OK;
     auto& entry = state.files[name];
@@ -254,15 +255,17 @@ int remove_file(sqlite3_vfs* vfs, const char* name, int sync_folder) {
     return SQLITE_OK;
 }
 
-} // namespace
+}  // namespace
 
 FaultyDisk::FaultyDisk() : state_(std::make_unique<State>()) {
     auto& state = *state_;
     state.real = sqlite3_vfs_find(nullptr);
-    AEOLIS_CHECK(state.real != nullptr && std::strcmp(state.real->zName, shim_name) != 0); // one at a time
-    state.methods = {2, close_file, read_file, write_file, truncate_file, sync_file, file_size, lock_file, unlock_file, check_reserved,
-                     control_file, sector_size, characteristics, map_shared, lock_shared, barrier_shared, unmap_shared, nullptr, nullptr};
-    state.shim = *state.real; // paths, randomness, time: the real one's, which take the VFS only for its data
+    AEOLIS_CHECK(state.real != nullptr && std::strcmp(state.real->zName, shim_name) != 0);  // one at a time
+    state.methods = {
+        2,           close_file,     read_file,      write_file,   truncate_file, sync_file,       file_size,
+        lock_file,   unlock_file,    check_reserved, control_file, sector_size,   characteristics, map_shared,
+        lock_shared, barrier_shared, unmap_shared,   nullptr,      nullptr};
+    state.shim = *state.real;  // paths, randomness, time: the real one's, which take the VFS only for its data
     state.shim.szOsFile = static_cast<int>(sizeof(File)) + state.real->szOsFile;
     state.shim.pNext = nullptr;
     state.shim.zName = shim_name;
@@ -323,7 +326,8 @@ void FaultyDisk::leave(const std::filesystem::path& folder, std::uint64_t seed) 
             }
             // By sectors of the disk, not of the write.
             for (std::size_t at = change.at; at < change.at + change.octets.size();) {
-                const std::size_t end = std::min((at / sector_octets + 1) * sector_octets, change.at + change.octets.size());
+                const std::size_t end =
+                    std::min((at / sector_octets + 1) * sector_octets, change.at + change.octets.size());
                 const auto* first = change.octets.data() + (at - change.at);
                 if (survives()) apply({at, {first, first + (end - at)}, false}, contents);
                 at = end;
@@ -334,4 +338,4 @@ void FaultyDisk::leave(const std::filesystem::path& folder, std::uint64_t seed) 
     }
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

@@ -1,10 +1,10 @@
 // What the archive promises, on a disk that loses power or fails at any moment.
-#include "tests/server/faulty_disk.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "server/rehearsal/rehearsal.hpp"
+#include "tests/server/faulty_disk.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/server/web_client.hpp"
@@ -39,7 +39,7 @@ struct Flown {
 /// From before the first timepoint until so many packets have come, some of each step's cycles together.
 Flown fly(std::size_t packets, std::size_t cycles_a_step) {
     auto scenario = shipped_scenario("nominal_auto");
-    scenario.start_before_entry_s = 620.0; // UHF begins at 600
+    scenario.start_before_entry_s = 620.0;  // UHF begins at 600
     scenario.commands[0].send_before_entry_s = 615.0;
     scenario.commands[1].send_before_entry_s = 610.0;
     scenario.radio.tones_from_samples = false;
@@ -66,7 +66,7 @@ Flown fly(std::size_t packets, std::size_t cycles_a_step) {
 struct Published {
     std::optional<archive::RunId> run;
     bool finished = false;
-    std::vector<std::string> items; ///< item i + 1
+    std::vector<std::string> items;  ///< item i + 1
 };
 
 /// Stores the landing until it ends or the disk fails; now and then another connection folds the WAL into the file.
@@ -76,8 +76,7 @@ void store(const Flown& flown, const std::filesystem::path& file, Published& pub
     auto other = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create);
     Pipeline pipeline{*archive, tests::shipped_dictionary()};
     pipeline.on_publish([&](const auto& batch) {
-        for (const auto& item : batch->items)
-            published.items.push_back(item.SerializeAsString());
+        for (const auto& item : batch->items) published.items.push_back(item.SerializeAsString());
     });
     if (const auto run = pipeline.begin(flown.start); run)
         published.run = *run;
@@ -94,7 +93,8 @@ void store(const Flown& flown, const std::filesystem::path& file, Published& pub
         for (const auto& each : step.stages)
             if (!pipeline.accept(each)) return;
         if (!pipeline.commit()) return;
-        if (++count % 16 == 0 && other) (void)other->execute(count % 64 == 0 ? "PRAGMA wal_checkpoint(TRUNCATE)" : "PRAGMA wal_checkpoint").ok();
+        if (++count % 16 == 0 && other)
+            (void)other->execute(count % 64 == 0 ? "PRAGMA wal_checkpoint(TRUNCATE)" : "PRAGMA wal_checkpoint").ok();
     }
     published.finished = pipeline.finish({"stopped", "", "d", ""}).ok();
 }
@@ -130,8 +130,7 @@ void check_kept(const std::filesystem::path& file, const Published& published, c
     }
     const auto verified = pipeline::verify(file, {}, dictionary, nullptr, scratch);
     REQUIRE(verified.ok());
-    for (const auto& fault : verified->faults)
-        FAIL_CHECK(fault);
+    for (const auto& fault : verified->faults) FAIL_CHECK(fault);
 }
 
 void cut_power(int times, std::size_t packets) {
@@ -164,9 +163,10 @@ void cut_power(int times, std::size_t packets) {
     }
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a power cut takes back nothing that was published, and leaves the archive whole", "[archive][pipeline][disk][R43]") {
+TEST_CASE("a power cut takes back nothing that was published, and leaves the archive whole",
+          "[archive][pipeline][disk][R43]") {
     cut_power(20, 600);
 }
 
@@ -183,13 +183,14 @@ TEST_CASE("a disk that loses what was not synced is told from one that keeps it"
             FaultyDisk disk;
             auto database = archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create);
             const auto run = [&](const char* sql) { REQUIRE(database->execute(sql).ok()); };
-            run("PRAGMA journal_mode = WAL; CREATE TABLE IF NOT EXISTS t(x); DELETE FROM t; PRAGMA wal_checkpoint(TRUNCATE)");
+            run("PRAGMA journal_mode = WAL; CREATE TABLE IF NOT EXISTS t(x); DELETE FROM t; PRAGMA "
+                "wal_checkpoint(TRUNCATE)");
             run(synchronous);
-            for (int i = 0; i < 10; ++i)
-                run("INSERT INTO t VALUES (1)");
+            for (int i = 0; i < 10; ++i) run("INSERT INTO t VALUES (1)");
             disk.leave(folder / "after", 1);
         }
-        auto left = archive::sqlite::Database::open((folder / "after/t.db").string(), archive::sqlite::Mode::read_write_create);
+        auto left =
+            archive::sqlite::Database::open((folder / "after/t.db").string(), archive::sqlite::Mode::read_write_create);
         return *left->integer_of("SELECT count(*) FROM t");
     };
     CHECK(rows_after("PRAGMA synchronous = NORMAL") < 10);
@@ -204,7 +205,8 @@ namespace {
 /// the file's name; then the disk is mended and the same step is asked for again.
 class Life {
   public:
-    Life(FaultyDisk& disk, const std::filesystem::path& folder) : disk_(disk), folder_(folder), file_(folder / "a.db") {}
+    Life(FaultyDisk& disk, const std::filesystem::path& folder)
+        : disk_(disk), folder_(folder), file_(folder / "a.db") {}
 
     void live() {
         const auto dictionary = small_dictionary();
@@ -217,8 +219,7 @@ class Life {
         });
         Pipeline pipeline{*archive, dictionary};
         pipeline.on_publish([&](const auto& batch) {
-            for (const auto& item : batch->items)
-                published_.push_back(item.SerializeAsString());
+            for (const auto& item : batch->items) published_.push_back(item.SerializeAsString());
         });
         archive::RunId run;
         insist([&]() -> Result<void> {
@@ -246,7 +247,7 @@ class Life {
         insist([&] { return pipeline.finish({"touchdown", "", "d", ""}); });
         insist([&] { return read_back(*reader, run); });
         reader.reset();
-        archive.reset(); // folds the WAL into the file; what fails of that is made up for at the next start
+        archive.reset();  // folds the WAL into the file; what fails of that is made up for at the next start
         disk_.mend();
         auto again = Reader::open(file_, dictionary);
         REQUIRE(again.ok());
@@ -302,9 +303,10 @@ void fail_each(FaultyDisk::Fault fault, bool lasting, std::uint64_t first, std::
     }
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("whichever operation of the disk fails, it is said, nothing published is lost, and it goes on when the disk is well",
+TEST_CASE("whichever operation of the disk fails, it is said, nothing published is lost, and it goes on when the disk "
+          "is well",
           "[archive][pipeline][disk][R43]") {
     fail_each(FaultyDisk::Fault::input_output, false, 1, 23);
     fail_each(FaultyDisk::Fault::input_output, true, 2, 23);
@@ -314,7 +316,8 @@ TEST_CASE("whichever operation of the disk fails, it is said, nothing published 
 
 TEST_CASE("the n-th operation of the disk fails, for every n", "[.long][archive][pipeline][disk]") {
     for (const bool lasting : {false, true})
-        for (const auto fault : {FaultyDisk::Fault::input_output, FaultyDisk::Fault::full, FaultyDisk::Fault::read_only})
+        for (const auto fault :
+             {FaultyDisk::Fault::input_output, FaultyDisk::Fault::full, FaultyDisk::Fault::read_only})
             fail_each(fault, lasting, 1, 1);
 }
 
@@ -340,8 +343,7 @@ class Watch {
             if (message.has_run_state()) fault = message.run_state().archive_fault();
             if (!message.has_batch()) continue;
             e_s = message.batch().clocks().e_s();
-            for (const auto& item : message.batch().items())
-                REQUIRE(item.seq() == ++last);
+            for (const auto& item : message.batch().items()) REQUIRE(item.seq() == ++last);
         }
     }
     unsigned health() const { return web_request(server_.port(), "GET", "/healthz").status; }
@@ -380,7 +382,7 @@ void harm_and_mend(const char* words, Harm harm, Mend mend) {
         watch.read_until([&] { return !watch.fault.empty(); });
         CHECK_THAT(watch.fault, Catch::Contains(file.string()) && Catch::Contains(words));
         mend(watch);
-        watch.read_until([&] { return watch.e_s > before_s; }); // the landing goes on
+        watch.read_until([&] { return watch.e_s > before_s; });  // the landing goes on
         watch.read_until([&] { return watch.fault.empty(); });
         CHECK(watch.health() == 200);
         const Sequence mended = watch.last;
@@ -393,7 +395,7 @@ void harm_and_mend(const char* words, Harm harm, Mend mend) {
         REQUIRE(reader.ok());
         CHECK(reader->last_seq(archive::RunId{1}).value() >= last);
         reader = Error{"closed"};
-        server.restart(); // a clean end
+        server.restart();  // a clean end
         const auto verified = pipeline::verify(file, {}, tests::shipped_dictionary(), nullptr, copies / "");
         REQUIRE(verified.ok());
         CHECK(verified->faults == std::vector<std::string>{});
@@ -401,7 +403,7 @@ void harm_and_mend(const char* words, Harm harm, Mend mend) {
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("while the disk is full the console is told, the landing goes on, and when there is room all of it is stored",
           "[archive][disk][stream][R43]") {
@@ -411,24 +413,27 @@ TEST_CASE("while the disk is full the console is told, the landing goes on, and 
         [&](Watch& watch) {
             CHECK(watch.health() == 503);
             const double full_s = watch.e_s;
-            watch.read_until([&] { return watch.e_s > full_s + 60.0; }); // far more than the queue of deliveries holds
+            watch.read_until([&] { return watch.e_s > full_s + 60.0; });  // far more than the queue of deliveries holds
             CHECK(watch.health() == 503);
             full->mend();
         });
 }
 
-TEST_CASE("while the disk is read-only the console is told, the landing goes on, and when it can be written all of it is stored",
+TEST_CASE("while the disk is read-only the console is told, the landing goes on, and when it can be written all of it "
+          "is stored",
           "[archive][disk][stream][R43]") {
     FaultyDisk* read_only = nullptr;
     harm_and_mend(
-        "readonly", [&](FaultyDisk& disk, const auto&) { (read_only = &disk)->fail_at(1, FaultyDisk::Fault::read_only, true); },
+        "readonly",
+        [&](FaultyDisk& disk, const auto&) { (read_only = &disk)->fail_at(1, FaultyDisk::Fault::read_only, true); },
         [&](Watch& watch) {
             CHECK(watch.health() == 503);
             read_only->mend();
         });
 }
 
-TEST_CASE("a server that is asked to end while the disk is full ends soon, and the run can be continued", "[archive][disk][R43]") {
+TEST_CASE("a server that is asked to end while the disk is full ends soon, and the run can be continued",
+          "[archive][disk][R43]") {
     FaultyDisk disk;
     RunningServer server{from_uhf_on(), 60.0};
     {
@@ -438,12 +443,12 @@ TEST_CASE("a server that is asked to end while the disk is full ends soon, and t
         watch.read_until([&] { return !watch.fault.empty(); });
     }
     std::promise<void> ended;
-    std::thread rescue{[&, over = ended.get_future()] { // so that a server which waits for the disk ends at all
+    std::thread rescue{[&, over = ended.get_future()] {  // so that a server which waits for the disk ends at all
         if (over.wait_for(std::chrono::seconds{40}) == std::future_status::timeout) disk.mend();
     }};
     const auto asked = std::chrono::steady_clock::now();
     server.end();
-    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds{20}); // four tries, half a second apart
+    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds{20});  // four tries, half a second apart
     ended.set_value();
     rescue.join();
     disk.mend();
@@ -451,30 +456,34 @@ TEST_CASE("a server that is asked to end while the disk is full ends soon, and t
     CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/1").body, Catch::Contains(R"("state":"interrupted")"));
 }
 
-TEST_CASE("an archive that is removed while it is written is put back with all that was in it", "[archive][disk][stream][R43]") {
+TEST_CASE("an archive that is removed while it is written is put back with all that was in it",
+          "[archive][disk][stream][R43]") {
     const auto nothing = [](Watch&) {};
     SECTION("all of its files") {
         harm_and_mend(
-            "was removed", [](auto&, const std::filesystem::path& file) {
-                for (const char* suffix : {"", "-wal", "-shm"})
-                    std::filesystem::remove(file.string() + suffix);
+            "was removed",
+            [](auto&, const std::filesystem::path& file) {
+                for (const char* suffix : {"", "-wal", "-shm"}) std::filesystem::remove(file.string() + suffix);
             },
             nothing);
     }
     SECTION("its log") {
-        harm_and_mend("was removed", [](auto&, const std::filesystem::path& file) { std::filesystem::remove(file.string() + "-wal"); },
-                      nothing);
+        harm_and_mend(
+            "was removed",
+            [](auto&, const std::filesystem::path& file) { std::filesystem::remove(file.string() + "-wal"); }, nothing);
     }
 }
 
-TEST_CASE("who waits for an answer while the disk refuses is told so, also when others wait before it", "[disk][gateway]") {
+TEST_CASE("who waits for an answer while the disk refuses is told so, also when others wait before it",
+          "[disk][gateway]") {
     FaultyDisk disk;
     TemporaryFolder folder;
     const auto dictionary = small_dictionary();
-    server::PipelineThread pipeline{std::move(Archive::open(folder / "a.db")).value(), dictionary, server::PipelineThread::Faults::hold, {}};
+    server::PipelineThread pipeline{
+        std::move(Archive::open(folder / "a.db")).value(), dictionary, server::PipelineThread::Faults::hold, {}};
     REQUIRE(pipeline.begin({}).ok());
     disk.fail_at(1, FaultyDisk::Fault::full, true);
-    const std::vector<std::uint8_t> octets(60'000, 0x55); // no packet of ours: kept as it is
+    const std::vector<std::uint8_t> octets(60'000, 0x55);  // no packet of ours: kept as it is
     for (int i = 0; i < 2'000 && !pipeline.blocked(); ++i) {
         server::Delivery delivery;
         delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::relay_link, Ert{i}, octets});
@@ -494,7 +503,8 @@ TEST_CASE("who waits for an answer while the disk refuses is told so, also when 
     CHECK(pipeline.finish({}).ok());
 }
 
-TEST_CASE("another file in the archive's place is left alone, and the archive is put back when it is gone", "[archive][disk]") {
+TEST_CASE("another file in the archive's place is left alone, and the archive is put back when it is gone",
+          "[archive][disk]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
     const auto dictionary = small_dictionary();
@@ -512,7 +522,7 @@ TEST_CASE("another file in the archive's place is left alone, and the archive is
     CHECK_THAT(refused.error().message, Catch::Contains("a.db was replaced by another file"));
     CHECK(std::filesystem::file_size(file) == 8);
     std::filesystem::remove(file);
-    CHECK_FALSE(pipeline.commit().ok()); // says that it was removed
+    CHECK_FALSE(pipeline.commit().ok());  // says that it was removed
     REQUIRE(pipeline.commit().ok());
     REQUIRE(pipeline.finish({}).ok());
     CHECK(Reader::open(file, dictionary)->events(*run, {})->events_size() == 2);

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> pltu_of(std::uint8_t sequence, std::span<const std::ui
     return pltu;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the station finds the packets of the UHF link however its octets are cut, dated by the last of them",
           "[station]") {
@@ -39,9 +39,10 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
     for (std::size_t at = 0; at < air.size(); at += 16) {
         const auto end = std::min(at + 16, air.size());
         simulation::CycleReport landed;
-        landed.octets.push_back({simulation::uhf_live_link,
-                                 Ert{static_cast<std::int64_t>(at)},
-                                 {air.begin() + static_cast<std::ptrdiff_t>(at), air.begin() + static_cast<std::ptrdiff_t>(end)}});
+        landed.octets.push_back(
+            {simulation::uhf_live_link,
+             Ert{static_cast<std::int64_t>(at)},
+             {air.begin() + static_cast<std::ptrdiff_t>(at), air.begin() + static_cast<std::ptrdiff_t>(end)}});
         for (const auto& packet : station.receive(landed, Ert{1000}).packets) {
             CHECK(packet.link == simulation::uhf_live_link);
             CHECK(packet.ert.microseconds == static_cast<std::int64_t>(at));
@@ -49,8 +50,7 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
         }
     }
     REQUIRE(found.size() == 20);
-    for (std::uint16_t i = 0; i < 20; ++i)
-        CHECK(found[i] == packet_of(i));
+    for (std::uint16_t i = 0; i < 20; ++i) CHECK(found[i] == packet_of(i));
     CHECK(station.links().at(0).pltus.counters().frames == 20);
     CHECK(station.links().at(0).pltus.counters().missing_frames == 0);
 }
@@ -96,7 +96,7 @@ TEST_CASE("a damaged length holds the next frame back no longer than the link is
     GroundStation station{0.0};
     simulation::CycleReport landed;
     auto damaged = pltu_of(0, packet_of(0));
-    damaged[5] |= 0x07; // the frame seems to go on for 2 kB
+    damaged[5] |= 0x07;  // the frame seems to go on for 2 kB
     const auto next = pltu_of(1, packet_of(1));
     damaged.insert(damaged.end(), next.begin(), next.end());
     landed.octets.push_back({simulation::uhf_live_link, Ert{1}, damaged});
@@ -106,7 +106,9 @@ TEST_CASE("a damaged length holds the next frame back no longer than the link is
     CHECK(station.receive(down, Ert{2}).packets.size() == 1);
 }
 
-TEST_CASE("a damaged length holds the next frame back half a second on a link that has fallen quiet, and not while octets come", "[station]") {
+TEST_CASE("a damaged length holds the next frame back half a second on a link that has fallen quiet, and not while "
+          "octets come",
+          "[station]") {
     GroundStation station{0.0};
     const auto at_ms = [](std::int64_t ms) { return Ert{ms * 1000}; };
     const auto bring = [&](std::int64_t ms, const std::vector<std::uint8_t>& octets) {
@@ -115,7 +117,7 @@ TEST_CASE("a damaged length holds the next frame back half a second on a link th
         return station.receive(landed, at_ms(ms)).packets.size();
     };
     auto damaged = pltu_of(0, packet_of(0));
-    damaged[5] |= 0x07; // the frame seems to go on for 2 kB
+    damaged[5] |= 0x07;  // the frame seems to go on for 2 kB
     const auto next = pltu_of(1, packet_of(1));
     damaged.insert(damaged.end(), next.begin(), next.end());
     CHECK(bring(0, damaged) == 0);
@@ -128,5 +130,5 @@ TEST_CASE("a damaged length holds the next frame back half a second on a link th
     const std::vector<std::uint8_t> first(whole.begin(), whole.begin() + 40), rest(whole.begin() + 40, whole.end());
     CHECK(bring(3000, first) == 0);
     CHECK(bring(3400, {}) == 0);
-    CHECK(bring(3450, rest) == 1); // no pause as long as that cuts a frame
+    CHECK(bring(3450, rest) == 1);  // no pause as long as that cuts a frame
 }

@@ -25,12 +25,12 @@ struct Asked {
     const char* says;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("every route answers what it can and refuses the rest by name", "[http][R43]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
     const auto port = server.port();
-    for (int i = 0; i < 200; ++i) { // the run is there as soon as it is in the archive
+    for (int i = 0; i < 200; ++i) {  // the run is there as soon as it is in the archive
         if (web_request(port, "GET", "/api/v1/runs/1").status == 200) break;
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
@@ -49,7 +49,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/channels?names=altitude_m&format=csv", "", 200, "channel,unit,sclk_s,value,source"},
         {"GET", "/api/v1/runs/1/samples?names=altitude_m", "", 200, "sclk,e_s,channel,value,unit,source\n"},
         {"GET", "/api/v1/runs/1/samples?format=jsonl&to=1", "", 200, ""},
-        {"GET", "/api/v1/runs/1/samples?names=speed_mps,altitude_m&align=speed_mps", "", 200, "sclk,e_s,speed_mps,altitude_m\n"},
+        {"GET", "/api/v1/runs/1/samples?names=speed_mps,altitude_m&align=speed_mps", "", 200,
+         "sclk,e_s,speed_mps,altitude_m\n"},
         {"GET", "/api/v1/runs/1/samples?names=speed_mps&align=mach", "", 400, "align: 'mach'"},
         {"GET", "/api/v1/runs/1/samples?format=xlsx", "", 400, "neither csv nor jsonl"},
         {"GET", "/api/v1/runs/1/samples?names=altitud", "", 400, "altitud"},
@@ -87,7 +88,8 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/state?at=2012-219T05:00:00", "", 200, "\"channels\":["},
         {"GET", "/api/v1/runs/1/samples?names=altitude_m&to=2012-219T05:00:00", "", 200, "sclk,e_s,"},
         {"GET", "/api/v1/runs/1/state?at=2012-400T05:00:00", "", 400, "at: '2012-400T05:00:00'"},
-        {"GET", "/api/v1/runs/1/events?to=noon", "", 400, "to: 'noon' is not a number: seconds of SCLK, or SCET as 2012-219T05:00:00"},
+        {"GET", "/api/v1/runs/1/events?to=noon", "", 400,
+         "to: 'noon' is not a number: seconds of SCLK, or SCET as 2012-219T05:00:00"},
         {"GET", "/api/v1/runs/1/events?from=2012-219T05:00:01&to=2012-219T05:00:00", "", 400, "upside down"},
         {"GET", "/api/v1/runs/1/recording", "", 200, "\"realtime_differs\":\"0\""},
         {"GET", "/api/v1/runs/1/report", "", 200, "\"timepoints\":["},
@@ -101,19 +103,25 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         {"GET", "/api/v1/runs/1/alarms", "", 200, "\"changes\":["},
         {"GET", "/api/v1/runs/1/alarms?state=current", "", 200, "\"alarms\":["},
         {"GET", "/api/v1/runs/1/alarms?state=past", "", 400, "state"},
-        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"speed_mps","action":"acknowledge","by":"Ada"})", 409, "speed_mps is normal"},
-        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"GNC-0007","action":"shelve","shelve_s":60,"by":"Ada"})", 201, "\"until\":\""},
+        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"speed_mps","action":"acknowledge","by":"Ada"})", 409,
+         "speed_mps is normal"},
+        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"GNC-0007","action":"shelve","shelve_s":60,"by":"Ada"})", 201,
+         "\"until\":\""},
         {"GET", "/api/v1/runs/1/alarms?state=current", "", 200, "\"state\":\"shelved\""},
-        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"moon","action":"shelve","shelve_s":60,"by":"Ada"})", 422, "moon"},
+        {"POST", "/api/v1/runs/1/alarms", R"({"channel":"moon","action":"shelve","shelve_s":60,"by":"Ada"})", 422,
+         "moon"},
         {"POST", "/api/v1/runs/1/alarms", R"({"canal":"moon"})", 400, "canal"},
-        {"POST", "/api/v1/runs/9/alarms", R"({"channel":"speed_mps","action":"shelve","shelve_s":60,"by":"Ada"})", 404, "9"},
-        {"POST", "/api/v1/runs/latest/notes", R"({"text":"all <b>well</b>","by":"Ada","sclk":1.5})", 201, "\\u003cb\\u003ewell"},
+        {"POST", "/api/v1/runs/9/alarms", R"({"channel":"speed_mps","action":"shelve","shelve_s":60,"by":"Ada"})", 404,
+         "9"},
+        {"POST", "/api/v1/runs/latest/notes", R"({"text":"all <b>well</b>","by":"Ada","sclk":1.5})", 201,
+         "\\u003cb\\u003ewell"},
         {"GET", "/api/v1/runs/1/notes?text=WELL", "", 200, "\"by\":\"Ada\""},
         {"POST", "/api/v1/runs/1/notes", R"({"text":"","by":"Ada"})", 422, "empty"},
         {"POST", "/api/v1/runs/1/notes", R"({"text":"x"})", 422, "by:"},
         {"GET", "/api/v1/runs/1/commands?text=NO_OP", "", 200, "\"commands\":["},
         {"GET", "/api/v1/runs/1/explanations?text=nothing%22", "", 200, "\"explanations\":["},
-        {"GET", "/api/v1/runs/1/channels?expression=speed_mps*2%2B%7BGNC-0007%7D&points=20", "", 200, "\"name\":\"speed_mps*2"},
+        {"GET", "/api/v1/runs/1/channels?expression=speed_mps*2%2B%7BGNC-0007%7D&points=20", "", 200,
+         "\"name\":\"speed_mps*2"},
         {"GET", "/api/v1/runs/1/channels?expression=speed_mps*(2", "", 400, "character"},
         {"GET", "/api/v1/runs/1/channels?expression=speed_mps&names=speed_mps", "", 400, "not both"},
 
@@ -156,8 +164,9 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
         INFO(asked.method << ' ' << asked.target << ' ' << asked.body << " -> " << reply.body.substr(0, 300));
         CHECK(reply.status == asked.status);
         CHECK_THAT(reply.body, Catch::Contains(asked.says));
-        const bool is_command = std::string_view{asked.target}.ends_with("/commands") && (reply.status == 409 || reply.status == 422);
-        if (reply.status >= 400) // a command that was refused is answered by its own message
+        const bool is_command =
+            std::string_view{asked.target}.ends_with("/commands") && (reply.status == 409 || reply.status == 422);
+        if (reply.status >= 400)  // a command that was refused is answered by its own message
             CHECK_THAT(reply.body, Catch::StartsWith(is_command ? "{\"request\":" : "{\"error\":"));
     }
 }
@@ -174,7 +183,7 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
     }
     CHECK(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"pause":true})").status == 202);
     v1::ChannelSeriesList list;
-    for (int i = 0; i < 50; ++i) { // until what was on its way has come
+    for (int i = 0; i < 50; ++i) {  // until what was on its way has come
         octets = ask("&format=protobuf");
         json = ask("");
         if (ask("&format=protobuf").body == octets.body) break;
@@ -186,9 +195,13 @@ TEST_CASE("samples in Protobuf are those in JSON, bit for bit, in less than half
     CHECK(2 * octets.body.size() < json.body.size());
 }
 
-TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK, and a page says in a header where the next begins", "[http][R43]") {
+TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK, and a page says in a header where the "
+          "next begins",
+          "[http][R43]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
-    const auto ask = [&](const std::string& question) { return web_request(server.port(), "GET", "/api/v1/runs/1" + question); };
+    const auto ask = [&](const std::string& question) {
+        return web_request(server.port(), "GET", "/api/v1/runs/1" + question);
+    };
     v1::EventList events;
     for (int i = 0; i < 3000 && events.events_size() < 2; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
@@ -206,7 +219,7 @@ TEST_CASE("an event is found by its SCET, which the run's clock turns into SCLK,
 
     for (const char* format : {"json", "csv", "jsonl"})
         CHECK(ask(std::string{"/events?limit=1&format="} + format).next_after == std::to_string(first.seq()));
-    CHECK(ask("/commands?format=csv").next_after.empty()); // it has no pages
+    CHECK(ask("/commands?format=csv").next_after.empty());  // it has no pages
 }
 
 TEST_CASE("a rehearsal that cannot be is refused with what is wrong, and the next one begins", "[http][R45]") {
@@ -245,28 +258,34 @@ namespace {
 /// What the instructor did, once it is so much.
 v1::InterventionList interventions_of(const RunningServer& server, int count) {
     v1::InterventionList told;
-    for (int i = 0; i < 3000 && told.interventions_size() < count; ++i, std::this_thread::sleep_for(std::chrono::milliseconds{20})) {
+    for (int i = 0; i < 3000 && told.interventions_size() < count;
+         ++i, std::this_thread::sleep_for(std::chrono::milliseconds{20})) {
         told.Clear();
         REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/interventions").body, told));
     }
     return told;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is told what cannot be", "[http][faults]") {
+TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is told what cannot be",
+          "[http][faults]") {
     RunningServer server;
     const auto control = [&](const std::string& inject) {
-        return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"inject":{}}})", inject));
+        return web_request(server.port(), "POST", "/api/v1/rehearsals/current",
+                           fmt::format(R"({{"inject":{}}})", inject));
     };
-    const char* const radar = R"({"device_fault":{"device":"DEVICE_RADAR","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":20}})";
-    CHECK(control(radar).status == 409); // none goes on
-    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const char* const radar =
+        R"({"device_fault":{"device":"DEVICE_RADAR","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":20}})";
+    CHECK(control(radar).status == 409);  // none goes on
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status ==
+            201);
     CHECK(control(radar).status == 202);
     CHECK(control(R"({"system_fault":{"duration_s":3}})").status == 202);
     CHECK(control(R"({"computer_reset":true})").status == 202);
     CHECK(web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":1,"pace":2})").status == 202);
-    const auto of_another = web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":2,"stop":true})");
+    const auto of_another =
+        web_request(server.port(), "POST", "/api/v1/rehearsals/current", R"({"run":2,"stop":true})");
     CHECK(of_another.status == 422);
     CHECK_THAT(of_another.body, Catch::Contains("run 2 is not the one that goes on (1)"));
     const Asked refused[] = {
@@ -276,8 +295,11 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
         {"", "", R"({"station_outage":{"duration_s":0}})", 422, "station_outages[0].duration_s: 0"},
         {"", "", R"({"station_outage":{"duration_s":3,"begin_before_entry_s":5}})", 422, "it begins now"},
         {"", "", R"({"system_fault":{"duration_s":3,"begin_before_entry_s":5}})", 422, "it begins now"},
-        {"", "", R"({"device_fault":{"unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":1}})", 422, "device_fault.device: missing"},
-        {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_REFUSES","duration_s":1}})", 422, "not possible"},
+        {"", "", R"({"device_fault":{"unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_SILENT","duration_s":1}})",
+         422, "device_fault.device: missing"},
+        {"", "",
+         R"({"device_fault":{"device":"DEVICE_IMU","unit":"REDUNDANT_UNIT_A","kind":"DEVICE_FAULT_KIND_REFUSES","duration_s":1}})",
+         422, "not possible"},
         {"", "", R"({"device_fault":{"device":"DEVICE_IMU","unit":"C"}})", 400, "unit"},
     };
     for (const auto& row : refused) {
@@ -298,14 +320,18 @@ TEST_CASE("an instructor breaks something in the rehearsal that goes on, and is 
     CHECK(told.interventions(2).e_s() < start_e_s + 60.0);
 }
 
-TEST_CASE("an instructor's note is kept with its instant, apart from the shift log and the stream, and what is none is refused", "[http][notes]") {
+TEST_CASE("an instructor's note is kept with its instant, apart from the shift log and the stream, and what is none is "
+          "refused",
+          "[http][notes]") {
     RunningServer server;
     const auto note = [&](const std::string& body) {
         return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"note":{}}})", body));
     };
-    CHECK(note(R"({"text":"too early","by":"Ida"})").status == 409); // none goes on
-    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
-    for (const auto& [body, says] : {std::pair{R"({"text":"x"})", "by:"}, std::pair{R"({"text":" ","by":"Ida"})", "the note is empty"}}) {
+    CHECK(note(R"({"text":"too early","by":"Ida"})").status == 409);  // none goes on
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status ==
+            201);
+    for (const auto& [body, says] :
+         {std::pair{R"({"text":"x"})", "by:"}, std::pair{R"({"text":" ","by":"Ida"})", "the note is empty"}}) {
         const auto reply = note(body);
         INFO(body << " -> " << reply.body);
         CHECK(reply.status == 422);
@@ -322,7 +348,8 @@ TEST_CASE("an instructor's note is kept with its instant, apart from the shift l
     CHECK(log.notes_size() == 0);
 }
 
-TEST_CASE("a rehearsal that the program was started with is in the audit, with the system's name of who started it", "[audit][http]") {
+TEST_CASE("a rehearsal that the program was started with is in the audit, with the system's name of who started it",
+          "[audit][http]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
     auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
     REQUIRE(reader);
@@ -334,13 +361,18 @@ TEST_CASE("a rehearsal that the program was started with is in the audit, with t
     CHECK(entry.outcome == "done");
 }
 
-TEST_CASE("what is answered as done is in the audit by then; while the disk refuses the answer comes all the same", "[audit][http][disk]") {
+TEST_CASE("what is answered as done is in the audit by then; while the disk refuses the answer comes all the same",
+          "[audit][http][disk]") {
     FaultyDisk disk;
     RunningServer server;
     auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
     REQUIRE(reader);
-    const auto pace = [&](int wanted) { return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"pace":{}}})", wanted)).status; };
-    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    const auto pace = [&](int wanted) {
+        return web_request(server.port(), "POST", "/api/v1/rehearsals/current", fmt::format(R"({{"pace":{}}})", wanted))
+            .status;
+    };
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status ==
+            201);
     for (int wanted = 2; wanted < 12; ++wanted) {
         REQUIRE(pace(wanted) == 202);
         const auto entries = reader->audit(0, 100);
@@ -349,25 +381,29 @@ TEST_CASE("what is answered as done is in the audit by then; while the disk refu
         CHECK_THAT(entries->back().detail, Catch::Contains(fmt::format(R"({{"pace":{}}})", wanted)));
     }
     disk.fail_at(1, FaultyDisk::Fault::input_output, true);
-    for (int i = 0; i < 3; ++i)
-        CHECK(pace(20 + i) == 202);
+    for (int i = 0; i < 3; ++i) CHECK(pace(20 + i) == 202);
     disk.mend();
     for (int i = 0; i < 3000 && reader->audit(0, 100).value().size() < 14; ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds{20});
     CHECK(reader->audit(0, 100)->size() == 14);
 }
 
-TEST_CASE("what is said while the disk refuses is answered at once, as taken and not yet stored, and is in the archive once the disk is well", "[http][disk]") {
+TEST_CASE("what is said while the disk refuses is answered at once, as taken and not yet stored, and is in the archive "
+          "once the disk is well",
+          "[http][disk]") {
     FaultyDisk disk;
     RunningServer server;
-    const auto post = [&](const char* route, const std::string& body) { return web_request(server.port(), "POST", fmt::format("/api/v1/runs/latest/{}", route), body); };
+    const auto post = [&](const char* route, const std::string& body) {
+        return web_request(server.port(), "POST", fmt::format("/api/v1/runs/latest/{}", route), body);
+    };
     const auto stored = [&](const char* question, const char* words) {
         const auto body = web_request(server.port(), "GET", fmt::format("/api/v1/runs/1/{}", question)).body;
         return body.find(words) != std::string::npos;
     };
-    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status == 201);
+    REQUIRE(web_request(server.port(), "POST", "/api/v1/rehearsals", R"({"scenario":"nominal","pace":1})").status ==
+            201);
     disk.fail_at(1, FaultyDisk::Fault::full, true);
-    for (int i = 0; i < 2; ++i) { // whether or not it is known already
+    for (int i = 0; i < 2; ++i) {  // whether or not it is known already
         const auto note = post("notes", R"({"text":"the disk is full","by":"ada"})");
         CHECK(note.status == 503);
         CHECK_THAT(note.body, Catch::Contains("do not send it again"));
@@ -383,10 +419,14 @@ TEST_CASE("what is said while the disk refuses is answered at once, as taken and
     CHECK(post("notes", R"({"text":"and well again","by":"ada"})").status == 201);
 }
 
-TEST_CASE("a question that the disk keeps from its answer is the server's fault and not the asker's, and is answered once the disk is well", "[http][disk]") {
+TEST_CASE("a question that the disk keeps from its answer is the server's fault and not the asker's, and is answered "
+          "once the disk is well",
+          "[http][disk]") {
     FaultyDisk disk;
     RunningServer server{shipped_scenario("nominal"), 100.0};
-    const auto status_of = [&](const char* question) { return web_request(server.port(), "GET", fmt::format("/api/v1/runs/1/{}", question)).status; };
+    const auto status_of = [&](const char* question) {
+        return web_request(server.port(), "GET", fmt::format("/api/v1/runs/1/{}", question)).status;
+    };
     const auto comes = [&](unsigned status) {
         for (int i = 0; i < 3'000; ++i) {
             if (status_of("events") == status) return true;
@@ -402,10 +442,10 @@ TEST_CASE("a question that the disk keeps from its answer is the server's fault 
         return at == std::string::npos ? body : body.substr(at, body.find(',', at) - at);
     };
     const auto before = last_seq();
-    for (int i = 0; i < 3'000 && last_seq() == before; ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds{20});
+    for (int i = 0; i < 3'000 && last_seq() == before; ++i) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     disk.fail_at(1, FaultyDisk::Fault::input_output, true);
-    for (const char* question : {"events", "channels?names=altitude_m", "samples?names=altitude_m", "state", "report"}) {
+    for (const char* question :
+         {"events", "channels?names=altitude_m", "samples?names=altitude_m", "state", "report"}) {
         INFO(question);
         CHECK(status_of(question) == 500);
     }
@@ -416,7 +456,9 @@ TEST_CASE("a question that the disk keeps from its answer is the server's fault 
 
 TEST_CASE("a command file goes whole or not at all, and names the command that is refused", "[http][R44]") {
     RunningServer server{shipped_scenario("nominal"), 100.0};
-    const auto post = [&](std::string_view body) { return web_request(server.port(), "POST", "/api/v1/runs/latest/sequences", body); };
+    const auto post = [&](std::string_view body) {
+        return web_request(server.port(), "POST", "/api/v1/runs/latest/sequences", body);
+    };
     WebReply reply;
     for (int i = 0; i < 3000 && reply.status != 202; ++i) {
         reply = post(R"({"dry_run":true,"commands":[{"command":"NO_OP"},{"command":"NO_OP"}]})");
@@ -426,92 +468,109 @@ TEST_CASE("a command file goes whole or not at all, and names the command that i
     const auto spoilt = post(R"({"commands":[{"command":"NO_OP"},{"command":"EDL_DO_EDL"}]})");
     CHECK(spoilt.status == 409);
     CHECK_THAT(spoilt.body, Catch::Contains("commands[1]: EDL_DO_EDL is hazardous"));
-    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body, Catch::StartsWith(R"({"commands":[])"));
+    CHECK_THAT(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body,
+               Catch::StartsWith(R"({"commands":[])"));
     const auto taken = post(R"({"commands":[{"command":"NO_OP","request":"5"},{"command":"NO_OP","hold":true}]})");
     CHECK(taken.status == 202);
     CHECK_THAT(taken.body, Catch::Contains(R"("request":"5","command":"1")") && Catch::Contains(R"("command":"2")"));
     CHECK(post(R"({"commands":[]})").status == 400);
-    CHECK_THAT(post(R"({"commands":[{"command":"NO_OP","dry_run":true}]})").body, Catch::Contains("commands[0]: dry_run"));
+    CHECK_THAT(post(R"({"commands":[{"command":"NO_OP","dry_run":true}]})").body,
+               Catch::Contains("commands[0]: dry_run"));
     // Nor is a part of one taken that the run has no room for.
     std::string hundred = R"({"commands":[)";
     for (int i = 0; i < 100; ++i)
         hundred += i == 0 ? R"({"command":"NO_OP","hold":true})" : R"(,{"command":"NO_OP","hold":true})";
     hundred += "]}";
-    for (int i = 0; i < 40; ++i)
-        REQUIRE(post(hundred).status == 202);
+    for (int i = 0; i < 40; ++i) REQUIRE(post(hundred).status == 202);
     const auto over = post(hundred);
     CHECK(over.status == 409);
     CHECK_THAT(over.body, Catch::Contains("commands[94]: this run has had 4002 of its 4096 commands"));
     CHECK(post(R"({"commands":[{"command":"NO_OP","hold":true}]})").status == 202);
 }
 
-TEST_CASE("a command that would break a constraint of the timeline is refused before it is sent, and the constraint is named", "[http][R19]") {
-    RunningServer server{shipped_scenario("nominal"), 1.0}; // the run outlasts the analysis, however slow the build
+TEST_CASE(
+    "a command that would break a constraint of the timeline is refused before it is sent, and the constraint is named",
+    "[http][R19]") {
+    RunningServer server{shipped_scenario("nominal"), 1.0};  // the run outlasts the analysis, however slow the build
     const auto& timeline = tests::shipped_dictionary().timeline;
-    const auto row = std::ranges::find(timeline, "cruise_stage_separation", &dictionary::TimelineRow::name) - timeline.begin();
+    const auto row =
+        std::ranges::find(timeline, "cruise_stage_separation", &dictionary::TimelineRow::name) - timeline.begin();
     const auto ask = [&](double desired_s, double minimum_s, bool dry_run) {
-        const auto body = fmt::format(R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","dry_run":{},"arguments":[{{"name":"timepoint","value":{}}},)"
-                                      R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
-                                      dry_run, row, desired_s, minimum_s);
+        const auto body = fmt::format(
+            R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","dry_run":{},"arguments":[{{"name":"timepoint","value":{}}},)"
+            R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
+            dry_run, row, desired_s, minimum_s);
         return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", body);
     };
     WebReply reply;
-    for (int i = 0; i < 3000 && reply.status != 202; ++i) { // a slow build is long in starting the run
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) {  // a slow build is long in starting the run
         reply = ask(-600.0, 2.0, true);
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
     CHECK_THAT(reply.body, Catch::Contains("bounds of constraints.csv hold on the changed timeline"));
-    const auto broken = ask(-620.0, 0.0, false); // at once behind the cutters, which need their two seconds
+    const auto broken = ask(-620.0, 0.0, false);  // at once behind the cutters, which need their two seconds
     INFO(broken.body);
     CHECK(broken.status == 409);
-    CHECK_THAT(broken.body, Catch::Contains("breaks a constraint") && Catch::Contains("cruise_stage_separation") && Catch::Contains("constraints.csv:"));
+    CHECK_THAT(broken.body, Catch::Contains("breaks a constraint") && Catch::Contains("cruise_stage_separation") &&
+                                Catch::Contains("constraints.csv:"));
 }
 
-TEST_CASE("when a change of the timeline is cancelled, what waits is looked at again with what remains, and its history says so", "[http][R19][R44]") {
+TEST_CASE("when a change of the timeline is cancelled, what waits is looked at again with what remains, and its "
+          "history says so",
+          "[http][R19][R44]") {
     RunningServer server{shipped_scenario("nominal"), 1.0};
     const auto& timeline = tests::shipped_dictionary().timeline;
     const auto hold = [&](const char* timepoint, double desired_s, double minimum_s) {
         const auto row = std::ranges::find(timeline, timepoint, &dictionary::TimelineRow::name) - timeline.begin();
-        const auto body = fmt::format(R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","hold":true,"arguments":[{{"name":"timepoint","value":{}}},)"
-                                      R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
-                                      row, desired_s, minimum_s);
+        const auto body = fmt::format(
+            R"({{"command":"EDL_SET_TIMEPOINT_OFFSET","hold":true,"arguments":[{{"name":"timepoint","value":{}}},)"
+            R"({{"name":"desired_offset_s","value":{}}},{{"name":"minimum_offset_s","value":{}}}]}})",
+            row, desired_s, minimum_s);
         return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", body);
     };
     const auto act = [&](const char* action, int number) {
-        return web_request(server.port(), "POST", "/api/v1/runs/latest/commands", fmt::format(R"({{"action":"{}","number":{}}})", action, number));
+        return web_request(server.port(), "POST", "/api/v1/runs/latest/commands",
+                           fmt::format(R"({{"action":"{}","number":{}}})", action, number));
     };
-    const auto released = [&](int number, std::string_view says) { // the newest word about when it leaves, once it says so
+    const auto released = [&](int number,
+                              std::string_view says) {  // the newest word about when it leaves, once it says so
         std::string newest;
         for (int i = 0; i < 3000; ++i) {
             v1::CommandList list;
             REQUIRE(from_json(web_request(server.port(), "GET", "/api/v1/runs/latest/commands").body, list));
             if (list.commands_size() >= number)
                 for (const auto& stage : list.commands(number - 1).stages())
-                    if (stage.command_stage().stage() == "released") newest = stage.command_stage().status() + ": " + stage.command_stage().evidence();
+                    if (stage.command_stage().stage() == "released")
+                        newest = stage.command_stage().status() + ": " + stage.command_stage().evidence();
             if (newest.find(says) != std::string::npos) break;
             std::this_thread::sleep_for(std::chrono::milliseconds{20});
         }
         return newest;
     };
     WebReply reply;
-    for (int i = 0; i < 3000 && reply.status != 202; ++i) { // a slow build is long in starting the run
+    for (int i = 0; i < 3000 && reply.status != 202; ++i) {  // a slow build is long in starting the run
         reply = hold("detumble", -516.0, 0.0);
         if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
     }
     REQUIRE(reply.status == 202);
-    const auto later = hold("cruise_stage_separation", -594.0, 2.0); // as late only because the detumble is
+    const auto later = hold("cruise_stage_separation", -594.0, 2.0);  // as late only because the detumble is
     INFO(later.body);
     REQUIRE(later.status == 202);
-    const auto other = hold("coolant_vent", -827.0, 0.0); // for which neither matters
+    const auto other = hold("coolant_vent", -827.0, 0.0);  // for which neither matters
     INFO(other.body);
     REQUIRE(other.status == 202);
     CHECK_THAT(act("timeline refuted", 2).body, Catch::Contains("that is for the server itself"));
     REQUIRE(act("cancel", 1).status == 202);
-    CHECK_THAT(released(2, "breaks a constraint"), Catch::StartsWith("failed: what it was analysed with has changed: ") && Catch::Contains("cruise_stage_separation:fired to detumble:triggered"));
-    CHECK_THAT(released(3, "constraints.csv hold"), Catch::StartsWith("pending: ") && Catch::Contains("looked at again"));
+    CHECK_THAT(released(2, "breaks a constraint"),
+               Catch::StartsWith("failed: what it was analysed with has changed: ") &&
+                   Catch::Contains("cruise_stage_separation:fired to detumble:triggered"));
+    CHECK_THAT(released(3, "constraints.csv hold"),
+               Catch::StartsWith("pending: ") && Catch::Contains("looked at again"));
 }
 
-TEST_CASE("without accounts a browser is known by a cookie, and who asked a command cannot approve it under another name", "[http][access][R23]") {
+TEST_CASE(
+    "without accounts a browser is known by a cookie, and who asked a command cannot approve it under another name",
+    "[http][access][R23]") {
     RunningServer server{shipped_scenario("two_persons"), 100.0};
     const auto port = server.port();
     const auto browser = [&] {
@@ -521,31 +580,38 @@ TEST_CASE("without accounts a browser is known by a cookie, and who asked a comm
     };
     const Headers first = browser(), second = browser(), none;
     CHECK(first[0].second != second[0].second);
-    CHECK(web_request(port, "GET", "/api/v1/session", {}, first).set_cookie.empty()); // it stays the one that it is
+    CHECK(web_request(port, "GET", "/api/v1/session", {}, first).set_cookie.empty());  // it stays the one that it is
     const auto ask = [&](const std::string& name, const Headers& from) {
         WebReply reply;
         for (int i = 0; i < 3000 && reply.status != 202; ++i) {
-            reply = web_request(port, "POST", "/api/v1/runs/latest/commands",
-                                fmt::format(R"({{"command":"EDL_SET_PARAMETERS","from_solution":true,"controller":"{}"}})", name), from);
+            reply = web_request(
+                port, "POST", "/api/v1/runs/latest/commands",
+                fmt::format(R"({{"command":"EDL_SET_PARAMETERS","from_solution":true,"controller":"{}"}})", name),
+                from);
             if (reply.status != 202) std::this_thread::sleep_for(std::chrono::milliseconds{20});
         }
         return reply.status;
     };
     const auto approve = [&](int number, const std::string& name, const Headers& from) {
         return web_request(port, "POST", "/api/v1/runs/latest/commands",
-                           fmt::format(R"({{"action":"approve","number":{},"controller":"{}","browser":"made up"}})", number, name), from).body;
+                           fmt::format(R"({{"action":"approve","number":{},"controller":"{}","browser":"made up"}})",
+                                       number, name),
+                           from)
+            .body;
     };
     REQUIRE(ask("ann", first) == 202);
     CHECK_THAT(approve(1, "ben", first), Catch::Contains("a second person approves it in a browser of their own"));
     CHECK_THAT(approve(1, "ben", second), Catch::Contains(R"("accepted":true)"));
     REQUIRE(ask("ann", none) == 202);
     CHECK_THAT(approve(2, "ben", none), Catch::Contains("a second person approves it in a browser of their own"));
-    CHECK_THAT(approve(2, "ben", first), Catch::Contains(R"("accepted":true)")); // a browser is another than a program
+    CHECK_THAT(approve(2, "ben", first), Catch::Contains(R"("accepted":true)"));  // a browser is another than a program
 }
 
-TEST_CASE("a command of a scenario's script that is refused in flight is in the run's history, with why", "[http][R44]") {
+TEST_CASE("a command of a scenario's script that is refused in flight is in the run's history, with why",
+          "[http][R44]") {
     auto scenario = shipped_scenario("nominal_auto");
-    scenario.radio.tracking_passes = {{.station = "DSS-43", .begin_after_entry_s = -60.0, .end_after_entry_s = 3600.0}}; // after the script's time
+    scenario.radio.tracking_passes = {
+        {.station = "DSS-43", .begin_after_entry_s = -60.0, .end_after_entry_s = 3600.0}};  // after the script's time
     RunningServer server{scenario, 100.0};
     std::string commands;
     for (int i = 0; i < 3000 && commands.find("EDL_DO_EDL") == std::string::npos; ++i) {
@@ -559,7 +625,8 @@ TEST_CASE("a command of a scenario's script that is refused in flight is in the 
     const auto& stage = list.commands(0).stages(0).command_stage();
     CHECK(stage.stage() == "queued");
     CHECK(stage.status() == "failed");
-    CHECK_THAT(stage.evidence(), Catch::Contains("asked for by the scenario's script, refused: no station sees the vehicle"));
+    CHECK_THAT(stage.evidence(),
+               Catch::Contains("asked for by the scenario's script, refused: no station sees the vehicle"));
 }
 
 TEST_CASE("a page of another site, or a name bound to this address, gets nothing", "[http]") {
@@ -576,7 +643,7 @@ TEST_CASE("a page of another site, or a name bound to this address, gets nothing
     CHECK(status({{"Origin", "http://localhost.evil.example"}}) == 403);
     CHECK(status({{"Host", "evil.example"}}) == 403);
     CHECK(status({{"Host", "localhost"}}) == 200);
-    CHECK(status({{"Host", "LocalHost:8080"}, {"Origin", "http://localhost:8080"}}) == 200); // names have no case
+    CHECK(status({{"Host", "LocalHost:8080"}, {"Origin", "http://localhost:8080"}}) == 200);  // names have no case
     CHECK_FALSE(StreamClient{server.port(), "aeolis.v1.json", {{"Origin", "http://evil.example"}}}.open());
 }
 

@@ -21,21 +21,25 @@ v1::EventList two_events() {
     first.mutable_event()->set_text("a \"quoted\", text\nof two lines");
     first.mutable_event()->set_sclk(397000845.015625);
     first.mutable_event()->set_source(v1::SOURCE_RECORDED);
-    list.add_events()->set_seq(UINT64_C(9007199254740993)); // one that no double holds
+    list.add_events()->set_seq(UINT64_C(9007199254740993));  // one that no double holds
     list.set_next_after(9);
     return list;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a list as CSV has a column a field by its path and a row a line, quoted by RFC 4180; what a row does not have is empty", "[http][export]") {
+TEST_CASE("a list as CSV has a column a field by its path and a row a line, quoted by RFC 4180; what a row does not "
+          "have is empty",
+          "[http][export]") {
     const auto csv = as("csv", two_events(), {"events", {"event"}});
     CHECK(csv.content_type == "text/csv; charset=utf-8");
     CHECK(csv.next_after == "9");
-    CHECK(csv.body == "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
-                      "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
-                      "9007199254740993,,,,,,,,\n");
-    CHECK(as("csv", v1::EventList{}, {"events", {"event"}}).body.starts_with("seq,event.id,")); // a header also of no rows
+    CHECK(csv.body ==
+          "seq,event.id,event.name,event.level,event.text,event.sclk,event.ert,event.source,event.duplicate\n"
+          "7,0,TOUCHDOWN,,\"a \"\"quoted\"\", text\nof two lines\",397000845.015625,,recorded,false\n"
+          "9007199254740993,,,,,,,,\n");
+    CHECK(as("csv", v1::EventList{}, {"events", {"event"}})
+              .body.starts_with("seq,event.id,"));  // a header also of no rows
 }
 
 TEST_CASE("a list as JSON lines has its rows as they are in the list, one a line", "[http][export]") {
@@ -47,7 +51,9 @@ TEST_CASE("a list as JSON lines has its rows as they are in the list, one a line
     CHECK(as("json", list, {"events", {"event"}}).body == server::to_json(list));
 }
 
-TEST_CASE("as CSV a repeated field is one cell: numbers and texts with blanks between, messages as JSON, octets hexadecimal", "[http][export]") {
+TEST_CASE(
+    "as CSV a repeated field is one cell: numbers and texts with blanks between, messages as JSON, octets hexadecimal",
+    "[http][export]") {
     v1::ToneList tones;
     auto& tone = *tones.add_tones()->mutable_tone();
     tone.set_spectrum(std::string{"\x00\xff", 2});
@@ -62,29 +68,31 @@ TEST_CASE("as CSV a repeated field is one cell: numbers and texts with blanks be
     series.mutable_channels(0)->add_source(v1::SOURCE_REALTIME);
     const auto columns = as("csv", series, {"channels"});
     CHECK_THAT(columns.body, Catch::Contains(",1.5 2,,realtime,"));
-    CHECK(columns.next_after.empty()); // no pages
+    CHECK(columns.next_after.empty());  // no pages
 }
 
 TEST_CASE("as CSV an SCLK has SCET beside it where the clock of the run is known", "[http][export]") {
     auto list = two_events();
-    list.mutable_events(1)->mutable_event()->set_sclk(1e15); // no date has so many digits
+    list.mutable_events(1)->mutable_event()->set_sclk(1e15);  // no date has so many digits
     const ClockCorrelation clock{Sclk{397000845.0}, *scet_from_day_of_year("2012-219T05:17:57.000")};
     const auto csv = list_response("csv", list, {"events", {"event"}}, clock).body;
-    CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") && Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));
+    CHECK_THAT(csv, Catch::Contains(",event.sclk,event.scet,event.ert,") &&
+                        Catch::Contains(",397000845.015625,2012-219T05:17:57.015,,recorded"));
     CHECK_THAT(csv, Catch::Contains(",1e+15,,,"));
     v1::TimepointList timepoints;
     timepoints.add_timepoints();
     CHECK_THAT(list_response("csv", timepoints, {"timepoints"}, clock).body, Catch::Contains("_scet,"));
 }
 
-TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it is; numbers stay numbers", "[http][export]") {
+TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it is; numbers stay numbers",
+          "[http][export]") {
     v1::NoteList notes;
     auto& note = *notes.add_notes()->mutable_note();
     const auto cell = [&](const char* text) {
         note.set_text(text);
         const auto csv = as("csv", notes, {"notes", {"note"}}).body;
         const auto row = csv.substr(csv.find('\n') + 1);
-        return row.substr(2, row.find(",,,") - 2); // behind seq
+        return row.substr(2, row.find(",,,") - 2);  // behind seq
     };
     CHECK(cell("=A1&\"x\"") == R"q("'=A1&""x""")q");
     CHECK(cell("@SUM(1)") == "'@SUM(1)");

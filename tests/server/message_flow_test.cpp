@@ -16,14 +16,13 @@ std::size_t type_named(std::string_view name) {
     return static_cast<std::size_t>(found - message_names.begin());
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("who talks to whom is counted as it is sent, and the document says it in the source's own names",
           "[venue][R9][R40]") {
     const auto flow = std::make_shared<MessageFlow>();
     Rehearsal rehearsal{test::shipped_scenario("nominal_auto"), 1, 0, tests::shipped_dictionary(), flow};
-    for (int tick = 0; tick < 64 * 60; ++tick)
-        rehearsal.step();
+    for (int tick = 0; tick < 64 * 60; ++tick) rehearsal.step();
     CHECK(flow->cycles() == 64 * 60);
     using flight::ModuleId;
     CHECK(flow->interrupts(ModuleId::sync, type_named("ClockTick")) == flow->cycles());

@@ -20,8 +20,8 @@ namespace {
 /// One landing of the scenario, by the whole flight software, with the truth of each tick.
 struct Flown {
     std::map<std::string, simulation::TruthEvent> events;
-    std::vector<TruthState> truth; ///< 16 a second, as the published trajectory has them
-    TruthState first_drag;         ///< at 0.2 g, unfiltered
+    std::vector<TruthState> truth;  ///< 16 a second, as the published trajectory has them
+    TruthState first_drag;          ///< at 0.2 g, unfiltered
     double peak_mps2 = 0.0;
     simulation::TouchdownReport touchdown;
 
@@ -35,8 +35,7 @@ struct Flown {
             if (now.sclk.ticks() % 4 == 0) truth.push_back(now);
         }
         REQUIRE(rehearsal.outcome() == "touchdown");
-        for (const auto& event : rehearsal.events())
-            events.emplace(event.name, event);
+        for (const auto& event : rehearsal.events()) events.emplace(event.name, event);
         peak_mps2 = rehearsal.landing().peak_deceleration_mps2();
         touchdown = *rehearsal.landing().touchdown();
     }
@@ -75,7 +74,7 @@ std::vector<Published> published_events() {
     return events;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("OD137's events come at its times, heights and speeds, flown from its entry state", "[od137][R27]") {
     const auto published_all = published_events();
@@ -83,12 +82,15 @@ TEST_CASE("OD137's events come at its times, heights and speeds, flown from its 
     for (const Published& published : published_all) {
         REQUIRE(flown().events.count(published.event) == 1);
         const auto& event = flown().events.at(published.event);
-        const double height_m = event.altitude_m; // the scenario's ground lies where the stage's height is nil at touchdown
+        const double height_m =
+            event.altitude_m;  // the scenario's ground lies where the stage's height is nil at touchdown
         INFO(published.event << ": E+" << event.e_s << " (" << published.e_s << "), " << height_m << " m ("
-                             << published.height_m << "), " << event.speed_mps << " m/s (" << published.speed_mps << ")");
+                             << published.height_m << "), " << event.speed_mps << " m/s (" << published.speed_mps
+                             << ")");
         CHECK(std::abs(event.e_s - published.e_s) <= published.within_s);
         CHECK(std::abs(height_m - published.height_m) <= std::max(0.03 * published.height_m, 10.0));
-        CHECK(std::abs(event.speed_mps - published.speed_mps) <= std::max(published.speed_within * published.speed_mps, 1.0));
+        CHECK(std::abs(event.speed_mps - published.speed_mps) <=
+              std::max(published.speed_within * published.speed_mps, 1.0));
     }
     CHECK(flown().first_drag.e_s == Approx(43.0).margin(1.5));
     CHECK(flown().peak_mps2 == Approx(121.10).epsilon(0.03));

@@ -42,15 +42,14 @@ struct Ground {
     archive::RunId run() const { return *pipeline.run(); }
     std::vector<v1::Item> items() const {
         std::vector<v1::Item> all;
-        for (const auto& batch : published)
-            all.insert(all.end(), batch->items.begin(), batch->items.end());
+        for (const auto& batch : published) all.insert(all.end(), batch->items.begin(), batch->items.end());
         return all;
     }
     /// A bit of everything.
     void feed() {
         REQUIRE(pipeline.accept({simulation::uhf_live_link, Ert{5}, true, "nominal"}).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(0, 1000.0, 9000.0F, 5900.0F))).ok());
-        REQUIRE(pipeline.accept(live(navigation_packet(1, 1001.0, {}, 6100.0F))).ok()); // in alarm
+        REQUIRE(pipeline.accept(live(navigation_packet(1, 1001.0, {}, 6100.0F))).ok());  // in alarm
         REQUIRE(pipeline.accept(live(status_packet(0, 1001.0, 2))).ok());
         REQUIRE(pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))).ok());
         REQUIRE(pipeline.accept(live(fired_packet(0, 1002.0, 2))).ok());
@@ -78,8 +77,7 @@ struct Ground {
 
 std::string text_of(const std::vector<v1::Item>& items) {
     std::string text;
-    for (const auto& item : items)
-        text += item.ShortDebugString() + "\n";
+    for (const auto& item : items) text += item.ShortDebugString() + "\n";
     return text;
 }
 
@@ -94,7 +92,7 @@ archive::RunStart drifting(double entry_sclk_s) {
     return start;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("nothing is published before it is committed", "[pipeline]") {
     Ground ground;
@@ -118,7 +116,7 @@ TEST_CASE("a run keeps its clock, and its drift counts where ground dates what i
     tone.end = Ert{30'000'000};
     REQUIRE(ground.pipeline.accept(tone).ok());
     REQUIRE(ground.pipeline.commit().ok());
-    CHECK(ground.items().back().tone().sclk() == Approx(116.0)); // 20 s of UTC are 16 of this clock
+    CHECK(ground.items().back().tone().sclk() == Approx(116.0));  // 20 s of UTC are 16 of this clock
     const auto state = ground.reader().run(ground.run());
     REQUIRE(state.ok());
     CHECK(state->clock().version() == 7);
@@ -144,27 +142,31 @@ TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL
     REQUIRE(ground.pipeline.accept(stage).ok());
     REQUIRE(ground.pipeline.commit().ok());
 
-    auto database = std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_only)).value();
+    auto database =
+        std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_only)).value();
     const auto row_of = [&](const char* sql) {
         auto rows = database.prepare(sql);
         REQUIRE(rows.ok());
         std::string text;
         REQUIRE(*rows->step());
-        for (int column = 0; column < 5; ++column)
-            text += std::string(rows->text(column)) + " ";
+        for (int column = 0; column < 5; ++column) text += std::string(rows->text(column)) + " ";
         return text;
     };
     CHECK(row_of("SELECT scenario, version, drift, scet, entry_scet FROM clock_log WHERE run = 2") ==
           "drifting 7 0.25 2000-001T12:00:00.000 2000-001T12:20:50.000 ");
-    CHECK(row_of("SELECT run, command, asked_by, needs_approval, at FROM command_wait_log") == "2 3 Ann 1 2000-001T12:01:00.000 ");
+    CHECK(row_of("SELECT run, command, asked_by, needs_approval, at FROM command_wait_log") ==
+          "2 3 Ann 1 2000-001T12:01:00.000 ");
     // Of a run of before its clock was kept: it had no drift.
-    auto writable = std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_write_create)).value();
+    auto writable =
+        std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_write_create))
+            .value();
     REQUIRE(writable.execute("DELETE FROM run_clocks").ok());
     CHECK(row_of("SELECT scenario, version, drift, scet, entry_scet FROM clock_log WHERE run = 2") ==
           "drifting  0.0 2000-001T12:00:00.000 2000-001T12:16:40.000 ");
 }
 
-TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left", "[pipeline][gateway]") {
+TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left",
+          "[pipeline][gateway]") {
     Ground ground;
     const auto say = [&](const char* stage, const char* status, bool held, bool needs_approval) {
         archive::StageRecord record;
@@ -211,8 +213,7 @@ TEST_CASE("items are numbered from 1 without a gap, and read back as they were p
 
 TEST_CASE("reading after any number, in pages of any size, gives every item once", "[pipeline][reader]") {
     Ground ground;
-    for (int i = 0; i < 3; ++i)
-        ground.feed();
+    for (int i = 0; i < 3; ++i) ground.feed();
     REQUIRE(ground.pipeline.commit().ok());
     const auto all = ground.items();
     auto reader = ground.reader();
@@ -235,8 +236,7 @@ TEST_CASE("reading after any number, in pages of any size, gives every item once
     const auto events = reader.items(ground.run(), 0, 1000, {false, false});
     REQUIRE(events.ok());
     CHECK(events->complete_through == all.back().seq());
-    for (const auto& item : events->items)
-        CHECK_FALSE((item.has_unit() || item.has_samples()));
+    for (const auto& item : events->items) CHECK_FALSE((item.has_unit() || item.has_samples()));
 }
 
 TEST_CASE("a unit of the recording that was seen in real time is kept as proof and not doubled", "[pipeline][R29]") {
@@ -320,11 +320,12 @@ TEST_CASE("the tone's vehicle time is its start less the light time", "[pipeline
     const auto tones = ground.reader().tones(ground.run(), {});
     REQUIRE(tones.ok());
     REQUIRE(tones->tones_size() == 1);
-    CHECK(tones->tones(0).tone().sclk() == Approx(110.0)); // 20 s after the correlation at SCLK 100, less 10 s
+    CHECK(tones->tones(0).tone().sclk() == Approx(110.0));  // 20 s after the correlation at SCLK 100, less 10 s
     CHECK(tones->tones(0).tone().meaning() == "parachute deployed");
 }
 
-TEST_CASE("an event that tells the phase is believed at once: what the new phase does not promise is not missed", "[pipeline][alarms][staleness]") {
+TEST_CASE("an event that tells the phase is believed at once: what the new phase does not promise is not missed",
+          "[pipeline][alarms][staleness]") {
     const bool event_heard = GENERATE(true, false);
     TemporaryFolder folder;
     auto dictionary = small_dictionary();
@@ -354,7 +355,7 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
     bits.put(9, 8);
     seal_tm_packet(event, event_apid, 0, Sclk{1003.0}, dictionary_id);
     if (event_heard) REQUIRE(pipeline.accept(live(event, 3'000'000)).ok());
-    REQUIRE(pipeline.accept(live(status_packet(1, 1002.0, 2), 3'500'000)).ok()); // told before the event, and late
+    REQUIRE(pipeline.accept(live(status_packet(1, 1002.0, 2), 3'500'000)).ok());  // told before the event, and late
     REQUIRE(pipeline.accept(pipeline::EarthTime{Ert{12'000'000}}).ok());
     REQUIRE(pipeline.commit().ok());
     auto database = archive::sqlite::Database::open((folder / "a.db").string(), archive::sqlite::Mode::read_only);
@@ -374,7 +375,7 @@ TEST_CASE("tones are found by words and come in pages", "[pipeline][reader]") {
     auto reader = ground.reader();
     const auto found = [&](const char* text) { return reader.tones(ground.run(), {{}, text})->tones_size(); };
     CHECK(found("") == 5);
-    CHECK(found("DEPLOY para") == 2); // beginnings, in any order and case
+    CHECK(found("DEPLOY para") == 2);  // beginnings, in any order and case
     CHECK(found("chute") == 0);
     CHECK(found("--") == 0);
     archive::ToneQuery page;
@@ -383,8 +384,7 @@ TEST_CASE("tones are found by words and come in pages", "[pipeline][reader]") {
     do {
         const auto tones = reader.tones(ground.run(), page);
         REQUIRE(tones.ok());
-        for (const auto& item : tones->tones())
-            starts += item.tone().ert_start().substr(15, 2) + " ";
+        for (const auto& item : tones->tones()) starts += item.tone().ert_start().substr(15, 2) + " ";
         starts += "| ";
         page.after = tones->next_after();
     } while (page.after != 0);
@@ -417,7 +417,7 @@ TEST_CASE("commands are found by when Earth heard what left the vehicle in a ran
     // SCLK 100 is 10 s on Earth: what leaves then is heard 10 s later.
     CHECK(found({}) == "1:2 2:1 ");
     CHECK(found({130.0, 140.0}) == "2:1 ");
-    CHECK(found({120.0, 120.0}) == "1:2 "); // with all its stages
+    CHECK(found({120.0, 120.0}) == "1:2 ");  // with all its stages
     CHECK(found({150.0, {}}) == "1:2 ");
     CHECK(found({{}, 119.0}).empty());
     CHECK_FALSE(reader.commands(ground.run(), {{2.0, 1.0}, ""}).ok());
@@ -459,13 +459,16 @@ TEST_CASE("an archive of the first schema is read as it is, and is brought up to
     REQUIRE(ground.pipeline.commit().ok());
     const archive::RunId run = ground.run();
     ground.pipeline.abandon();
-    { const auto closed = std::move(ground.archive); }
+    {
+        const auto closed = std::move(ground.archive);
+    }
     const auto database = [&](archive::sqlite::Mode mode) {
         return std::move(archive::sqlite::Database::open(ground.file.string(), mode)).value();
     };
     test::make_schema_three(ground.file);
     REQUIRE(database(archive::sqlite::Mode::read_write_create)
-                .execute("DROP VIEW tone_evidence_log; DROP TABLE tone_evidence; DROP TABLE tone_likelihoods; DROP TABLE link_totals;"
+                .execute("DROP VIEW tone_evidence_log; DROP TABLE tone_evidence; DROP TABLE tone_likelihoods; DROP "
+                         "TABLE link_totals;"
                          "PRAGMA user_version = 1")
                 .ok());
 
@@ -607,12 +610,11 @@ TEST_CASE("kill -9 takes back nothing that was acknowledged", "[pipeline][archiv
     for (bool more = true; more;) {
         const auto page = reader->items(archive::RunId{1}, after, 10'000);
         REQUIRE(page.ok());
-        for (const auto& item : page->items)
-            REQUIRE(item.seq() == ++after);
+        for (const auto& item : page->items) REQUIRE(item.seq() == ++after);
         more = page->more;
     }
     CHECK(after == state->last_seq());
     const auto series = reader->series(archive::RunId{1}, {{"altitude_m"}, {}, {}});
     REQUIRE(series.ok());
-    CHECK(series->channels(0).samples() == after / 2); // sealed segments and the open tail together
+    CHECK(series->channels(0).samples() == after / 2);  // sealed segments and the open tail together
 }

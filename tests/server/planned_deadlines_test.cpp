@@ -25,23 +25,26 @@ std::size_t row_of(const char* name) {
     return static_cast<std::size_t>(row - timeline.begin());
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a command must leave a light time before the next timepoint that is planned after it is there", "[gateway][R44]") {
+TEST_CASE("a command must leave a light time before the next timepoint that is planned after it is there",
+          "[gateway][R44]") {
     const auto& words = tests::shipped_dictionary();
     const PlannedDeadlines deadlines{words, entry, light_time_s};
     const auto& command = *words.command("NO_OP");
-    const Ert vent = before_entry(826.0 + light_time_s); // coolant_vent, E-826 s, is planned by the clock
+    const Ert vent = before_entry(826.0 + light_time_s);  // coolant_vent, E-826 s, is planned by the clock
     const auto in_time = deadlines.of(command, {}, Ert{vent.microseconds - 1});
     REQUIRE(in_time);
     CHECK(in_time->timepoint == "coolant_vent");
     CHECK(in_time->latest == vent);
-    CHECK(deadlines.of(command, {}, vent)->timepoint == "uhf_start"); // at that instant it is there together with it: too late
+    CHECK(deadlines.of(command, {}, vent)->timepoint ==
+          "uhf_start");  // at that instant it is there together with it: too late
     CHECK(deadlines.next(vent)->timepoint == "uhf_start");
-    CHECK_FALSE(deadlines.next(before_entry(0.0))); // what is after entry is decided in flight
+    CHECK_FALSE(deadlines.next(before_entry(0.0)));  // what is after entry is decided in flight
 }
 
-TEST_CASE("a command that changes an offset must be there before what it moves, though other timepoints come first", "[gateway][R19][R44]") {
+TEST_CASE("a command that changes an offset must be there before what it moves, though other timepoints come first",
+          "[gateway][R19][R44]") {
     const auto& words = tests::shipped_dictionary();
     const PlannedDeadlines deadlines{words, entry, light_time_s};
     const std::vector<commands::NamedValue> detumble{{"timepoint", static_cast<double>(row_of("detumble"))}};
@@ -50,7 +53,8 @@ TEST_CASE("a command that changes an offset must be there before what it moves, 
     REQUIRE(deadline);
     CHECK(deadline->timepoint == "detumble");
     CHECK(deadline->latest == before_entry(519.40625 + light_time_s));
-    CHECK(deadlines.of(change, detumble, before_entry(600.0)) == deadline); // it stays what it is when it is too late for it
+    CHECK(deadlines.of(change, detumble, before_entry(600.0)) ==
+          deadline);  // it stays what it is when it is too late for it
 
     // What flight decides itself is where it is predicted; of nothing else one says that it must come before it.
     const std::vector<commands::NamedValue> in_flight{{"timepoint", static_cast<double>(row_of("parachute_deploy"))}};
@@ -59,7 +63,8 @@ TEST_CASE("a command that changes an offset must be there before what it moves, 
     CHECK(predicted->timepoint == "parachute_deploy");
     const auto e_s = archive::predicted_from_entry_s(words, words.predicted_anchor_e_s, {})[row_of("parachute_deploy")];
     REQUIRE(e_s);
-    CHECK(std::abs(static_cast<double>(predicted->latest.microseconds - before_entry(light_time_s - *e_s).microseconds)) <= 1.0);
+    CHECK(std::abs(static_cast<double>(predicted->latest.microseconds -
+                                       before_entry(light_time_s - *e_s).microseconds)) <= 1.0);
 }
 
 TEST_CASE("what is planned while a command waits and is on its way is what it is too late for", "[gateway][R44]") {

@@ -17,7 +17,8 @@ TEST_CASE("the predict is the Doppler of the landing without errors, commanded o
     const auto waits_for_commands = test::shipped_scenario("nominal");
     const TimeTable predict_hz = predicted_doppler_hz(waits_for_commands, dictionary.mfsk);
     CHECK(predict_hz.first_s() == Approx(-waits_for_commands.start_before_entry_s));
-    const FlownSignal flown = fly_signal(simulation::undispersed(test::shipped_scenario("nominal_auto")), 1, 0, dictionary);
+    const FlownSignal flown =
+        fly_signal(simulation::undispersed(test::shipped_scenario("nominal_auto")), 1, 0, dictionary);
     double worst_hz = 0.0;
     for (double e_s = -890.0; e_s < 299.0; e_s += 0.5)
         worst_hz = std::max(worst_hz, std::abs(predict_hz.at(e_s) - flown.doppler_hz.at(e_s)));
@@ -28,11 +29,11 @@ TEST_CASE("the predict is the Doppler of the landing without errors, commanded o
 
 TEST_CASE("the predict of a long cruise has no step where it begins to be flown", "[tones]") {
     auto scenario = test::shipped_scenario("nominal_light_time");
-    scenario.start_before_entry_s = 7203.5; // not a whole number of rows
+    scenario.start_before_entry_s = 7203.5;  // not a whole number of rows
     const TimeTable predict_hz = predicted_doppler_hz(scenario, tests::shipped_dictionary().mfsk);
     CHECK(predict_hz.first_s() == Approx(-7203.5));
     for (double e_s = -7200.0; e_s < -610.0; e_s += 1.0) {
         INFO(e_s);
-        REQUIRE(std::abs(predict_hz.rate_at(e_s + 1.0) - predict_hz.rate_at(e_s)) < 0.5); // [Hz/s]: cruise is smooth
+        REQUIRE(std::abs(predict_hz.rate_at(e_s + 1.0) - predict_hz.rate_at(e_s)) < 0.5);  // [Hz/s]: cruise is smooth
     }
 }

@@ -24,7 +24,8 @@ struct Series {
         for (std::size_t i = 0; i < samples; ++i) {
             sclk_s.push_back(100.0 + static_cast<double>(i) / 64.0 - (random() % 50 == 0 ? 0.5 : 0.0));
             for (auto& column : values)
-                column.push_back(random() % 9 == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(random() % 1000));
+                column.push_back(random() % 9 == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                   : static_cast<double>(random() % 1000));
         }
     }
     Extremes extremes(std::size_t channel, std::size_t from, std::size_t to) const {
@@ -51,7 +52,7 @@ struct Series {
         builder.seal(blocks);
         const std::size_t sealed = blocks.size();
         builder.seal(blocks);
-        CHECK(blocks.size() == sealed); // a second seal has nothing to say
+        CHECK(blocks.size() == sealed);  // a second seal has nothing to say
         return blocks;
     }
 };
@@ -61,16 +62,16 @@ bool same(const Extremes& a, const Extremes& b) {
            a.largest_sclk_s == b.largest_sclk_s;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("each node of the pyramid tells span and extremes of its samples, on every level", "[archive][pyramid]") {
     const auto samples = static_cast<std::size_t>(GENERATE(1, 1024, 1025, 2100, 32 * 1024, 300'001));
     const Series series(samples);
-    std::map<unsigned, std::uint64_t> reached; // nodes by level
+    std::map<unsigned, std::uint64_t> reached;  // nodes by level
     for (const auto& block : series.blocks()) {
         const auto size = static_cast<std::size_t>(pyramid::samples_of_node(block.level));
         const std::size_t nodes = block.first_sclk_s.size();
-        REQUIRE(block.position * pyramid::block_nodes == reached[block.level]); // none left out, full but for the last
+        REQUIRE(block.position * pyramid::block_nodes == reached[block.level]);  // none left out, full but for the last
         REQUIRE(nodes <= pyramid::block_nodes);
         REQUIRE(block.nodes.size() == nodes * channels);
         for (std::size_t node = 0; node < nodes; ++node) {
@@ -86,7 +87,8 @@ TEST_CASE("each node of the pyramid tells span and extremes of its samples, on e
         reached[block.level] += nodes;
     }
     // One segment needs no block; two have one over both.
-    CHECK(reached[1] == (samples <= segment_samples ? 0 : (samples + pyramid::node_samples - 1) / pyramid::node_samples));
+    CHECK(reached[1] ==
+          (samples <= segment_samples ? 0 : (samples + pyramid::node_samples - 1) / pyramid::node_samples));
     CHECK((reached[3] > 0) == (samples > 100'000));
 }
 
@@ -95,6 +97,5 @@ TEST_CASE("nodes come back from their octets as they were", "[archive][pyramid]"
     const std::vector<Extremes> nodes{{-1.5, 10.0, 7.0, 11.0, 128}, {}, {-infinity, 1.0, infinity, 2.0, 3}};
     const auto octets = pyramid::octets_of_nodes(nodes);
     CHECK(octets.size() == nodes.size() * pyramid::node_octets);
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        CHECK(same(pyramid::node_of(octets, nodes.size(), i), nodes[i]));
+    for (std::size_t i = 0; i < nodes.size(); ++i) CHECK(same(pyramid::node_of(octets, nodes.size(), i), nodes[i]));
 }

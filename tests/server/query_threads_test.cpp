@@ -41,7 +41,7 @@ struct Recorded {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a question whose asker has left is stopped, and the next question is answered", "[http][bounds]") {
     const Recorded recorded;
@@ -52,7 +52,7 @@ TEST_CASE("a question whose asker has left is stopped, and the next question is 
     left = true;
     CHECK(recorded.ask(gone) == "stopped");
     CHECK(recorded.ask(gone) == "stopped");
-    for (std::size_t i = 0; i < 2 * QueryThreads::threads; ++i) // the next question is not stopped by that
+    for (std::size_t i = 0; i < 2 * QueryThreads::threads; ++i)  // the next question is not stopped by that
         CHECK(recorded.ask(nullptr) == "answered");
 }
 
@@ -68,17 +68,17 @@ TEST_CASE("what is short does not wait behind questions, however many", "[http][
     std::promise<void> answered;
     const auto waits = answered.get_future().share();
     const auto question = [waits](archive::Reader&) { waits.wait(); };
-    for (std::size_t i = 0; i < QueryThreads::question_threads; ++i)
-        REQUIRE(threads.ask(question));
-    while (threads.waiting() > 0) // both are busy
+    for (std::size_t i = 0; i < QueryThreads::question_threads; ++i) REQUIRE(threads.ask(question));
+    while (threads.waiting() > 0)  // both are busy
         std::this_thread::yield();
     const auto room = QueryThreads::waiting_max[static_cast<std::size_t>(server::Haste::in_turn)];
-    for (std::size_t i = 0; i < room; ++i)
-        REQUIRE(threads.ask(question));
+    for (std::size_t i = 0; i < room; ++i) REQUIRE(threads.ask(question));
     CHECK_FALSE(threads.ask(question));
     for (const auto haste : {server::Haste::soon, server::Haste::at_once}) {
         std::promise<std::size_t> told;
-        REQUIRE(threads.ask([&](archive::Reader& reader) { told.set_value(reader.items(archive::RunId{1}, 0, 10)->items.size()); }, {}, haste));
+        REQUIRE(threads.ask(
+            [&](archive::Reader& reader) { told.set_value(reader.items(archive::RunId{1}, 0, 10)->items.size()); }, {},
+            haste));
         auto items = told.get_future();
         REQUIRE(items.wait_for(std::chrono::seconds{10}) == std::future_status::ready);
         CHECK(items.get() == 10);
@@ -86,18 +86,18 @@ TEST_CASE("what is short does not wait behind questions, however many", "[http][
     answered.set_value();
 }
 
-TEST_CASE("questions that wait or go on when the server ends are stopped, and what is short is done", "[http][bounds]") {
+TEST_CASE("questions that wait or go on when the server ends are stopped, and what is short is done",
+          "[http][bounds]") {
     Recorded recorded;
     auto& threads = *recorded.threads;
     const auto question = [](archive::Reader& reader) {
-        for (int i = 0; i < 3000 && !reader.stopped(); ++i)
-            (void)reader.proof(archive::RunId{1}).ok();
+        for (int i = 0; i < 3000 && !reader.stopped(); ++i) (void)reader.proof(archive::RunId{1}).ok();
     };
-    for (int i = 0; i < 20; ++i)
-        REQUIRE(threads.ask(question));
+    for (int i = 0; i < 20; ++i) REQUIRE(threads.ask(question));
     std::atomic<int> noted{0};
     for (int i = 0; i < 20; ++i)
-        REQUIRE(threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {}, server::Haste::at_once));
+        REQUIRE(
+            threads.ask([&](archive::Reader& reader) { noted += reader.runs() ? 1 : 0; }, {}, server::Haste::at_once));
     const auto begun = std::chrono::steady_clock::now();
     recorded.threads.reset();
     CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{5});

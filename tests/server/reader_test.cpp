@@ -15,7 +15,7 @@ using archive::RunId;
 
 namespace {
 
-constexpr std::size_t samples = 5000; // four sealed segments and an open tail
+constexpr std::size_t samples = 5000;  // four sealed segments and an open tail
 
 double altitude_at(std::size_t i) {
     return std::round(1000.0 * std::sin(static_cast<double>(i) / 100.0));
@@ -59,7 +59,7 @@ std::string refusal(const Error& error) {
     return error.message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a series is exact, with undefined values left out, whether sealed or still open", "[reader][R43]") {
     const bool finished = GENERATE(false, true);
@@ -110,10 +110,13 @@ TEST_CASE("pages of samples, one after the other, are all samples, each once", "
     auto archive = std::move(Archive::open(folder / "a.db")).value();
     pipeline::Pipeline pipeline(archive, dictionary);
     REQUIRE(pipeline.begin({}).ok());
-    constexpr std::size_t packets = 70'000; // of two samples: many pages; with a long silence in the middle
+    constexpr std::size_t packets = 70'000;  // of two samples: many pages; with a long silence in the middle
     for (std::size_t i = 0; i < packets; ++i)
-        REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), (i < packets / 2 ? 0.0 : 1e6) + static_cast<double>(i) / 64.0,
-                                                       static_cast<float>(i), 3.0F))).ok());
+        REQUIRE(pipeline
+                    .accept(live(navigation_packet(static_cast<std::uint16_t>(i),
+                                                   (i < packets / 2 ? 0.0 : 1e6) + static_cast<double>(i) / 64.0,
+                                                   static_cast<float>(i), 3.0F)))
+                    .ok());
     REQUIRE(pipeline.commit().ok());
     auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
 
@@ -183,9 +186,10 @@ TEST_CASE("a series of one source has nothing of the other, exact or thinned", "
     start.scenario = "nominal";
     start.entry = Sclk{1000.0};
     REQUIRE(pipeline.begin(start).ok());
-    constexpr std::size_t all = 2000, live_each = 8; // the rest only the recording has, and there it is larger
+    constexpr std::size_t all = 2000, live_each = 8;  // the rest only the recording has, and there it is larger
     for (std::size_t i = 0; i < all; ++i) {
-        const auto packet = navigation_packet(static_cast<std::uint16_t>(i), 1000.0 + static_cast<double>(i) / 64.0, i % live_each == 0 ? 1.0F : 2.0F, 3.0F);
+        const auto packet = navigation_packet(static_cast<std::uint16_t>(i), 1000.0 + static_cast<double>(i) / 64.0,
+                                              i % live_each == 0 ? 1.0F : 2.0F, 3.0F);
         REQUIRE(pipeline.accept(i % live_each == 0 ? live(packet) : recorded(packet)).ok());
     }
     if (GENERATE(false, true))
@@ -270,7 +274,7 @@ TEST_CASE("packets come in pages with octets and fields in words", "[reader][R43
         if (page->next_after() == 0) break;
         query.after = page->next_after();
     }
-    CHECK(count == 79); // 5000 / 64, begun ones too
+    CHECK(count == 79);  // 5000 / 64, begun ones too
 }
 
 TEST_CASE("events are found by level and by text of any case", "[reader]") {
@@ -299,19 +303,22 @@ TEST_CASE("the timeline tells plan, real time and recording of each timepoint", 
     CHECK(list->timepoints(1).recorded_sclk() == 1002.0);
     CHECK(list->timepoints(1).verdict() == "completed");
     CHECK_FALSE(list->timepoints(2).has_planned_e_s());
-    REQUIRE(list->anchors_size() == 2); // by the number that commands give them
+    REQUIRE(list->anchors_size() == 2);  // by the number that commands give them
     CHECK(list->anchors(0).parent().empty());
     CHECK((list->anchors(1).id() == 1 && list->anchors(1).name() == "entry" && list->anchors(1).parent() == "root"));
     CHECK_FALSE(list->anchors(1).has_offset_s());
 }
 
-TEST_CASE("a run is predicted by the design with which it began; one that has kept none by today's, and that is said", "[reader][timeline][R43]") {
+TEST_CASE("a run is predicted by the design with which it began; one that has kept none by today's, and that is said",
+          "[reader][timeline][R43]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
     auto then = small_dictionary();
     then.predicted_anchor_e_s = {{}, 5.0};
-    { REQUIRE(Archive::open(file)->begin_run({}, then).ok()); }
-    auto today = small_dictionary(); // the same on board: only ground's sheet has changed
+    {
+        REQUIRE(Archive::open(file)->begin_run({}, then).ok());
+    }
+    auto today = small_dictionary();  // the same on board: only ground's sheet has changed
     today.predicted_anchor_e_s = {2.0, 9.0};
     const auto kept = Reader::open(file, today)->timepoints(RunId{1});
     REQUIRE(kept.ok());
@@ -320,8 +327,12 @@ TEST_CASE("a run is predicted by the design with which it began; one that has ke
     CHECK(kept->prediction_note().empty());
     CHECK(Reader::open(file, today)->as_flown(RunId{1})->prediction_note().empty());
 
-    auto database = std::move(archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create)).value();
-    REQUIRE(database.execute("DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE run_anchors; PRAGMA user_version = 6").ok());
+    auto database =
+        std::move(archive::sqlite::Database::open(file.string(), archive::sqlite::Mode::read_write_create)).value();
+    REQUIRE(database
+                .execute("DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE "
+                         "run_anchors; PRAGMA user_version = 6")
+                .ok());
     const auto older = Reader::open(file, today)->timepoints(RunId{1});
     REQUIRE(older.ok());
     CHECK(older->anchors(0).predicted_e_s() == 2.0);
@@ -374,9 +385,12 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     pipeline::Pipeline pipeline(archive, dictionary);
     REQUIRE(pipeline.begin(archive::RunStart{}).ok());
     constexpr std::uint16_t packets = 20;
-    const auto packet = [](std::uint16_t i) { return navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F); };
-    for (std::uint16_t i = 0; i < 12; ++i) REQUIRE(pipeline.accept(live(packet(i))).ok()); // of 20 that were recorded
-    REQUIRE(pipeline.accept(simulation::ReceivedPacket{{"uhf_mro", false}, Ert{1}, packet(3)}).ok());              // the same over another orbiter
+    const auto packet = [](std::uint16_t i) {
+        return navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F);
+    };
+    for (std::uint16_t i = 0; i < 12; ++i) REQUIRE(pipeline.accept(live(packet(i))).ok());  // of 20 that were recorded
+    REQUIRE(pipeline.accept(simulation::ReceivedPacket{{"uhf_mro", false}, Ert{1}, packet(3)})
+                .ok());  // the same over another orbiter
     REQUIRE(pipeline.commit().ok());
     auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
     auto early = reader.proof(RunId{1});
@@ -390,7 +404,7 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     CHECK(reader.packets(RunId{1}, pending)->packets_size() == 13);
 
     for (std::uint16_t i = 0; i < packets; ++i) {
-        if (i == 5) continue; // lost on board
+        if (i == 5) continue;  // lost on board
         auto octets = packet(i);
         if (i == 7) {
             octets = navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F);
@@ -401,7 +415,16 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
         REQUIRE(pipeline.accept(recorded(octets)).ok());
     }
     pipeline.relay_progress(1.0);
-    pipeline.link_totals({{"uhf_live", {.octets = 100, .frames = 3, .bad_crc = 1, .bad_header = 0, .skipped_octets = 4, .gaps = 1, .missing_frames = 2, .repeated_frames = 0}, 12.5}});
+    pipeline.link_totals({{"uhf_live",
+                           {.octets = 100,
+                            .frames = 3,
+                            .bad_crc = 1,
+                            .bad_header = 0,
+                            .skipped_octets = 4,
+                            .gaps = 1,
+                            .missing_frames = 2,
+                            .repeated_frames = 0},
+                           12.5}});
     REQUIRE(pipeline.commit().ok());
 
     const auto report = reader.proof(RunId{1});
@@ -424,7 +447,7 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     archive::PacketQuery differing;
     differing.verdict = "differs";
     const auto found = reader.packets(RunId{1}, differing);
-    REQUIRE(found->packets_size() == 2); // the live one and the recorded one
+    REQUIRE(found->packets_size() == 2);  // the live one and the recorded one
     const auto& one = found->packets(0);
     CHECK(one.unit().source() == v1::SOURCE_REALTIME);
     CHECK(one.hex() != one.other_hex());

@@ -46,23 +46,30 @@ v1::CommandRequest request_of(const char* command) {
     return request;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("an order that waited for a change of the timeline goes only if its sender still may, and those after it go on", "[access][timeline]") {
+TEST_CASE(
+    "an order that waited for a change of the timeline goes only if its sender still may, and those after it go on",
+    "[access][timeline]") {
     spdlog::set_level(spdlog::level::err);
     test::TemporaryFolder folder;
     Posted network;
     const ScenarioLibrary scenarios{test::shipped_scenarios};
-    PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), tests::shipped_dictionary(), PipelineThread::Faults::hold, [](const auto&) {}};
-    std::function<void(Result<std::string>)> analysed; // the answer of the analysis, which takes its time
+    PipelineThread pipeline{std::move(archive::Archive::open(folder / "a.db")).value(), tests::shipped_dictionary(),
+                            PipelineThread::Faults::hold, [](const auto&) {}};
+    std::function<void(Result<std::string>)> analysed;  // the answer of the analysis, which takes its time
     RehearsalDesk::TimelineQuestions questions;
     questions.check = [&](archive::RunId, const auto& requests, bool, auto done) {
         if (std::ranges::none_of(requests, changes_timeline)) return done(std::string{});
         analysed = std::move(done);
     };
     questions.look_again = [](archive::RunId, const auto& done) { done(TimelineCheck::Look{}); };
-    RehearsalDesk desk{scenarios, tests::shipped_dictionary(), pipeline, [&](auto action) { network.post(std::move(action)); },
-                       [](archive::RunId, const auto& done) { done(Error{"none was cut off"}); }, questions,
+    RehearsalDesk desk{scenarios,
+                       tests::shipped_dictionary(),
+                       pipeline,
+                       [&](auto action) { network.post(std::move(action)); },
+                       [](archive::RunId, const auto& done) { done(Error{"none was cut off"}); },
+                       questions,
                        {[](const auto&) {}, [](const auto&) {}}};
     bool begun = false;
     desk.start(test::shipped_scenario("nominal"), 1, 1.0, [&](const Result<v1::RunState>& state) {
@@ -73,10 +80,14 @@ TEST_CASE("an order that waited for a change of the timeline goes only if its se
 
     std::vector<std::string> answers;
     const auto answer = [&](const char* whose) {
-        return [&answers, whose](const v1::CommandReply& reply) { answers.push_back(fmt::format("{}: {}", whose, reply.accepted() ? "taken" : reply.reason())); };
+        return [&answers, whose](const v1::CommandReply& reply) {
+            answers.push_back(fmt::format("{}: {}", whose, reply.accepted() ? "taken" : reply.reason()));
+        };
     };
     bool has_rights = true;
-    const auto may = [&](const v1::CommandRequest&) { return has_rights ? Result<void>{} : Result<void>{Error{"not any more"}}; };
+    const auto may = [&](const v1::CommandRequest&) {
+        return has_rights ? Result<void>{} : Result<void>{Error{"not any more"}};
+    };
     const auto always = [](const v1::CommandRequest&) { return Result<void>{}; };
     desk.command(request_of("EDL_SET_TIMEPOINT_OFFSET"), always, answer("change"));
     REQUIRE(analysed);
@@ -87,6 +98,7 @@ TEST_CASE("an order that waited for a change of the timeline goes only if its se
     has_rights = false;
     analysed(Error{"it breaks a constraint"});
     REQUIRE(network.until([&] { return answers.size() == 3; }));
-    CHECK(answers == std::vector<std::string>{"change: it breaks a constraint", "loses rights: not any more", "keeps them: taken"});
+    CHECK(answers == std::vector<std::string>{"change: it breaks a constraint", "loses rights: not any more",
+                                              "keeps them: taken"});
     CHECK(desk.commands_put_off() == 0);
 }

@@ -20,12 +20,13 @@
 using namespace aeolis;
 using namespace aeolis::server;
 
-TEST_CASE("tones come from a waveform up to the pace that sustains it, unless the scenario has chosen", "[tones][R31]") {
+TEST_CASE("tones come from a waveform up to the pace that sustains it, unless the scenario has chosen",
+          "[tones][R31]") {
     simulation::Radio open;
     CHECK(RehearsalRunner::from_samples(open, 1.0));
     CHECK(RehearsalRunner::from_samples(open, RehearsalRunner::signal_pace_max));
     CHECK_FALSE(RehearsalRunner::from_samples(open, RehearsalRunner::signal_pace_max + 1.0));
-    CHECK_FALSE(RehearsalRunner::from_samples(open, 0.0)); // as fast as it goes
+    CHECK_FALSE(RehearsalRunner::from_samples(open, 0.0));  // as fast as it goes
     simulation::Radio insists, refuses;
     insists.tones_from_samples = true;
     refuses.tones_from_samples = false;
@@ -40,8 +41,9 @@ TEST_CASE("no shipped scenario that is flown live has chosen for itself", "[tone
     }
 }
 
-TEST_CASE("a change of pace in mid-run loses, doubles and changes no tone, and the run goes on saying where they come from",
-          "[tones][R31]") {
+TEST_CASE(
+    "a change of pace in mid-run loses, doubles and changes no tone, and the run goes on saying where they come from",
+    "[tones][R31]") {
     spdlog::set_level(spdlog::level::err);
     auto scenario = test::shipped_scenario("nominal_auto");
     scenario.start_before_entry_s = 900.0;
@@ -56,8 +58,8 @@ TEST_CASE("a change of pace in mid-run loses, doubles and changes no tone, and t
     archive::RunId run;
     std::string tone_model;
     {
-        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary, PipelineThread::Faults::give_up,
-                                [](const auto&) {}};
+        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary,
+                                PipelineThread::Faults::give_up, [](const auto&) {}};
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> state) {
             run = {static_cast<std::uint32_t>(state->run())};
@@ -68,15 +70,13 @@ TEST_CASE("a change of pace in mid-run loses, doubles and changes no tone, and t
         callbacks.on_clocks = [&](const v1::Clocks& clocks) { e_s = clocks.e_s(); };
         RehearsalRunner runner{scenario, 1, RehearsalRunner::signal_pace_max, dictionary, pipeline, callbacks};
         const auto fly_until = [&](double until_e_s) {
-            while (e_s < until_e_s)
-                std::this_thread::sleep_for(std::chrono::milliseconds{1});
+            while (e_s < until_e_s) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         };
         fly_until(-870.0);
         runner.set_pace(0.0);
         fly_until(-700.0);
         runner.stop();
-        while (!runner.over())
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     REQUIRE(begun);
     CHECK(tone_model == "signal");
@@ -85,8 +85,7 @@ TEST_CASE("a change of pace in mid-run loses, doubles and changes no tone, and t
     Rehearsal undisturbed{scenario, 1, 0, dictionary};
     std::vector<simulation::ReceivedTone> expected;
     while (undisturbed.landing().sclk() < scenario.entry_sclk - 700.0)
-        for (const auto& tone : undisturbed.step().tones)
-            expected.push_back(tone);
+        for (const auto& tone : undisturbed.step().tones) expected.push_back(tone);
 
     auto reader = archive::Reader::open(file, dictionary);
     REQUIRE(reader);
@@ -118,7 +117,8 @@ simulation::Scenario short_landing() {
 }
 
 /// Flies with a command now and then until this process is killed; every published sequence number goes into the pipe.
-[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published, const dictionary::Dictionary& dictionary) {
+[[noreturn]] void fly_until_killed(const std::filesystem::path& file, int published,
+                                   const dictionary::Dictionary& dictionary) {
     auto archive = archive::Archive::open(file);
     if (!archive) ::_exit(1);
     PipelineThread pipeline{std::move(*archive), dictionary, PipelineThread::Faults::give_up, [&](const auto& batch) {
@@ -135,11 +135,10 @@ simulation::Scenario short_landing() {
     fault.mutable_device_fault()->set_device(v1::DEVICE_IMU);
     fault.mutable_device_fault()->set_unit(v1::REDUNDANT_UNIT_A);
     fault.mutable_device_fault()->set_kind(v1::DEVICE_FAULT_KIND_DROPOUT);
-    fault.mutable_device_fault()->set_duration_s(2.0); // that loses samples: the recording tells of it
+    fault.mutable_device_fault()->set_duration_s(2.0);  // that loses samples: the recording tells of it
     v1::InstructorNote note;
     note.set_text("do they see it?");
-    while (!begun)
-        std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     for (bool first = true;; first = false) {
         v1::CommandRequest request;
         request.set_command("NO_OP");
@@ -150,11 +149,12 @@ simulation::Scenario short_landing() {
 }
 
 /// The same run without any crash: every item up to `last`, with the requests at their cycles.
-std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Sequence last, const std::filesystem::path& file) {
+std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Sequence last,
+                                     const std::filesystem::path& file) {
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
     {
-        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary, PipelineThread::Faults::give_up,
-                                [](const auto&) {}};
+        PipelineThread pipeline{std::move(archive::Archive::open(file)).value(), dictionary,
+                                PipelineThread::Faults::give_up, [](const auto&) {}};
         Rehearsal rehearsal{short_landing(), 7, 0, dictionary};
         REQUIRE(pipeline.begin(rehearsal.run_start(0.0)));
         archive::Sequence stored = 0;
@@ -167,12 +167,10 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
                     continue;
                 }
                 REQUIRE(rehearsal.submit(std::get<v1::CommandRequest>(again)).accepted());
-                for (auto& stage : rehearsal.take_stages())
-                    delivery.entries.emplace_back(std::move(stage));
+                for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             }
             delivery.add(rehearsal.step());
-            for (auto& stage : rehearsal.take_stages())
-                delivery.entries.emplace_back(std::move(stage));
+            for (auto& stage : rehearsal.take_stages()) delivery.entries.emplace_back(std::move(stage));
             REQUIRE(pipeline.deliver(std::move(delivery)));
             if (rehearsal.cycles() % 640 != 0) continue;
             REQUIRE(pipeline.caught_up());
@@ -186,8 +184,7 @@ std::vector<std::string> items_flown(const archive::CutOffRun& cut, archive::Seq
     while (items.size() < last) {
         const auto page = reader->items(archive::RunId{1}, items.size(), archive::items_page_max);
         REQUIRE(page);
-        for (const auto& item : page->items)
-            items.push_back(item.SerializeAsString());
+        for (const auto& item : page->items) items.push_back(item.SerializeAsString());
     }
     items.resize(last);
     return items;
@@ -212,8 +209,8 @@ archive::Sequence kill_after(archive::Sequence published, const std::filesystem:
     return acknowledged;
 }
 
-/// Kills a flying process once `published` items are out, continues the run in this one for `further` items, and holds every
-/// item against a run that nothing happened to.
+/// Kills a flying process once `published` items are out, continues the run in this one for `further` items, and holds
+/// every item against a run that nothing happened to.
 void kill_and_continue(archive::Sequence published, archive::Sequence further) {
     spdlog::set_level(spdlog::level::err);
     INFO("killed after item " << published);
@@ -232,7 +229,10 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
         REQUIRE(found);
         cut = *found;
         CHECK(cut->last_seq >= acknowledged);
-        const auto count_of = [&](const char* kind) { return std::ranges::count_if(cut->requests, [&](const auto& taken) { return taken.request.starts_with(kind); }); };
+        const auto count_of = [&](const char* kind) {
+            return std::ranges::count_if(cut->requests,
+                                         [&](const auto& taken) { return taken.request.starts_with(kind); });
+        };
         if (published > 1) CHECK((count_of("fault {") == 1 && count_of("note {") == 1));
         auto scenario = scenario_from_text(cut->scenario_text, "its row");
         REQUIRE(scenario);
@@ -249,8 +249,7 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
         while (!runner.over() && pipeline.figures().published_items < further)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         runner.stop();
-        while (!runner.over())
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         CHECK(begun);
     }
     REQUIRE(failure.empty());
@@ -267,8 +266,10 @@ void kill_and_continue(archive::Sequence published, archive::Sequence further) {
     }
 }
 
-/// An archive whose run was begun by `dictionary` and ended by kill -9, and what there is of the run as it is read today.
-std::pair<archive::Archive, archive::CutOffRun> cut_off_in(const std::filesystem::path& file, const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
+/// An archive whose run was begun by `dictionary` and ended by kill -9, and what there is of the run as it is read
+/// today.
+std::pair<archive::Archive, archive::CutOffRun>
+cut_off_in(const std::filesystem::path& file, const dictionary::Dictionary& dictionary = tests::shipped_dictionary()) {
     kill_after(2'000, file, dictionary);
     auto archive = archive::Archive::open(file);
     REQUIRE(archive);
@@ -277,16 +278,20 @@ std::pair<archive::Archive, archive::CutOffRun> cut_off_in(const std::filesystem
     return {std::move(*archive), std::move(*cut)};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a run that kill -9 ended goes on in the same run as if nothing had been, commands, faults and all",
           "[rehearsal][archive][R41][R43]") {
-    for (const archive::Sequence published : {1U, 9'000U, 60'000U}) // at the start, in flight, while the recording comes down
+    for (const archive::Sequence published :
+         {1U, 9'000U, 60'000U})  // at the start, in flight, while the recording comes down
         kill_and_continue(published, 3'000);
 }
 
-TEST_CASE("a fault that an archive of before keeps without its kind is a fault like all others, and what is no request is none", "[rehearsal][archive]") {
-    const auto kept = archive::kept_request("device_fault { device: DEVICE_IMU unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_DROPOUT duration_s: 2 }");
+TEST_CASE("a fault that an archive of before keeps without its kind is a fault like all others, and what is no request "
+          "is none",
+          "[rehearsal][archive]") {
+    const auto kept = archive::kept_request(
+        "device_fault { device: DEVICE_IMU unit: REDUNDANT_UNIT_A kind: DEVICE_FAULT_KIND_DROPOUT duration_s: 2 }");
     const auto* bare = std::get_if<v1::Intervention>(&kept);
     REQUIRE(bare);
     CHECK(bare->fault().device_fault().duration_s() == 2.0);
@@ -296,11 +301,11 @@ TEST_CASE("a fault that an archive of before keeps without its kind is a fault l
 
 TEST_CASE("fifty runs that kill -9 ended at random go on as if nothing had been", "[.long][rehearsal][archive]") {
     std::mt19937_64 random{1};
-    for (int i = 0; i < 50; ++i)
-        kill_and_continue(1 + random() % 60'000, 5'000);
+    for (int i = 0; i < 50; ++i) kill_and_continue(1 + random() % 60'000, 5'000);
 }
 
-TEST_CASE("a run that does not come out the same is not continued, and what it has stays as it is", "[rehearsal][archive][R43]") {
+TEST_CASE("a run that does not come out the same is not continued, and what it has stays as it is",
+          "[rehearsal][archive][R43]") {
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
@@ -313,8 +318,7 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
         RehearsalRunner::Callbacks callbacks;
         callbacks.on_begun = [&](Result<v1::RunState> state) { failure = state ? "continued" : state.error().message; };
         RehearsalRunner runner{short_landing(), cut, 0.0, dictionary, pipeline, callbacks};
-        while (!runner.over())
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK_THAT(failure, Catch::Contains("run 1 cannot be continued: run 1: flown again, item"));
     auto reader = archive::Reader::open(file, dictionary);
@@ -322,7 +326,8 @@ TEST_CASE("a run that does not come out the same is not continued, and what it h
     CHECK(reader->last_seq(archive::RunId{1}).value() == cut.last_seq);
 }
 
-TEST_CASE("what is written down while a cut-off run is being continued keeps its number, and no item has another's", "[rehearsal][archive][R43]") {
+TEST_CASE("what is written down while a cut-off run is being continued keeps its number, and no item has another's",
+          "[rehearsal][archive][R43]") {
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     const dictionary::Dictionary& dictionary = tests::shipped_dictionary();
@@ -343,14 +348,14 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
         while (!runner.over() && pipeline.figures().published_items < 500)
             std::this_thread::sleep_for(std::chrono::milliseconds{1});
         runner.stop();
-        while (!runner.over())
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
-        CHECK(told == cut.last_seq + 1); // who follows it resumes from there
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        CHECK(told == cut.last_seq + 1);  // who follows it resumes from there
     }
     auto reader = archive::Reader::open(file, dictionary);
     archive::Sequence seen = 0;
     int notes = 0;
-    for (auto page = reader->items(run, seen, archive::items_page_max); page && !page->items.empty(); page = reader->items(run, seen, archive::items_page_max))
+    for (auto page = reader->items(run, seen, archive::items_page_max); page && !page->items.empty();
+         page = reader->items(run, seen, archive::items_page_max))
         for (const auto& item : page->items) {
             REQUIRE(item.seq() == ++seen);
             notes += item.has_note() ? 1 : 0;
@@ -360,12 +365,13 @@ TEST_CASE("what is written down while a cut-off run is being continued keeps its
     CHECK(seen > cut.last_seq + 500);
 }
 
-TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever the sheet says by now", "[rehearsal][archive][time][R43]") {
+TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever the sheet says by now",
+          "[rehearsal][archive][time][R43]") {
     test::TemporaryFolder folder;
     const auto file = folder / "killed.db";
     spdlog::set_level(spdlog::level::err);
     auto then = tests::shipped_dictionary();
-    then.clock.front().correlation.rate = 1.0 + 2.0e-5; // some 18 ms over the flight to entry
+    then.clock.front().correlation.rate = 1.0 + 2.0e-5;  // some 18 ms over the flight to entry
     then.clock.front().correlation.version = 4;
     const dictionary::Dictionary& today = tests::shipped_dictionary();
     auto [archive, cut] = cut_off_in(file, then);
@@ -387,11 +393,9 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
         callbacks.on_state = [](const auto&) {};
         callbacks.on_clocks = [](const auto&) {};
         RehearsalRunner runner{short_landing(), cut, 0.0, today, pipeline, callbacks};
-        while (!begun)
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        while (!begun) std::this_thread::sleep_for(std::chrono::milliseconds{1});
         runner.stop();
-        while (!runner.over())
-            std::this_thread::sleep_for(std::chrono::milliseconds{1});
+        while (!runner.over()) std::this_thread::sleep_for(std::chrono::milliseconds{1});
     }
     CHECK(failure.empty());
     CHECK(state.clock().version() == 4);

@@ -14,17 +14,15 @@ TEST_CASE("the digest is SHA-256 of all octets, however they are cut", "[digest]
     Digest whole, pieces;
     const std::vector<std::uint8_t> abc{'a', 'b', 'c'};
     whole.add(abc);
-    for (const auto octet : abc)
-        pieces.add({&octet, 1});
-    CHECK(whole.text() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"); // [fips-180-4]
+    for (const auto octet : abc) pieces.add({&octet, 1});
+    CHECK(whole.text() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // [fips-180-4]
     CHECK(pieces.text() == whole.text());
     CHECK(Digest{}.text() == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST_CASE("a landing's report is the object of the design, its real time proven by its recording", "[rehearsal][R41]") {
     Rehearsal rehearsal{test::shipped_scenario("nominal_auto"), 1, 0, tests::shipped_dictionary()};
-    while (!rehearsal.finished())
-        rehearsal.step();
+    while (!rehearsal.finished()) rehearsal.step();
     INFO(landing_table(rehearsal, 1.0));
     CHECK(rehearsal.script_refusals().empty());
 
@@ -32,13 +30,13 @@ TEST_CASE("a landing's report is the object of the design, its real time proven 
     REQUIRE(from_json(landing_json(rehearsal, 1.0), report));
     const auto& fields = report.fields();
     for (const char* name : {"scenario", "seed", "outcome", "digest", "events", "peak_deceleration_mps2", "touchdown",
-                             "heatshield_least_m", "backshell_least_m", "test_venue", "timepoints", "tones", "packets", "cycles",
-                             "overruns", "wall_s", "real_time_factor"}) {
+                             "heatshield_least_m", "backshell_least_m", "test_venue", "timepoints", "tones", "packets",
+                             "cycles", "overruns", "wall_s", "real_time_factor"}) {
         INFO(name);
         CHECK(fields.contains(name));
     }
     CHECK(fields.size() == 17);
-    CHECK(fields.at("backshell_least_m").number_value() > 10.0); // the sidestep
+    CHECK(fields.at("backshell_least_m").number_value() > 10.0);  // the sidestep
     CHECK(fields.at("outcome").string_value() == "touchdown");
     double previous = -1.0e9;
     for (const auto& event : fields.at("events").list_value().values()) {
@@ -59,15 +57,15 @@ TEST_CASE("the scenarios in which a computer fails end on the ground", "[.long][
     for (const char* name : {"pre_edl", "second_chance"}) {
         INFO(name);
         Rehearsal rehearsal{test::shipped_scenario(name), 1, 0, tests::shipped_dictionary()};
-        while (!rehearsal.finished())
-            rehearsal.step();
+        while (!rehearsal.finished()) rehearsal.step();
         CHECK(rehearsal.outcome() == "touchdown");
         CHECK(rehearsal.proof().holds());
         CHECK(rehearsal.landing().counters().resets == 1);
     }
 }
 
-TEST_CASE("over three orbiters a unit keeps one identity, and the recording comes down in passes", "[rehearsal][relay][R29][R41]") {
+TEST_CASE("over three orbiters a unit keeps one identity, and the recording comes down in passes",
+          "[rehearsal][relay][R29][R41]") {
     auto scenario = test::shipped_scenario("relay_passes");
     scenario.radio.delivery_restarts_after_touchdown_s = {200.0};
     Rehearsal rehearsal{scenario, 2, 0, tests::shipped_dictionary()};
@@ -85,7 +83,7 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
     CHECK(seen["uhf_mro"] > 1000);
     CHECK(seen["uhf_mex"] > 1000);
     CHECK(again > 0);
-    CHECK(units.counts().realtime > seen["uhf_live"]); // what the bent pipe lost another orbiter had
+    CHECK(units.counts().realtime > seen["uhf_live"]);  // what the bent pipe lost another orbiter had
     CHECK(units.counts().realtime + again == seen["uhf_live"] + seen["uhf_mro"] + seen["uhf_mex"]);
     CHECK(rehearsal.recording_progress() == 1.0);
     CHECK(rehearsal.station().recording().asked() > 0);
@@ -99,11 +97,10 @@ TEST_CASE("over three orbiters a unit keeps one identity, and the recording come
 
 TEST_CASE("when no pass is left to bring the recording down, nothing is said to be proven", "[rehearsal][relay][R41]") {
     auto scenario = test::shipped_scenario("relay_passes");
-    scenario.radio.relay_passes.resize(1); // the bent pipe of the landing alone
+    scenario.radio.relay_passes.resize(1);  // the bent pipe of the landing alone
     scenario.radio.relay_passes[0].set_after_entry_s = 300.0;
     Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
-    while (!rehearsal.finished())
-        rehearsal.step();
+    while (!rehearsal.finished()) rehearsal.step();
     CHECK(rehearsal.outcome() == "touchdown");
     CHECK(rehearsal.recording_progress() == 0.0);
     const auto proof = rehearsal.proof();
@@ -112,7 +109,8 @@ TEST_CASE("when no pass is left to bring the recording down, nothing is said to 
     CHECK(proof.realtime_not_recorded == proof.realtime);
 }
 
-TEST_CASE("commands over an uplink that loses frames are sent again, and the landing is commanded", "[rehearsal][gateway][R44]") {
+TEST_CASE("commands over an uplink that loses frames are sent again, and the landing is commanded",
+          "[rehearsal][gateway][R44]") {
     auto scenario = test::shipped_scenario("nominal_auto");
     scenario.radio.uplink_loss_fraction = 0.05;
     unsigned again = 0, commanded = 0;
@@ -127,7 +125,7 @@ TEST_CASE("commands over an uplink that loses frames are sent again, and the lan
                 reported |= stage.name == "EDL_DO_EDL" && stage.stage == "received" && stage.status == "unknown";
             }
         }
-        CHECK((executed || reported || !rehearsal.script_refusals().empty())); // never silence
+        CHECK((executed || reported || !rehearsal.script_refusals().empty()));  // never silence
         commanded += executed;
     }
     CHECK(again > 0);

@@ -73,7 +73,7 @@ class RunningServer {
 
   private:
     void open() {
-        spdlog::set_level(spdlog::level::err); // what a test provokes need not be read
+        spdlog::set_level(spdlog::level::err);  // what a test provokes need not be read
         server::ConsoleBackend::Settings settings;
         settings.web_server = web_server_;
         settings.accounts = accounts_;
@@ -97,4 +97,4 @@ class RunningServer {
     std::uint16_t port_ = 0;
 };
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

@@ -17,12 +17,11 @@ std::filesystem::path written(const std::string& name, const std::string& text) 
     return scratch(name);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("samples are read back as they were written, in both formats", "[tones]") {
     std::vector<std::complex<float>> samples;
-    for (int i = 0; i < 1000; ++i)
-        samples.emplace_back(0.01F * static_cast<float>(i), -0.5F);
+    for (int i = 0; i < 1000; ++i) samples.emplace_back(0.01F * static_cast<float>(i), -0.5F);
     for (const auto& [name, format, scale] :
          {std::tuple{"cf32", SampleFormat::cf32, 1.0F}, std::tuple{"ci16", SampleFormat::ci16, 2828.4F}}) {
         const auto file = scratch(name);
@@ -45,7 +44,9 @@ TEST_CASE("samples are read back as they were written, in both formats", "[tones
     }
 }
 
-TEST_CASE("a missing or empty sample file and an unknown format are named, and of a truncated one all whole samples are read", "[tones]") {
+TEST_CASE(
+    "a missing or empty sample file and an unknown format are named, and of a truncated one all whole samples are read",
+    "[tones]") {
     CHECK(SampleReader::open("/no/such/file", SampleFormat::cf32).error().message.find("/no/such/file") == 0);
     const auto empty = written("empty", "");
     CHECK(SampleReader::open(empty, SampleFormat::cf32).error().message == empty.string() + " is empty");
@@ -69,14 +70,14 @@ TEST_CASE("Doppler is read by its column's name, and a fault by its line", "[ton
     REQUIRE(table);
     CHECK(table->at(1.0) == -6.0);
     const auto no_column = written("no_column.csv", "time_s,frequency\n0,1\n");
-    CHECK(read_doppler(no_column).error().message.find("no_column.csv:1: there is no column doppler_hz") != std::string::npos);
+    CHECK(read_doppler(no_column).error().message.find("no_column.csv:1: there is no column doppler_hz") !=
+          std::string::npos);
     const auto no_number = written("no_number.csv", "time_s,doppler_hz\n0,1\n1,x\n");
     CHECK(read_doppler(no_number).error().message.find("no_number.csv:3:") != std::string::npos);
     const auto backward = written("backward.csv", "time_s,doppler_hz\n1,1\n0,1\n");
     CHECK(read_doppler(backward).error().message.find("not later") != std::string::npos);
     CHECK_FALSE(read_doppler("/no/such/file"));
-    for (const auto& file : {sound, no_column, no_number, backward})
-        std::filesystem::remove(file);
+    for (const auto& file : {sound, no_column, no_number, backward}) std::filesystem::remove(file);
 }
 
 TEST_CASE("a Doppler that is written is the one that was returned, and near the one that was given", "[tones]") {
@@ -110,6 +111,5 @@ TEST_CASE("tones to send are in order, whole, and known", "[tones]") {
     CHECK(read_tones_to_send(overlapping, 10.0).error().message.find("row 2: begins before") != std::string::npos);
     const auto unknown = written("unknown.csv", "start_s,tone\n5,256\n");
     CHECK(read_tones_to_send(unknown, 10.0).error().message.find("there is no tone 256") != std::string::npos);
-    for (const auto& file : {sound, overlapping, unknown})
-        std::filesystem::remove(file);
+    for (const auto& file : {sound, overlapping, unknown}) std::filesystem::remove(file);
 }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::int64_t second_us = 1'000'000;
 
-/// A run with light time 10 s that enters at SCLK 1000: 20 s live over one link, then none for 15 s, then 5 s over another.
+/// A run with light time 10 s that enters at SCLK 1000: 20 s live over one link, then none for 15 s, then 5 s over
+/// another.
 struct Landing {
     TemporaryFolder folder;
     dictionary::Dictionary dictionary = small_dictionary();
@@ -28,20 +29,21 @@ struct Landing {
         start.correlation = {Sclk{1000.0}, Scet{0}};
         REQUIRE(pipeline.begin(start).ok());
         link(true, 0, "nominal");
-        for (std::uint16_t i = 0; i < 20; ++i)
-            take({simulation::uhf_live_link, heard(i), packet(i)});
+        for (std::uint16_t i = 0; i < 20; ++i) take({simulation::uhf_live_link, heard(i), packet(i)});
         link(false, 20, "plasma blackout: predicted from E+19 s to E+36 s");
         link(true, 35, "nominal");
-        for (std::uint16_t i = 35; i < 40; ++i)
-            take({{"uhf_mro", false}, heard(i), packet(i)});
+        for (std::uint16_t i = 35; i < 40; ++i) take({{"uhf_mro", false}, heard(i), packet(i)});
     }
     static Ert heard(std::int64_t e_s) { return Ert{(e_s + 10) * second_us}; }
-    static Octets packet(std::uint16_t i) { return navigation_packet(i, 1000.0 + i, i == 12 ? std::nullopt : std::optional(10.0F * i), 3.0F); }
+    static Octets packet(std::uint16_t i) {
+        return navigation_packet(i, 1000.0 + i, i == 12 ? std::nullopt : std::optional(10.0F * i), 3.0F);
+    }
     void take(simulation::ReceivedPacket received) { REQUIRE(pipeline.accept(received).ok()); }
     void link(bool up, std::int64_t e_s, const char* reason) {
         REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, heard(e_s), up, reason}).ok());
     }
-    v1::ChannelSeries series(archive::SclkRange range = {}, std::optional<archive::Source> source = {}, std::optional<std::size_t> points = {}) {
+    v1::ChannelSeries series(archive::SclkRange range = {}, std::optional<archive::Source> source = {},
+                             std::optional<std::size_t> points = {}) {
         REQUIRE(pipeline.commit().ok());
         auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();
         const auto list = reader.series(RunId{1}, {{"altitude_m"}, range, points, source, true});
@@ -53,43 +55,52 @@ struct Landing {
 std::string text_of(const v1::ChannelSeries& series) {
     std::string text;
     for (const auto& origin : series.origins())
-        text += std::to_string(origin.samples()) + " " + (origin.source() == v1::SOURCE_RECORDED ? "recorded" : "live") + " " + origin.link() + " " +
-                origin.verdict() + " " + std::to_string(static_cast<int>(origin.from_sclk())) + "-" + std::to_string(static_cast<int>(origin.to_sclk())) + "; ";
+        text += std::to_string(origin.samples()) + " " +
+                (origin.source() == v1::SOURCE_RECORDED ? "recorded" : "live") + " " + origin.link() + " " +
+                origin.verdict() + " " + std::to_string(static_cast<int>(origin.from_sclk())) + "-" +
+                std::to_string(static_cast<int>(origin.to_sclk())) + "; ";
     for (const auto& gap : series.gaps())
-        text += "gap " + std::to_string(static_cast<int>(gap.from_sclk())) + "-" + std::to_string(static_cast<int>(gap.to_sclk())) + " " + gap.reason() + "; ";
+        text += "gap " + std::to_string(static_cast<int>(gap.from_sclk())) + "-" +
+                std::to_string(static_cast<int>(gap.to_sclk())) + " " + gap.reason() + "; ";
     return text;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("before the recording is down a series tells its links and names its gaps", "[reader][archive][R43]") {
     Landing landing;
-    CHECK(text_of(landing.series()) == "19 live uhf_live pending 1000-1019; 5 live uhf_mro pending 1035-1039; "
-                                       "gap 1011-1013 undefined on board; gap 1019-1035 uhf_live: plasma blackout: predicted from E+19 s to E+36 s; ");
+    CHECK(
+        text_of(landing.series()) ==
+        "19 live uhf_live pending 1000-1019; 5 live uhf_mro pending 1035-1039; "
+        "gap 1011-1013 undefined on board; gap 1019-1035 uhf_live: plasma blackout: predicted from E+19 s to E+36 s; ");
     // An end of the range is one of a gap only where it was asked for.
-    CHECK(text_of(landing.series({1005.0, 1025.0})).ends_with("gap 1019-1025 uhf_live: plasma blackout: predicted from E+19 s to E+36 s; "));
+    CHECK(text_of(landing.series({1005.0, 1025.0}))
+              .ends_with("gap 1019-1025 uhf_live: plasma blackout: predicted from E+19 s to E+36 s; "));
     CHECK(text_of(landing.series({1038.0, 1060.0})) == "2 live uhf_mro pending 1038-1039; gap 1039-1060 ; ");
     CHECK(text_of(landing.series({1036.0, {}})) == "4 live uhf_mro pending 1036-1039; ");
 }
 
-TEST_CASE("when the recording is down every sample has its path and its verdict, and they add up", "[reader][archive][R43]") {
+TEST_CASE("when the recording is down every sample has its path and its verdict, and they add up",
+          "[reader][archive][R43]") {
     Landing landing;
     for (std::uint16_t i = 0; i < 40; ++i) {
-        if (i == 3) continue; // lost on board
+        if (i == 3) continue;  // lost on board
         auto octets = Landing::packet(i);
         if (i == 36) octets = navigation_packet(i, 1000.0 + i, 5.0F, 3.0F);
         landing.take(recorded(octets));
     }
     landing.pipeline.relay_progress(1.0);
-    const bool finished = GENERATE(false, true); // samples from raw units, or from segments
+    const bool finished = GENERATE(false, true);  // samples from raw units, or from segments
     if (finished) REQUIRE(landing.pipeline.finish({"touchdown", "", "", ""}).ok());
     auto reader = std::move(Reader::open(landing.folder / "a.db", landing.dictionary)).value();
     if (!finished) REQUIRE(landing.pipeline.commit().ok());
     const auto list = reader.series(RunId{1}, {{"altitude_m"}, {}, {}, {}, true});
     REQUIRE(list.ok());
     const auto& series = list->channels(0);
-    CHECK(text_of(series) == "3 live uhf_live identical 1000-1002; 1 live uhf_live missing_in_recording 1003-1003; 15 live uhf_live identical 1004-1019; "
-                             "15 recorded relay never_seen_live 1020-1034; 1 live uhf_mro identical 1035-1035; 1 live uhf_mro differs 1036-1036; "
+    CHECK(text_of(series) == "3 live uhf_live identical 1000-1002; 1 live uhf_live missing_in_recording 1003-1003; 15 "
+                             "live uhf_live identical 1004-1019; "
+                             "15 recorded relay never_seen_live 1020-1034; 1 live uhf_mro identical 1035-1035; 1 live "
+                             "uhf_mro differs 1036-1036; "
                              "3 live uhf_mro identical 1037-1039; gap 1011-1013 undefined on board; ");
     std::uint64_t samples = 0;
     for (const auto& origin : series.origins())
@@ -104,10 +115,11 @@ TEST_CASE("when the recording is down every sample has its path and its verdict,
 
 TEST_CASE("of one source a series tells the gaps of that source", "[reader][archive]") {
     Landing landing;
-    for (std::uint16_t i = 0; i < 40; ++i)
-        landing.take(recorded(Landing::packet(i)));
-    CHECK(text_of(landing.series({}, archive::Source::realtime)).find("gap 1019-1035 uhf_live: plasma blackout") != std::string::npos);
+    for (std::uint16_t i = 0; i < 40; ++i) landing.take(recorded(Landing::packet(i)));
+    CHECK(text_of(landing.series({}, archive::Source::realtime)).find("gap 1019-1035 uhf_live: plasma blackout") !=
+          std::string::npos);
     CHECK(text_of(landing.series({}, archive::Source::recorded)) == "15 recorded relay never_seen_live 1020-1034; ");
     // By the outage of a link that is not asked about no gap is explained.
-    CHECK(text_of(landing.series({1010.0, 1040.0}, archive::Source::recorded)) == "15 recorded relay never_seen_live 1020-1034; gap 1010-1020 ; gap 1034-1040 ; ");
+    CHECK(text_of(landing.series({1010.0, 1040.0}, archive::Source::recorded)) ==
+          "15 recorded relay never_seen_live 1020-1034; gap 1010-1020 ; gap 1034-1040 ; ");
 }

@@ -23,7 +23,7 @@ struct Long {
     test::TemporaryFolder folder;
     dictionary::Dictionary dictionary = test::small_dictionary();
     std::filesystem::path file = folder / "a.db";
-    std::vector<std::pair<double, double>> all; ///< defined ones, by time
+    std::vector<std::pair<double, double>> all;  ///< defined ones, by time
 
     Long() {
         const PacketColumns columns(dictionary);
@@ -34,9 +34,11 @@ struct Long {
         std::mt19937_64 random(11);
         for (std::size_t i = 0; i < samples; ++i) {
             const bool live = i < samples * 3 / 4;
-            const double sclk_s = static_cast<double>(i) / 64.0 - (random() % 100 == 0 ? 3.0 : 0.0) + static_cast<double>(i) * 1e-7;
+            const double sclk_s =
+                static_cast<double>(i) / 64.0 - (random() % 100 == 0 ? 3.0 : 0.0) + static_cast<double>(i) * 1e-7;
             const double value = random() % 20 == 0 ? std::numeric_limits<double>::quiet_NaN()
-                                                    : std::sin(static_cast<double>(i) * 1e-3) + static_cast<double>(random() % 1000) * 1e-5;
+                                                    : std::sin(static_cast<double>(i) * 1e-3) +
+                                                          static_cast<double>(random() % 1000) * 1e-5;
             const std::array values{value, 0.0};
             builder.add(navigation, live ? Source::realtime : Source::recorded, 2 * i + 1, Sclk{sclk_s}, values, batch);
             if (!std::isnan(value)) all.emplace_back(sclk_s, value);
@@ -56,14 +58,14 @@ struct Long {
 
 std::vector<std::pair<double, double>> points_of(const v1::ChannelSeries& series) {
     std::vector<std::pair<double, double>> points;
-    for (int i = 0; i < series.sclk_size(); ++i)
-        points.emplace_back(series.sclk(i), series.value(i));
+    for (int i = 0; i < series.sclk_size(); ++i) points.emplace_back(series.sclk(i), series.value(i));
     return points;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("any range of a long run is found through the pyramid, sample by sample and thinned", "[archive][pyramid][R43]") {
+TEST_CASE("any range of a long run is found through the pyramid, sample by sample and thinned",
+          "[archive][pyramid][R43]") {
     const Long recorded;
     auto reader = Reader::open(recorded.file, recorded.dictionary);
     REQUIRE(reader.ok());
@@ -94,8 +96,7 @@ TEST_CASE("any range of a long run is found through the pyramid, sample by sampl
         const auto by_value = [](const auto& each) { return each.second; };
         REQUIRE(std::ranges::min(series.value()) == by_value(std::ranges::min(expected, {}, by_value)));
         REQUIRE(std::ranges::max(series.value()) == by_value(std::ranges::max(expected, {}, by_value)));
-        for (const auto& point : points_of(series))
-            REQUIRE(std::ranges::binary_search(expected, point));
+        for (const auto& point : points_of(series)) REQUIRE(std::ranges::binary_search(expected, point));
         // A plot has no holes: at least a quarter of the points that were asked for, where there are samples enough.
         if (expected.size() > 2 * wanted) REQUIRE(static_cast<std::size_t>(series.sclk_size()) >= wanted / 4);
     }
@@ -114,7 +115,8 @@ TEST_CASE("a segment or block that is damaged is named, not plotted", "[archive]
     };
     CHECK(refusal({}) == "answered");
     SECTION("a value's octet") {
-        spoil("UPDATE segment_columns SET value = CAST(substr(value, 1, 40) || x'00FF' || substr(value, 43) AS BLOB) WHERE key = 8388609 * 65536");
+        spoil("UPDATE segment_columns SET value = CAST(substr(value, 1, 40) || x'00FF' || substr(value, 43) AS BLOB) "
+              "WHERE key = 8388609 * 65536");
         CHECK(refusal({}).find("a.db: segment 8388609, channel 0 is damaged: ") != std::string::npos);
     }
     SECTION("times that are cut off") {

@@ -22,7 +22,7 @@ std::string error_of(const std::string& text) {
     return scenario.error().message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a scenario of the least text has the defaults of the simulation", "[scenario]") {
     const auto scenario = scenario_from_text(least, "s.textproto");
@@ -103,7 +103,8 @@ TEST_CASE("every field of the message reaches the simulation and comes back", "[
 
 TEST_CASE("no number of the schema is left out on the way to the simulation", "[scenario][R48]") {
     // What is left open is not written: that is a choice of its own.
-    const auto whole = scenario_to_message(*scenario_from_text(least + "radio { tones_from_samples: false earth_set_after_entry_s: 299 }", "s"));
+    const auto whole = scenario_to_message(
+        *scenario_from_text(least + "radio { tones_from_samples: false earth_set_after_entry_s: 299 }", "s"));
     const std::function<void(const google::protobuf::Message&, const std::string&)> check =
         [&](const google::protobuf::Message& message, const std::string& name) {
             const auto* descriptor = message.GetDescriptor();
@@ -133,8 +134,9 @@ TEST_CASE("a scenario file may be like another: what it sets counts, its lists r
     };
     REQUIRE(file("base", least + "radio { light_time_s: 5 uhf_rate_bps: 9000 } system_faults { begin_before_entry_s: 9 "
                                  "duration_s: 1 }"));
-    const auto like = file("other", "name: \"other\" like: \"base\" test_venue: TEST_VENUE_ALL_BUT_GNC radio { light_time_s: 7 } "
-                                    "system_faults { begin_before_entry_s: 3 duration_s: 1 }");
+    const auto like =
+        file("other", "name: \"other\" like: \"base\" test_venue: TEST_VENUE_ALL_BUT_GNC radio { light_time_s: 7 } "
+                      "system_faults { begin_before_entry_s: 3 duration_s: 1 }");
     REQUIRE(like);
     CHECK(like->name == "other");
     CHECK(like->radio.light_time_s == 7.0);
@@ -200,8 +202,10 @@ TEST_CASE("a device fault without device, unit or kind, or one that the device c
                Catch::StartsWith("s.textproto: device_faults[0].kind: "));
 }
 
-TEST_CASE("tracking passes are read, written and read again, and a pass that ends before it begins is refused", "[scenario][tracking]") {
-    const auto text = least + "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: -7200 end_after_entry_s: 3600 } }";
+TEST_CASE("tracking passes are read, written and read again, and a pass that ends before it begins is refused",
+          "[scenario][tracking]") {
+    const auto text =
+        least + "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: -7200 end_after_entry_s: 3600 } }";
     const auto scenario = scenario_from_text(text, "s.textproto");
     REQUIRE(scenario);
     const auto again = scenario_from_text(scenario_to_text(*scenario), "again");
@@ -210,7 +214,11 @@ TEST_CASE("tracking passes are read, written and read again, and a pass that end
     CHECK(again->radio.tracking_passes[0].station == "DSS-43");
     CHECK(again->radio.tracking_passes[0].begin_after_entry_s == -7200.0);
     CHECK(again->radio.tracking_passes[0].end_after_entry_s == 3600.0);
-    CHECK_THAT(error_of(least + "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: 1 end_after_entry_s: 0 } }"),
-               Catch::Contains("radio.tracking_passes[0]: begin_after_entry_s 1 to end_after_entry_s 0 is no stretch of time"));
-    CHECK_THAT(error_of(least + "radio { tracking_passes { end_after_entry_s: 10 } }"), Catch::Contains("radio.tracking_passes[0].station"));
+    CHECK_THAT(
+        error_of(least +
+                 "radio { tracking_passes { station: \"DSS-43\" begin_after_entry_s: 1 end_after_entry_s: 0 } }"),
+        Catch::Contains(
+            "radio.tracking_passes[0]: begin_after_entry_s 1 to end_after_entry_s 0 is no stretch of time"));
+    CHECK_THAT(error_of(least + "radio { tracking_passes { end_after_entry_s: 10 } }"),
+               Catch::Contains("radio.tracking_passes[0].station"));
 }

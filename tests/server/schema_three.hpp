@@ -37,15 +37,22 @@ inline void make_schema_three(const std::filesystem::path& file) {
     unpack_all("SELECT c.key, s.samples, c.value FROM segment_columns c JOIN segments s ON s.segment = c.key / 65536",
                "UPDATE segment_columns SET value = ?2 WHERE key = ?1");
     unpack_all("SELECT segment, samples, sclk FROM segments", "UPDATE segments SET sclk = ?2 WHERE segment = ?1");
-    REQUIRE(database
-                .execute("DROP VIEW staleness_log; DROP VIEW alarm_action_log; DROP VIEW shift_log; DROP TABLE search; DROP VIEW search_text;"
-                         "DROP TABLE staleness; DROP TABLE alarm_actions; DROP TABLE notes; DROP VIEW channel_segments; DROP INDEX segments_by_position; DROP TABLE pyramid; DROP TABLE pyramid_columns;"
-                         "DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE run_anchors; DROP TABLE run_clocks; DROP TABLE command_waits; DROP TABLE audit; DROP TABLE pruned_runs; DROP TABLE requests; ALTER TABLE segments DROP COLUMN position; ALTER TABLE segments DROP COLUMN packed;"
-                         "CREATE INDEX segments_by_packet ON segments (run, packet, source, last_unit);"
-                         "CREATE VIEW channel_segments AS SELECT g.run, g.sclk AS sclk_blob, v.value AS value_blob FROM segment_columns v"
-                         " JOIN segments g ON g.segment = v.key / 65536;"
-                         "PRAGMA user_version = 3; COMMIT")
-                .ok());
+    REQUIRE(
+        database
+            .execute(
+                "DROP VIEW staleness_log; DROP VIEW alarm_action_log; DROP VIEW shift_log; DROP TABLE search; DROP "
+                "VIEW search_text;"
+                "DROP TABLE staleness; DROP TABLE alarm_actions; DROP TABLE notes; DROP VIEW channel_segments; DROP "
+                "INDEX segments_by_position; DROP TABLE pyramid; DROP TABLE pyramid_columns;"
+                "DROP VIEW clock_log; DROP VIEW command_wait_log; DROP TABLE link_losses; DROP TABLE run_anchors; DROP "
+                "TABLE run_clocks; DROP TABLE command_waits; DROP TABLE audit; DROP TABLE pruned_runs; DROP TABLE "
+                "requests; ALTER TABLE segments DROP COLUMN position; ALTER TABLE segments DROP COLUMN packed;"
+                "CREATE INDEX segments_by_packet ON segments (run, packet, source, last_unit);"
+                "CREATE VIEW channel_segments AS SELECT g.run, g.sclk AS sclk_blob, v.value AS value_blob FROM "
+                "segment_columns v"
+                " JOIN segments g ON g.segment = v.key / 65536;"
+                "PRAGMA user_version = 3; COMMIT")
+            .ok());
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

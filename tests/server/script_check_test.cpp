@@ -25,5 +25,6 @@ TEST_CASE("a scenario's own commands are checked before the start, by name and a
     scenario.commands[1] = {1180.0, "EDL_SET_PARAMETERS", {{"parachute_speed_mps", 405.0}}, false};
     const auto value = check_script(scenario, tests::shipped_dictionary());
     REQUIRE_FALSE(value);
-    CHECK_THAT(value.error().message, Catch::StartsWith("commands[1]: argument ") && Catch::Contains("of EDL_SET_PARAMETERS is missing"));
+    CHECK_THAT(value.error().message,
+               Catch::StartsWith("commands[1]: argument ") && Catch::Contains("of EDL_SET_PARAMETERS is missing"));
 }

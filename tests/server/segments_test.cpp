@@ -16,7 +16,7 @@ using pipeline::SegmentBuilder;
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint16_t navigation = 0, status = 1; // packets of the small mission
+constexpr std::uint16_t navigation = 0, status = 1;  // packets of the small mission
 
 struct Fixture {
     dictionary::Dictionary dictionary = test::small_dictionary();
@@ -30,12 +30,12 @@ struct Fixture {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a packet's channels are its columns, and a channel knows its packets", "[segments]") {
     Fixture fixture;
     CHECK(fixture.columns.channels(navigation) == std::vector<ChannelId>{test::altitude, test::speed});
-    CHECK(fixture.columns.channels(3).empty()); // an event: its fields are no channels
+    CHECK(fixture.columns.channels(3).empty());  // an event: its fields are no channels
     REQUIRE(fixture.columns.places(test::phase).size() == 1);
     CHECK(fixture.columns.places(test::phase).front().packet == status);
 }
@@ -53,7 +53,8 @@ TEST_CASE("a segment is handed over when full, column by column, and the next on
     REQUIRE(segment.values.size() == 2 * segment_samples);
     bool in_place = true;
     for (std::size_t i = 0; i < segment_samples; ++i)
-        in_place = in_place && segment.sclk_s[i] == static_cast<double>(10 + i) && segment.values[i] == 100.0 * segment.sclk_s[i] &&
+        in_place = in_place && segment.sclk_s[i] == static_cast<double>(10 + i) &&
+                   segment.values[i] == 100.0 * segment.sclk_s[i] &&
                    segment.values[segment_samples + i] == segment.sclk_s[i];
     CHECK(in_place);
 

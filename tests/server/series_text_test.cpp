@@ -17,7 +17,7 @@ v1::ChannelSeries& add_series(v1::ChannelSeriesList& list, const char* name) {
     series.set_id(7);
     series.set_name(name);
     series.set_unit("m/s");
-    series.set_samples(UINT64_C(9007199254740993)); // one that no double holds
+    series.set_samples(UINT64_C(9007199254740993));  // one that no double holds
     for (const double value : {0.0, -1.5, 397000845.015625, 0.1, 1e-300, 1e21, 5869.125}) {
         series.add_sclk(397000845.0 + value);
         series.add_value(value);
@@ -26,7 +26,7 @@ v1::ChannelSeries& add_series(v1::ChannelSeriesList& list, const char* name) {
     return series;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a series as JSON is what the schema's own printer makes of it", "[http][export]") {
     v1::ChannelSeriesList list;

@@ -92,8 +92,7 @@ inline dictionary::Dictionary small_dictionary() {
     deploy.name = "parachute_deploy";
     d.timeline = {vent, cut, deploy};
     d.tones.resize(256);
-    for (std::size_t i = 0; i < d.tones.size(); ++i)
-        d.tones[i].id = ToneId{static_cast<std::uint8_t>(i)};
+    for (std::size_t i = 0; i < d.tones.size(); ++i) d.tones[i].id = ToneId{static_cast<std::uint8_t>(i)};
     d.tones[9].name = "PARACHUTE";
     d.tones[9].meaning = "parachute deployed";
     return d;
@@ -142,4 +141,4 @@ inline simulation::ReceivedPacket recorded(Octets octets, std::int64_t ert_us = 
     return {simulation::relay_link, Ert{ert_us}, std::move(octets)};
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

@@ -32,9 +32,10 @@ archive::StageRecord stage(const char* word, Ert at) {
     return stage;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("the state at an instant is what had happened by then, on board and as Earth sees of it, and nothing later", "[http][archive]") {
+TEST_CASE("the state at an instant is what had happened by then, on board and as Earth sees of it, and nothing later",
+          "[http][archive]") {
     const TemporaryFolder folder;
     const auto dictionary = small_dictionary();
     auto archive = archive::Archive::open(folder / "a.db");
@@ -54,7 +55,8 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     auto reader = archive::Reader::open(folder / "a.db", dictionary);
     REQUIRE(reader);
     const auto at = [&](std::optional<double> sclk_s) {
-        auto state = server::state_at(*reader, archive::RunId{1}, dictionary, sclk_s ? std::optional{Sclk{*sclk_s}} : std::nullopt);
+        auto state = server::state_at(*reader, archive::RunId{1}, dictionary,
+                                      sclk_s ? std::optional{Sclk{*sclk_s}} : std::nullopt);
         REQUIRE(state);
         return std::move(*state);
     };
@@ -83,7 +85,7 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     REQUIRE(now.links_size() == 2);
     CHECK_FALSE(now.links(0).link().up());
     CHECK(now.links(0).link().reason() == "plasma blackout");
-    REQUIRE(now.alarms_size() == 1); // a silence that was predicted is none
+    REQUIRE(now.alarms_size() == 1);  // a silence that was predicted is none
     CHECK(now.alarms(0).link().link() == "x_band");
     CHECK(at(1003.1).alarms().empty());
     CHECK(now.commands(0).command_stage().stage() == "radiated");

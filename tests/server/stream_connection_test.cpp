@@ -31,8 +31,7 @@ std::string text_of(archive::Sequence seq, std::size_t octets) {
 /// `count` events in one turn, each with a text of so many octets.
 void publish(EventServer& events, std::size_t octets, std::size_t count = 1) {
     std::vector<std::string> texts;
-    for (std::size_t i = 1; i <= count; ++i)
-        texts.push_back(text_of(events.last_seq() + i, octets));
+    for (std::size_t i = 1; i <= count; ++i) texts.push_back(text_of(events.last_seq() + i, octets));
     events.publish(texts);
 }
 
@@ -67,7 +66,7 @@ struct Client {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a client that stalls and pings gets every frame whole, and each pong between two of them", "[stream]") {
     EventServer events;
@@ -76,8 +75,7 @@ TEST_CASE("a client that stalls and pings gets every frame whole, and each pong 
     // Frames of every length of header, until the kernel takes no more by far.
     constexpr std::size_t rounds = 60, octets[] = {20, 300, 70'000, 200'000};
     for (std::size_t i = 0; i < rounds; ++i) {
-        for (const auto size : octets)
-            publish(events, size);
+        for (const auto size : octets) publish(events, size);
         if (i % 20 == 0) client.socket.ping(websocket::ping_data{fmt::format("ping {}", i)});
         std::this_thread::sleep_for(2ms);
     }
@@ -106,10 +104,9 @@ TEST_CASE("a client that closes gets its close, and nothing after it", "[stream]
     EventServer events;
     Client client{events.port()};
     REQUIRE(client.read().has_welcome());
-    for (int i = 0; i < 200; ++i)
-        publish(events, 1000);
+    for (int i = 0; i < 200; ++i) publish(events, 1000);
     beast::error_code error;
-    client.socket.close(websocket::close_code::normal, error); // reads what was under way, up to the answer
+    client.socket.close(websocket::close_code::normal, error);  // reads what was under way, up to the answer
     CHECK_FALSE(error);
 }
 
@@ -125,9 +122,10 @@ TEST_CASE("batches that are published in one turn of the network go out in one m
 
 namespace {
 
-const std::string upgrade = "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-                            "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
-                            "Sec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n";
+const std::string upgrade =
+    "GET /api/v1/stream HTTP/1.1\r\nHost: localhost\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n"
+    "Sec-WebSocket-Protocol: aeolis.v1.protobuf\r\n\r\n";
 
 /// A peer that was let in and then says nothing any more, as when its cable is pulled.
 struct Dead {
@@ -140,21 +138,24 @@ struct Dead {
         v1::ClientMessage message;
         message.mutable_subscribe()->set_all_channels(true);
         const auto payload = message.SerializeAsString();
-        const auto frame = std::string{'\x82'} + static_cast<char>(0x80U | payload.size()) + std::string(4, '\0') + payload;
+        const auto frame =
+            std::string{'\x82'} + static_cast<char>(0x80U | payload.size()) + std::string(4, '\0') + payload;
         asio::write(socket, asio::buffer(frame));
     }
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a peer that answers no ping is let go, also while the kernel takes nothing more for it, and one that answers stays", "[stream][bounds]") {
+TEST_CASE("a peer that answers no ping is let go, also while the kernel takes nothing more for it, and one that "
+          "answers stays",
+          "[stream][bounds]") {
     server::WebServer::Settings settings;
     settings.silence_max = 600ms;
     EventServer events{settings};
     Client alive{events.port()};
     REQUIRE(alive.read().has_welcome());
     std::size_t heard = 0;
-    std::thread reads{[&] { // to read is to answer
+    std::thread reads{[&] {  // to read is to answer
         beast::flat_buffer buffer;
         for (beast::error_code error; !error;) {
             buffer.clear();
@@ -163,8 +164,7 @@ TEST_CASE("a peer that answers no ping is let go, also while the kernel takes no
         }
     }};
     const auto comes_to = [&](std::size_t count) {
-        for (int i = 0; i < 3000 && events.clients() != count; ++i)
-            std::this_thread::sleep_for(10ms);
+        for (int i = 0; i < 3000 && events.clients() != count; ++i) std::this_thread::sleep_for(10ms);
         return events.clients() == count;
     };
     {
@@ -175,8 +175,7 @@ TEST_CASE("a peer that answers no ping is let go, also while the kernel takes no
     {
         const Dead choked{events.port()};
         CHECK(comes_to(2));
-        for (int i = 0; i < 64; ++i)
-            publish(events, 1 << 18); // far more than the kernel keeps of a connection
+        for (int i = 0; i < 64; ++i) publish(events, 1 << 18);  // far more than the kernel keeps of a connection
         CHECK(comes_to(1));
     }
     std::this_thread::sleep_for(2 * settings.silence_max);
@@ -186,7 +185,8 @@ TEST_CASE("a peer that answers no ping is let go, also while the kernel takes no
     CHECK(heard > 0);
 }
 
-TEST_CASE("of what a client does not read little is with the kernel: the rest waits where it can be thinned", "[stream][bounds]") {
+TEST_CASE("of what a client does not read little is with the kernel: the rest waits where it can be thinned",
+          "[stream][bounds]") {
     EventServer events;
     asio::io_context io;
     websocket::stream<beast::tcp_stream> socket{io};
@@ -194,14 +194,15 @@ TEST_CASE("of what a client does not read little is with the kernel: the rest wa
     tcp.socket().open(asio::ip::tcp::v4());
     tcp.socket().set_option(asio::socket_base::receive_buffer_size{64 << 10});
     tcp.socket().connect({asio::ip::make_address("127.0.0.1"), events.port()});
-    socket.set_option(websocket::stream_base::decorator(
-        [](websocket::request_type& request) { request.set(beast::http::field::sec_websocket_protocol, "aeolis.v1.protobuf"); }));
+    socket.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+        request.set(beast::http::field::sec_websocket_protocol, "aeolis.v1.protobuf");
+    }));
     socket.handshake("localhost", "/api/v1/stream");
     socket.binary(true);
     v1::ClientMessage message;
     message.mutable_subscribe()->set_all_channels(true);
     socket.write(asio::buffer(message.SerializeAsString()));
-    for (int i = 0; i < 160; ++i) { // 8 MB, of which a kernel takes some four where it may
+    for (int i = 0; i < 160; ++i) {  // 8 MB, of which a kernel takes some four where it may
         publish(events, 512, 100);
         std::this_thread::sleep_for(2ms);
     }
@@ -223,37 +224,36 @@ TEST_CASE("when the server ends, each stream is closed as going away, with the r
         events.end();
         took = std::chrono::steady_clock::now() - begun;
     }};
-    std::vector<std::thread> readers; // to read is to answer
+    std::vector<std::thread> readers;  // to read is to answer
     for (auto& client : clients)
         readers.emplace_back([&client] {
-            while (client.receive()) {}
+            while (client.receive()) {
+            }
         });
-    for (auto& reader : readers)
-        reader.join();
+    for (auto& reader : readers) reader.join();
     ends.join();
     for (const auto& client : clients) {
         CHECK(client.close_code() == 1001);
         CHECK(client.close_words() == "the server ends");
     }
-    CHECK(took < server::WebServer::farewell_max); // it does not wait longer than for the last of them
+    CHECK(took < server::WebServer::farewell_max);  // it does not wait longer than for the last of them
 }
 
 TEST_CASE("a server that ends waits a second at most for streams that do not answer", "[stream][bounds]") {
     EventServer events;
     const Dead idle{events.port()}, choked{events.port()};
-    for (int i = 0; i < 3000 && events.clients() != 2; ++i)
-        std::this_thread::sleep_for(10ms);
+    for (int i = 0; i < 3000 && events.clients() != 2; ++i) std::this_thread::sleep_for(10ms);
     REQUIRE(events.clients() == 2);
-    for (int i = 0; i < 64; ++i)
-        publish(events, 1 << 18);
+    for (int i = 0; i < 64; ++i) publish(events, 1 << 18);
     const auto begun = std::chrono::steady_clock::now();
     events.end();
     const auto took = std::chrono::steady_clock::now() - begun;
     CHECK(took >= server::WebServer::farewell_max);
-    CHECK(took < 5 * server::WebServer::farewell_max); // a loaded machine is slow
+    CHECK(took < 5 * server::WebServer::farewell_max);  // a loaded machine is slow
 }
 
-TEST_CASE("one stream more than there are places is refused with 503, and who has none is answered", "[stream][http][bounds]") {
+TEST_CASE("one stream more than there are places is refused with 503, and who has none is answered",
+          "[stream][http][bounds]") {
     server::WebServer::Settings settings;
     settings.streams = 2;
     EventServer events{settings};
@@ -266,18 +266,18 @@ TEST_CASE("one stream more than there are places is refused with 503, and who ha
     CHECK_THAT(raw_exchange(events.port(), upgrade), Catch::Contains("2 streams are open already"));
     CHECK(answers());
     second.reset();
-    for (int i = 0; i < 3000 && events.clients() != 1; ++i)
-        std::this_thread::sleep_for(10ms);
+    for (int i = 0; i < 3000 && events.clients() != 1; ++i) std::this_thread::sleep_for(10ms);
     second.emplace(events.port(), "aeolis.v1.json");
     CHECK(second->open());
 
     asio::io_context io;
-    std::vector<asio::ip::tcp::socket> idle; // of the places besides, all but one
+    std::vector<asio::ip::tcp::socket> idle;  // of the places besides, all but one
     for (std::size_t i = 0; i + 1 < server::WebServer::connections_besides; ++i)
         idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
     CHECK(answers());
     std::string refused;
-    for (int i = 0; i < 100 && refused.find("503") == std::string::npos; ++i) { // the one just answered may still have its place
+    for (int i = 0; i < 100 && refused.find("503") == std::string::npos;
+         ++i) {  // the one just answered may still have its place
         idle.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
         std::this_thread::sleep_for(10ms);
         refused = raw_exchange(events.port(), "GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n");
@@ -286,7 +286,7 @@ TEST_CASE("one stream more than there are places is refused with 503, and who ha
 }
 
 TEST_CASE("while as many streams are open as may be, who has none is answered", "[stream][http][bounds]") {
-    rlimit files{}; // the server's sockets and the clients' are in one process
+    rlimit files{};  // the server's sockets and the clients' are in one process
     ::getrlimit(RLIMIT_NOFILE, &files);
     files.rlim_cur = files.rlim_max;
     ::setrlimit(RLIMIT_NOFILE, &files);
@@ -297,8 +297,7 @@ TEST_CASE("while as many streams are open as may be, who has none is answered", 
         streams.emplace_back(io).connect({asio::ip::make_address("127.0.0.1"), events.port()});
         asio::write(streams.back(), asio::buffer(upgrade));
     }
-    for (int i = 0; i < 2'000 && events.clients() != streams.size(); ++i)
-        std::this_thread::sleep_for(10ms);
+    for (int i = 0; i < 2'000 && events.clients() != streams.size(); ++i) std::this_thread::sleep_for(10ms);
     REQUIRE(events.clients() == 1'000);
     CHECK(StreamClient{events.port(), "aeolis.v1.json"}.status() == 503);
     CHECK(web_request(events.port(), "GET", "/healthz").status == 200);

@@ -49,11 +49,11 @@ v1::Item event_item(archive::Sequence seq, double ert_s) {
 /// The rest of the server as a stream sees it: an archive of items that answers when told to.
 struct Venue {
     std::vector<v1::Item> durable;
-    std::vector<v1::Item> flown; ///< of the run flown_before; none: the same as of this one
+    std::vector<v1::Item> flown;  ///< of the run flown_before; none: the same as of this one
     std::chrono::steady_clock::time_point now{};
-    std::vector<std::function<void()>> waiting; ///< answers of the archive
+    std::vector<std::function<void()>> waiting;  ///< answers of the archive
     std::size_t pages_read = 0;
-    std::string broken; ///< what the disk says instead; empty: it is well
+    std::string broken;  ///< what the disk says instead; empty: it is well
     StreamHub hub{4711, services()};
 
     StreamHub::Services services() {
@@ -65,7 +65,8 @@ struct Venue {
             if (!broken.empty()) return waiting.push_back([done, why = broken] { done(Error{why, true}); });
             archive::ItemPage page;
             for (const auto& item : stored)
-                if (item.seq() > after && page.items.size() < limit && (kinds.units || !item.has_unit())) page.items.push_back(item);
+                if (item.seq() > after && page.items.size() < limit && (kinds.units || !item.has_unit()))
+                    page.items.push_back(item);
             page.complete_through = page.items.size() < limit ? stored.size() : page.items.back().seq();
             page.more = page.complete_through < stored.size();
             waiting.push_back([done, page] { done(page); });
@@ -83,7 +84,9 @@ struct Venue {
         return services;
     }
     static constexpr std::uint64_t flown_before = 9;
-    const std::vector<v1::Item>& items_of(std::uint64_t run) const { return run == flown_before && !flown.empty() ? flown : durable; }
+    const std::vector<v1::Item>& items_of(std::uint64_t run) const {
+        return run == flown_before && !flown.empty() ? flown : durable;
+    }
     Venue() {
         v1::RunState state;
         state.set_run(1);
@@ -104,21 +107,18 @@ struct Venue {
         auto batch = std::make_shared<pipeline::PublishedBatch>();
         batch->run = archive::RunId{1};
         batch->first_seq = durable.size() + 1;
-        for (std::size_t i = 0; i < count; ++i)
-            durable.push_back(event_item(durable.size() + 1));
+        for (std::size_t i = 0; i < count; ++i) durable.push_back(event_item(durable.size() + 1));
         batch->last_seq = durable.size();
         batch->built = false;
         hub.published(batch);
     }
     void publish_events(std::size_t count) {
         std::vector<v1::Item> items;
-        for (std::size_t i = 0; i < count; ++i)
-            items.push_back(event_item(durable.size() + i + 1));
+        for (std::size_t i = 0; i < count; ++i) items.push_back(event_item(durable.size() + i + 1));
         publish(std::move(items));
     }
     void answer() {
-        for (auto& each : std::exchange(waiting, {}))
-            each();
+        for (auto& each : std::exchange(waiting, {})) each();
     }
 };
 
@@ -158,13 +158,13 @@ struct Client {
     void read_all() {
         while (const auto encoded = session->next_message()) {
             v1::ServerMessage message;
-            REQUIRE((session->format() == StreamFormat::json ? from_json(*encoded, message).ok() : message.ParseFromString(*encoded)));
+            REQUIRE((session->format() == StreamFormat::json ? from_json(*encoded, message).ok()
+                                                             : message.ParseFromString(*encoded)));
             if (message.has_batch()) {
                 const auto& batch = message.batch();
-                CHECK(batch.after_seq() == complete_through); // a chain without a hole
+                CHECK(batch.after_seq() == complete_through);  // a chain without a hole
                 complete_through = batch.complete_through();
-                for (const auto& item : batch.items())
-                    seen.push_back(item.seq());
+                for (const auto& item : batch.items()) seen.push_back(item.seq());
             }
             if (message.has_refusal()) refusals.push_back(message.refusal().reason());
             messages.push_back(std::move(message));
@@ -172,8 +172,7 @@ struct Client {
     }
     bool saw_exactly(archive::Sequence first, archive::Sequence last) const {
         std::vector<archive::Sequence> wanted;
-        for (auto seq = first; seq <= last; ++seq)
-            wanted.push_back(seq);
+        for (auto seq = first; seq <= last; ++seq) wanted.push_back(seq);
         return seen == wanted;
     }
 
@@ -185,7 +184,7 @@ struct Client {
     std::vector<v1::ServerMessage> messages;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a client gets nothing before it subscribes, then a welcome first", "[stream][R42]") {
     Venue venue;
@@ -211,7 +210,7 @@ TEST_CASE("a client that resumes gets what it missed, each item once", "[stream]
     venue.publish_events(10);
     client.read_all();
     CHECK(client.saw_exactly(41, 110));
-    CHECK(venue.pages_read == 0); // all of it was still in memory
+    CHECK(venue.pages_read == 0);  // all of it was still in memory
 }
 
 TEST_CASE("a slow client reads the archive and loses nothing", "[stream][R42]") {
@@ -220,12 +219,11 @@ TEST_CASE("a slow client reads the archive and loses nothing", "[stream][R42]") 
     client.subscribe(0);
     venue.publish_events(10);
     client.read_all();
-    for (int i = 0; i < 40; ++i)
-        venue.publish_events(1000); // more than the hub holds, none of it read meanwhile
+    for (int i = 0; i < 40; ++i) venue.publish_events(1000);  // more than the hub holds, none of it read meanwhile
     while (client.complete_through < venue.durable.size()) {
         client.read_all();
         if (venue.waiting.empty()) break;
-        venue.publish_events(1); // and it goes on
+        venue.publish_events(1);  // and it goes on
         venue.answer();
     }
     client.read_all();
@@ -254,7 +252,7 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
     client.subscribe(0, 8.0);
     client.read_all();
     std::size_t samples = 0, thinned = 0, events = 0;
-    for (std::size_t i = 0; i < 128; ++i) { // two seconds at 64 Hz, an event with each sample
+    for (std::size_t i = 0; i < 128; ++i) {  // two seconds at 64 Hz, an event with each sample
         const auto seq = venue.durable.size() + 1;
         venue.publish({samples_item(seq, 1000.0 + static_cast<double>(i) / 64.0), event_item(seq + 1)});
         client.read_all();
@@ -266,7 +264,7 @@ TEST_CASE("samples are thinned to the rate asked for and say so; nothing else is
             events += item.has_event() ? 1 : 0;
         }
     CHECK(samples == 16);
-    CHECK(thinned == 15); // the first leaves nothing out
+    CHECK(thinned == 15);  // the first leaves nothing out
     CHECK(events == 128);
     CHECK(client.complete_through == 256);
 }
@@ -300,27 +298,29 @@ TEST_CASE("channels that ascend are found as those that do not", "[stream]") {
         if (!item.has_samples()) continue;
         const auto chosen = [&](bool ascend) {
             v1::Batch batch;
-            select_items({StreamFormat::json, false, wanted, 0.0}, 0.0, std::vector<ItemBefore>{{&item, {std::nullopt, ascend}}}, batch);
+            select_items({StreamFormat::json, false, wanted, 0.0}, 0.0,
+                         std::vector<ItemBefore>{{&item, {std::nullopt, ascend}}}, batch);
             return batch.SerializeAsString();
         };
         CHECK(chosen(true) == chosen(false));
     }
 }
 
-TEST_CASE("a client that wants nothing of what came last is told with the run's state that all of it is there", "[stream][R42]") {
+TEST_CASE("a client that wants nothing of what came last is told with the run's state that all of it is there",
+          "[stream][R42]") {
     Venue venue;
     Client client{venue.hub};
     client.subscribe(0, 0.0, false);
     venue.publish_events(2);
     client.read_all();
     CHECK(client.complete_through == 2);
-    venue.publish({samples_item(3, 1.0), samples_item(4, 2.0)}); // of channels that it does not follow
+    venue.publish({samples_item(3, 1.0), samples_item(4, 2.0)});  // of channels that it does not follow
     client.read_all();
-    CHECK(client.complete_through == 2); // a message for each group of these would cost more than it says
+    CHECK(client.complete_through == 2);  // a message for each group of these would cost more than it says
     v1::RunState over;
     over.set_run(1);
     over.set_state("finished");
-    venue.hub.run_state(over); // of a mission that is followed no clocks come
+    venue.hub.run_state(over);  // of a mission that is followed no clocks come
     client.read_all();
     CHECK(client.complete_through == 4);
     CHECK(client.seen == std::vector<archive::Sequence>{1, 2});
@@ -355,8 +355,7 @@ TEST_CASE("what a client asks and cannot have is refused in words, and it goes o
 TEST_CASE("a client that asks and never reads is marked to be closed", "[stream]") {
     Venue venue;
     Client client{venue.hub};
-    for (std::size_t i = 0; i <= StreamSession::replies_max; ++i)
-        client.session->on_message("\xFF");
+    for (std::size_t i = 0; i <= StreamSession::replies_max; ++i) client.session->on_message("\xFF");
     CHECK_THAT(client.session->closing(), Catch::Contains("without reading"));
 }
 
@@ -400,14 +399,15 @@ void next_run(Venue& venue) {
     venue.hub.run_state(next);
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("who is behind when the next run begins gets the rest of the one before, and then the next", "[stream][R42]") {
+TEST_CASE("who is behind when the next run begins gets the rest of the one before, and then the next",
+          "[stream][R42]") {
     Venue venue;
-    venue.publish_events(5'000); // more than two pages
+    venue.publish_events(5'000);  // more than two pages
     Client client{venue.hub};
     client.subscribe(0);
-    REQUIRE(client.session->next_message()); // the welcome; then it stalls
+    REQUIRE(client.session->next_message());  // the welcome; then it stalls
     next_run(venue);
     for (int i = 0; i < 8; ++i) {
         client.read_all();
@@ -442,19 +442,22 @@ TEST_CASE("one question of a client is with the archive at a time, however often
     Client client{venue.hub};
     for (int i = 0; i < 1'000; ++i) {
         client.subscribe(static_cast<archive::Sequence>(i % 50), 0.0, true, 1);
-        while (client.session->next_message()) {}
+        while (client.session->next_message()) {
+        }
     }
     CHECK(venue.pages_read == 1);
     CHECK(venue.waiting.size() == 1);
     venue.answer();
-    CHECK(venue.pages_read == 2); // what the last subscription wants
+    CHECK(venue.pages_read == 2);  // what the last subscription wants
     client.complete_through = 999 % 50;
     venue.answer();
     client.read_all();
     CHECK(client.saw_exactly(999 % 50 + 1, 100));
 }
 
-TEST_CASE("what the archive does not give is told once, comes when it can be read again, and until then nothing looks live", "[stream][disk][R42]") {
+TEST_CASE(
+    "what the archive does not give is told once, comes when it can be read again, and until then nothing looks live",
+    "[stream][disk][R42]") {
     Venue venue;
     venue.store_events(100);
     Client client{venue.hub};
@@ -470,9 +473,10 @@ TEST_CASE("what the archive does not give is told once, comes when it can be rea
     }
     REQUIRE(client.refusals.size() == 1);
     CHECK_THAT(client.refusals[0], Catch::Contains("tried again") && Catch::Contains("disk I/O error"));
-    CHECK(venue.pages_read == 6); // a check each, and no more than that
+    CHECK(venue.pages_read == 6);  // a check each, and no more than that
     CHECK(client.seen.empty());
-    CHECK(std::ranges::none_of(client.messages, [](const auto& message) { return message.has_batch(); })); // and no clocks
+    CHECK(std::ranges::none_of(client.messages,
+                               [](const auto& message) { return message.has_batch(); }));  // and no clocks
     venue.broken.clear();
     venue.answer();
     venue.hub.check_clients();
@@ -486,7 +490,7 @@ TEST_CASE("what the archive does not give is told once, comes when it can be rea
     client.read_all();
     venue.answer();
     client.read_all();
-    CHECK(client.refusals.size() == 2); // another time, and said again
+    CHECK(client.refusals.size() == 2);  // another time, and said again
     venue.broken.clear();
     venue.hub.check_clients();
     venue.answer();
@@ -510,7 +514,7 @@ TEST_CASE("an older run that the archive does not give at once is followed when 
     client.read_all();
     CHECK(client.saw_exactly(1, 20));
 
-    venue.broken = "a.db: disk I/O error"; // who asks for another run meanwhile does not wait for this one
+    venue.broken = "a.db: disk I/O error";  // who asks for another run meanwhile does not wait for this one
     client.subscribe(0, 0.0, true, Venue::flown_before);
     client.seen.clear();
     client.complete_through = 0;
@@ -529,36 +533,37 @@ void pass(Venue& venue, std::chrono::milliseconds wall, const std::vector<Client
     for (;;) {
         do {
             venue.answer();
-            for (auto* client : clients)
-                client->read_all();
+            for (auto* client : clients) client->read_all();
         } while (!venue.waiting.empty());
         auto next = end;
         for (const auto* client : clients)
             if (const auto due = client->session->due()) next = std::min(next, *due);
         if (venue.now == end) return;
-        REQUIRE(next > venue.now); // a timer that has run out and brings nothing would spin
+        REQUIRE(next > venue.now);  // a timer that has run out and brings nothing would spin
         venue.now = next;
     }
 }
 
 std::size_t batches(const Client& client) {
-    return static_cast<std::size_t>(std::ranges::count_if(client.messages, [](const auto& message) { return message.has_batch(); }));
+    return static_cast<std::size_t>(
+        std::ranges::count_if(client.messages, [](const auto& message) { return message.has_batch(); }));
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a run that is over comes again at the pace asked for, each item when it would have reached Earth", "[stream][R42]") {
+TEST_CASE("a run that is over comes again at the pace asked for, each item when it would have reached Earth",
+          "[stream][R42]") {
     Venue venue;
     v1::Item tone, stage, link, explanation;
     tone.set_seq(3);
-    tone.mutable_tone()->set_ert_start("2000-001T12:00:20.000"); // noon
+    tone.mutable_tone()->set_ert_start("2000-001T12:00:20.000");  // noon
     tone.mutable_tone()->set_ert_end("2000-001T12:00:30.000");
-    explanation.set_seq(4); // bears no time on Earth
+    explanation.set_seq(4);  // bears no time on Earth
     explanation.mutable_explanation()->set_text("because");
     stage.set_seq(5);
-    stage.mutable_command_stage()->set_at("2000-001T12:00:25.000"); // before the tone was whole
+    stage.mutable_command_stage()->set_at("2000-001T12:00:25.000");  // before the tone was whole
     link.set_seq(6);
-    link.mutable_link()->set_ert("2000-001T13:00:00.000"); // an hour of cruise
+    link.mutable_link()->set_ert("2000-001T13:00:00.000");  // an hour of cruise
     venue.flown = {event_item(1, 0.0), samples_item(2, 5.0), tone, explanation, stage, link};
     Client client{venue.hub};
     client.replay(10.0);
@@ -579,19 +584,17 @@ TEST_CASE("a run that is over comes again at the pace asked for, each item when 
     CHECK(client.saw_exactly(1, 6));
     CHECK_FALSE(client.session->due());
     CHECK_FALSE(client.session->behind());
-    for (const auto& message : client.messages)
-        CHECK((!message.has_batch() || message.batch().history()));
+    for (const auto& message : client.messages) CHECK((!message.has_batch() || message.batch().history()));
 }
 
 TEST_CASE("who replays gets twenty batches a second at most, over as many pages as it takes", "[stream][bounds]") {
     Venue venue;
     constexpr std::size_t items = 3 * StreamSession::page_items;
-    for (std::size_t i = 0; i < items; ++i)
-        venue.flown.push_back(event_item(i + 1, 0.001 * static_cast<double>(i)));
+    for (std::size_t i = 0; i < items; ++i) venue.flown.push_back(event_item(i + 1, 0.001 * static_cast<double>(i)));
     Client client{venue.hub};
     client.replay(1.0);
     pass(venue, 1s, {&client});
-    CHECK(client.seen.size() >= 951); // what is due goes with the next batch
+    CHECK(client.seen.size() >= 951);  // what is due goes with the next batch
     CHECK(client.seen.size() <= 1'001);
     CHECK(batches(client) >= 20);
     CHECK(batches(client) <= 21);
@@ -600,7 +603,8 @@ TEST_CASE("who replays gets twenty batches a second at most, over as many pages 
     CHECK(batches(client) <= 1 + items / 50 + venue.pages_read);
 }
 
-TEST_CASE("of JSON a page of the past goes out in parts, each once, so that no message holds the network up", "[stream][bounds]") {
+TEST_CASE("of JSON a page of the past goes out in parts, each once, so that no message holds the network up",
+          "[stream][bounds]") {
     Venue venue;
     constexpr std::size_t items = StreamSession::page_items + 3 * StreamSession::json_items / 2;
     venue.store_events(items);
@@ -617,13 +621,14 @@ TEST_CASE("of JSON a page of the past goes out in parts, each once, so that no m
         CHECK(message.batch().items_size() <= static_cast<int>(StreamSession::json_items));
 }
 
-TEST_CASE("each replays at a pace of its own and from its own place, and who follows the run that goes on does not notice", "[stream][R42]") {
+TEST_CASE(
+    "each replays at a pace of its own and from its own place, and who follows the run that goes on does not notice",
+    "[stream][R42]") {
     Venue venue;
-    for (int i = 0; i < 100; ++i)
-        venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
+    for (int i = 0; i < 100; ++i) venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
     Client slow{venue.hub}, fast{venue.hub}, live{venue.hub};
     live.subscribe(0);
-    slow.replay(1.0, 50); // its time counts from item 51 on
+    slow.replay(1.0, 50);  // its time counts from item 51 on
     fast.replay(20.0);
     slow.complete_through = 50;
     for (archive::Sequence second = 1; second <= 4; ++second) {
@@ -639,29 +644,29 @@ TEST_CASE("each replays at a pace of its own and from its own place, and who fol
 
 TEST_CASE("a new subscription changes the pace of a replay, or where it is", "[stream][R42]") {
     Venue venue;
-    for (int i = 0; i < 1'000; ++i)
-        venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
+    for (int i = 0; i < 1'000; ++i) venue.flown.push_back(event_item(static_cast<archive::Sequence>(i) + 1, i));
     Client client{venue.hub};
     client.replay(1.0);
     pass(venue, 10s, {&client});
     CHECK(client.saw_exactly(1, 11));
     client.replay(100.0, client.complete_through);
-    CHECK_FALSE(client.session->due()); // the archive is asked first
+    CHECK_FALSE(client.session->due());  // the archive is asked first
     pass(venue, 1s, {&client});
-    CHECK(client.saw_exactly(12, 112)); // the eleventh second is not waited for again
+    CHECK(client.saw_exactly(12, 112));  // the eleventh second is not waited for again
     client.replay(1.0, 900);
     pass(venue, 2s, {&client});
     CHECK(client.saw_exactly(901, 903));
     client.replay(0.0, 903);
     pass(venue, 0s, {&client});
-    CHECK(client.saw_exactly(904, 1'000)); // without a pace as fast as it is read
+    CHECK(client.saw_exactly(904, 1'000));  // without a pace as fast as it is read
     client.replay(1e-300);
     pass(venue, 24h, {&client});
     CHECK(client.saw_exactly(1, 1));
     CHECK(client.refusals.empty());
 }
 
-TEST_CASE("a pace that is none, or for a run that goes on, is refused, and what was subscribed before goes on", "[stream]") {
+TEST_CASE("a pace that is none, or for a run that goes on, is refused, and what was subscribed before goes on",
+          "[stream]") {
     Venue venue;
     venue.publish_events(3);
     venue.flown = {event_item(1, 0.0), event_item(2, 1.0)};
@@ -681,7 +686,8 @@ TEST_CASE("a pace that is none, or for a run that goes on, is refused, and what 
     CHECK_THAT(client.refusals[0], Catch::StartsWith("pace: inf"));
     CHECK_THAT(client.refusals[1], Catch::StartsWith("pace: nan"));
     CHECK_THAT(client.refusals[3], Catch::StartsWith("pace: 10000.5"));
-    CHECK(client.refusals[4] == "pace: it is for a run that is over, and run 1 goes on: name another, or follow this one without a pace");
+    CHECK(client.refusals[4] ==
+          "pace: it is for a run that is over, and run 1 goes on: name another, or follow this one without a pace");
     CHECK(client.refusals[5] == client.refusals[4]);
     CHECK(client.seen == std::vector<archive::Sequence>{2});
     client.replay(10'000.0);
@@ -695,7 +701,8 @@ TEST_CASE("a pace that is none, or for a run that goes on, is refused, and what 
     CHECK(first.refusals == std::vector<std::string>{"pace: it is for a run that is over, and there is none yet"});
 }
 
-TEST_CASE("the newest run is sent again at a pace when it is over, to its end, also when another begins", "[stream][R42]") {
+TEST_CASE("the newest run is sent again at a pace when it is over, to its end, also when another begins",
+          "[stream][R42]") {
     Venue venue;
     venue.publish({event_item(1, 0.0), event_item(2, 1.0), event_item(3, 2.0)});
     v1::RunState state;
@@ -714,12 +721,13 @@ TEST_CASE("the newest run is sent again at a pace when it is over, to its end, a
     REQUIRE(client.messages.front().has_welcome());
     CHECK(client.messages.front().welcome().run_state().state() == "finished");
     CHECK(client.messages.front().welcome().last_seq() == 3);
-    CHECK(batches(client) == client.messages.size() - 1); // nothing of the other run
+    CHECK(batches(client) == client.messages.size() - 1);  // nothing of the other run
 }
 
 TEST_CASE("who replays and does not read gets all samples when it does, and is behind meanwhile", "[stream][R42]") {
     Venue venue;
-    for (int second = 0; second < 10; ++second) { // samples come in a packet, whose receipt this client does not ask for
+    for (int second = 0; second < 10;
+         ++second) {  // samples come in a packet, whose receipt this client does not ask for
         const auto seq = venue.flown.size() + 1;
         auto& unit = venue.flown.emplace_back();
         unit.set_seq(seq);
@@ -742,7 +750,7 @@ TEST_CASE("who replays and does not read gets all samples when it does, and is b
     CHECK(client.session->behind());
     CHECK(venue.hub.sessions_behind() == 1);
     client.read_all();
-    CHECK(client.seen.size() == 56); // two seconds' and five more
+    CHECK(client.seen.size() == 56);  // two seconds' and five more
     CHECK(batches(client) == 3);
     CHECK_FALSE(client.session->behind());
     for (const auto& told : client.messages)
@@ -767,7 +775,7 @@ struct ArchivedStream {
     std::condition_variable posted;
     std::deque<std::function<void()>> posts;
     std::unique_ptr<StreamHub> hub;
-    std::unique_ptr<QueryThreads> queries; ///< ends first: until then it posts
+    std::unique_ptr<QueryThreads> queries;  ///< ends first: until then it posts
 
     explicit ArchivedStream(std::uint16_t units) {
         {
@@ -781,9 +789,13 @@ struct ArchivedStream {
         }
         queries = std::move(QueryThreads::open(file, dictionary)).value();
         StreamHub::Services services;
-        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit, archive::Reader::ItemKinds kinds, const auto& done) {
-            const bool taken = queries->ask([=, this](archive::Reader& reader) { post([done, page = reader.items(run, after, limit, kinds)] { done(page); }); },
-                                            {}, Haste::soon);
+        services.read_items = [this](archive::RunId run, archive::Sequence after, std::size_t limit,
+                                     archive::Reader::ItemKinds kinds, const auto& done) {
+            const bool taken = queries->ask(
+                [=, this](archive::Reader& reader) {
+                    post([done, page = reader.items(run, after, limit, kinds)] { done(page); });
+                },
+                {}, Haste::soon);
             if (!taken) post([done] { done(Error{QueryThreads::busy, true}); });
         };
         services.want_items = [](bool) {};
@@ -805,7 +817,7 @@ struct ArchivedStream {
             std::unique_lock lock{mutex};
             if (!posted.wait_for(lock, std::chrono::seconds{1}, [&] { return !posts.empty(); })) {
                 lock.unlock();
-                hub->check_clients(); // once a second, as the server does
+                hub->check_clients();  // once a second, as the server does
                 continue;
             }
             const auto action = std::move(posts.front());
@@ -816,9 +828,10 @@ struct ArchivedStream {
     }
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a thousand clients that come back at once all get what they missed, though both question threads are busy", "[stream][bounds][R42]") {
+TEST_CASE("a thousand clients that come back at once all get what they missed, though both question threads are busy",
+          "[stream][bounds][R42]") {
     ArchivedStream stream{100};
     std::promise<void> answered;
     const auto waits = answered.get_future().share();
@@ -831,9 +844,9 @@ TEST_CASE("a thousand clients that come back at once all get what they missed, t
         clients.back()->read_all();
     }
     stream.work_until([&] {
-        for (auto& client : clients)
-            client->read_all();
-        return std::ranges::all_of(clients, [&](const auto& client) { return client->complete_through == stream.last; });
+        for (auto& client : clients) client->read_all();
+        return std::ranges::all_of(clients,
+                                   [&](const auto& client) { return client->complete_through == stream.last; });
     });
     std::size_t whole = 0, refusals = 0;
     for (const auto& client : clients) {

@@ -47,8 +47,7 @@ struct Follower {
         return true;
     }
     void read_through(std::uint64_t seq) {
-        while (complete_through < seq)
-            REQUIRE(read());
+        while (complete_through < seq) REQUIRE(read());
     }
 
     bool json;
@@ -66,8 +65,7 @@ void send_no_op(Follower& follower, std::uint64_t request) {
     message.mutable_command()->set_command("NO_OP");
     message.mutable_command()->set_request(request);
     follower.send(message);
-    do
-        REQUIRE(follower.read());
+    do REQUIRE(follower.read());
     while (!follower.last.has_command_reply());
     CHECK(follower.last.command_reply().accepted());
     CHECK(follower.last.command_reply().request() == request);
@@ -75,12 +73,11 @@ void send_no_op(Follower& follower, std::uint64_t request) {
 
 std::vector<std::uint64_t> all_from(std::uint64_t first, std::uint64_t last) {
     std::vector<std::uint64_t> numbers;
-    for (auto i = first; i <= last; ++i)
-        numbers.push_back(i);
+    for (auto i = first; i <= last; ++i) numbers.push_back(i);
     return numbers;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("exactly one offered subprotocol is echoed, or the upgrade is refused", "[stream][R42]") {
     RunningServer server;
@@ -100,8 +97,7 @@ TEST_CASE("a client that comes back with after_seq has no gap and no double", "[
     std::vector<std::uint64_t> seen;
     {
         Follower first{server.port(), true};
-        while (first.last.run_state().run() == 0 && first.last.welcome().run_state().run() == 0)
-            REQUIRE(first.read());
+        while (first.last.run_state().run() == 0 && first.last.welcome().run_state().run() == 0) REQUIRE(first.read());
         send_no_op(first, 1);
         first.read_through(10);
         through = first.complete_through;
@@ -113,7 +109,7 @@ TEST_CASE("a client that comes back with after_seq has no gap and no double", "[
     seen.insert(seen.end(), second.seen.begin(), second.seen.end());
     CHECK(seen == all_from(1, second.complete_through));
 
-    server.restart(); // the run is over now, and all of it is in the archive
+    server.restart();  // the run is over now, and all of it is in the archive
     Follower third{server.port(), false};
     third.read_through(second.complete_through);
     CHECK(third.history);
@@ -134,8 +130,7 @@ TEST_CASE("a message that does not parse is refused and the stream goes on", "[s
         v1::ClientMessage command;
         command.mutable_command()->set_command("NO_OP");
         client.send(command);
-        do
-            REQUIRE(client.read());
+        do REQUIRE(client.read());
         while (!client.last.has_command_reply());
         CHECK_THAT(client.last.command_reply().reason(), Catch::Contains("no run goes on"));
     }
@@ -156,8 +151,7 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
     RunningServer server;
     Follower client{server.port(), true};
     const auto read_until = [&](auto condition) {
-        do
-            REQUIRE(client.read());
+        do REQUIRE(client.read());
         while (!condition(client.last));
     };
     v1::ClientMessage message;
@@ -188,7 +182,7 @@ TEST_CASE("a rehearsal is started, paused, paced and stopped over the stream", "
 TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, and are in the archive",
           "[stream][R41][R42][R43]") {
     auto scenario = shipped_scenario("nominal_auto");
-    scenario.start_before_entry_s = 900.0; // just before the first timepoint; UHF begins at 600
+    scenario.start_before_entry_s = 900.0;  // just before the first timepoint; UHF begins at 600
     scenario.commands[0].send_before_entry_s = 895.0;
     scenario.commands[1].send_before_entry_s = 885.0;
     RunningServer server{scenario, 300.0};
@@ -197,51 +191,50 @@ TEST_CASE("UHF packets and decoded tones are streamed while the vehicle flies, a
         REQUIRE(client.read());
     CHECK(client.kinds[v1::Item::kUnit] > 500);
     CHECK(client.kinds[v1::Item::kEvent] > 0);
-    CHECK(client.kinds[v1::Item::kCommandStage] >= 16); // both of the script, eight stages each
+    CHECK(client.kinds[v1::Item::kCommandStage] >= 16);  // both of the script, eight stages each
     CHECK(client.kinds[v1::Item::kLink] > 0);
-    CHECK(client.seen == all_from(1, client.complete_through)); // all of it live: nothing is thinned or left out
+    CHECK(client.seen == all_from(1, client.complete_through));  // all of it live: nothing is thinned or left out
 
     auto reader = archive::Reader::open(server.archive(), tests::shipped_dictionary());
     REQUIRE(reader);
     const auto durable = reader->last_seq(archive::RunId{1});
     REQUIRE(durable);
-    CHECK(*durable >= client.complete_through); // published means durable
+    CHECK(*durable >= client.complete_through);  // published means durable
     const auto metrics = web_request(server.port(), "GET", "/metrics").body;
-    CHECK_THAT(metrics, Catch::Contains("aeolis_link_units_total{link=\"uhf_live\"} ") && Catch::Contains("aeolis_link_units_total{link=\"tones\"} "));
-    CHECK_THAT(metrics, Catch::Contains("aeolis_stream_clients_behind ") && !Catch::Contains("aeolis_stream_octets_total 0\n"));
+    CHECK_THAT(metrics, Catch::Contains("aeolis_link_units_total{link=\"uhf_live\"} ") &&
+                            Catch::Contains("aeolis_link_units_total{link=\"tones\"} "));
+    CHECK_THAT(metrics,
+               Catch::Contains("aeolis_stream_clients_behind ") && !Catch::Contains("aeolis_stream_octets_total 0\n"));
 }
 
 TEST_CASE("a run that is over comes again over the socket at a pace, and not while it goes on", "[stream][R42][R45]") {
     RunningServer server{shipped_scenario("nominal_auto"), 100.0};
     Follower client{server.port(), false};
-    client.read_through(400); // some tones long
+    client.read_through(400);  // some tones long
     v1::ClientMessage replay;
     replay.mutable_subscribe()->set_run(1);
     replay.mutable_subscribe()->set_pace(1.0);
     client.send(replay);
-    do
-        REQUIRE(client.read());
+    do REQUIRE(client.read());
     while (!client.last.has_refusal());
     CHECK_THAT(client.last.refusal().reason(), Catch::Contains("run 1 goes on"));
     v1::ClientMessage stop;
     stop.mutable_control()->set_stop(true);
     client.send(stop);
-    while (client.last.run_state().state() != "finished")
-        REQUIRE(client.read());
+    while (client.last.run_state().state() != "finished") REQUIRE(client.read());
     const auto last_seq = client.last.run_state().last_seq();
     REQUIRE(last_seq > 0);
 
     struct Arrival {
         std::chrono::steady_clock::time_point at;
         std::uint64_t through = 0;
-        std::optional<Ert> ert; ///< of the newest tone
+        std::optional<Ert> ert;  ///< of the newest tone
     };
     const auto replayed = [&](double pace, std::uint64_t after) {
         replay.mutable_subscribe()->set_pace(pace);
         replay.mutable_subscribe()->set_after_seq(after);
         client.send(replay);
-        do
-            REQUIRE(client.read());
+        do REQUIRE(client.read());
         while (!client.last.has_welcome());
         CHECK(client.last.welcome().run_state().state() == "finished");
         CHECK(client.last.welcome().last_seq() == last_seq);
@@ -250,7 +243,8 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
         std::vector<Arrival> arrivals;
         while (client.complete_through < last_seq) {
             REQUIRE(client.read());
-            auto& arrival = arrivals.emplace_back(Arrival{std::chrono::steady_clock::now(), client.complete_through, {}});
+            auto& arrival =
+                arrivals.emplace_back(Arrival{std::chrono::steady_clock::now(), client.complete_through, {}});
             for (const auto& item : client.last.batch().items())
                 if (item.has_tone()) arrival.ert = ert_from_day_of_year(item.tone().ert_end());
         }
@@ -258,7 +252,7 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
     };
     replayed(10'000.0, 0);
     const auto all = client.seen;
-    CHECK(all.back() + 1 >= last_seq); // the last may be samples, which nobody asked for
+    CHECK(all.back() + 1 >= last_seq);  // the last may be samples, which nobody asked for
     constexpr double pace = 100.0;
     const auto arrivals = replayed(pace, 0);
     CHECK(client.seen == all);
@@ -269,12 +263,12 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
         if (!first) first = arrival;
         const double wanted_s = static_cast<double>(arrival.ert->microseconds - first->ert->microseconds) * 1e-6 / pace;
         const double took_s = std::chrono::duration<double>(arrival.at - first->at).count();
-        CHECK(took_s > wanted_s - 0.2); // the first may itself have come late, and batches are 50 ms apart
+        CHECK(took_s > wanted_s - 0.2);  // the first may itself have come late, and batches are 50 ms apart
         if (took_s < wanted_s + 0.5) ++held;
     }
     REQUIRE(first);
     CHECK(arrivals.size() > 3);
     CHECK(held > 3);
-    replayed(10'000.0, last_seq / 2); // a jump, and another pace
+    replayed(10'000.0, last_seq / 2);  // a jump, and another pace
     CHECK((client.seen.front() > last_seq / 2 && client.seen.front() <= last_seq / 2 + 2));
 }

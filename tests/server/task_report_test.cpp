@@ -13,8 +13,7 @@ using namespace aeolis::server;
 
 TEST_CASE("in the venue performance a landing reports the times of every task against its budget", "[venue][R8][R36]") {
     Rehearsal rehearsal{test::shipped_scenario("performance"), 1, 0, tests::shipped_dictionary()};
-    for (int tick = 0; tick < 64 * 30; ++tick)
-        rehearsal.step();
+    for (int tick = 0; tick < 64 * 30; ++tick) rehearsal.step();
     REQUIRE(rehearsal.task_times());
     REQUIRE(rehearsal.task_times()->tasks.size() == flight::module_count);
 
@@ -46,7 +45,7 @@ TEST_CASE("a task over its budget, below its stack, or all over a cycle, is not 
     alone.tasks[0].module = flight::ModuleId::sync;
     alone.tasks[0].cycle.add(1000);
     CHECK(within_budgets(alone));
-    alone.tasks[0].cycle.add(300'000); // 0.3 ms against 0.2
+    alone.tasks[0].cycle.add(300'000);  // 0.3 ms against 0.2
     CHECK_FALSE(within_budgets(alone));
     MeasuredTimes deep{std::vector<TaskTimes>(1), {}};
     deep.tasks[0].stack_used_octets = flight::limits_of(deep.tasks[0].module).stack_octets;
@@ -65,7 +64,8 @@ TEST_CASE("a task over its budget, below its stack, or all over a cycle, is not 
     CHECK_FALSE(within_budgets(together));
 }
 
-TEST_CASE("in the venue performance a landing is the nominal one but for measured times, and its digest is the same each time",
+TEST_CASE("in the venue performance a landing is the nominal one but for measured times, and its digest is the same "
+          "each time",
           "[venue][threads][R36][invariant1]") {
     const auto& dictionary = tests::shipped_dictionary();
     Rehearsal nominal{test::shipped_scenario("nominal_auto"), 1, 0, dictionary};
@@ -84,7 +84,8 @@ TEST_CASE("in the venue performance a landing is the nominal one but for measure
         while (const auto packet = stream.next()) {
             const auto apid = read_primary_header(*packet)->apid;
             namespace packet_of = flight::packet;
-            if (apid != packet_of::TaskTimes::apid && apid != packet_of::CommStatus::apid && apid != packet_of::CommStatusB::apid)
+            if (apid != packet_of::TaskTimes::apid && apid != packet_of::CommStatus::apid &&
+                apid != packet_of::CommStatusB::apid)
                 packets.emplace_back(packet->begin(), packet->end());
         }
         return packets;
@@ -97,8 +98,7 @@ TEST_CASE("in the venue GNC alone the digest is of the path: the same for the sa
           "[venue][R36][invariant1]") {
     const auto digest = [](std::uint64_t seed) {
         Rehearsal rehearsal{test::shipped_scenario("gnc_alone"), seed, 0, tests::shipped_dictionary()};
-        for (int tick = 0; tick < 64 * 20; ++tick)
-            rehearsal.step();
+        for (int tick = 0; tick < 64 * 20; ++tick) rehearsal.step();
         return rehearsal.digest();
     };
     CHECK(digest(1) == digest(1));

@@ -20,8 +20,7 @@ TEST_CASE("least, mean and worst are exact, and 99.9 % within a tenth", "[venue]
     }
     std::sort(all.begin(), all.end());
     double sum = 0.0;
-    for (const double us : all)
-        sum += us;
+    for (const double us : all) sum += us;
     CHECK(measured.least_us() == Approx(all.front()));
     CHECK(measured.worst_us() == Approx(all.back()));
     CHECK(measured.mean_us() == Approx(sum / 50000));

@@ -38,8 +38,7 @@ struct CommandedLanding {
             if (tone.sent) tones.push_back(tone.sent->value);
     }
     void fly(double for_s) {
-        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick)
-            step();
+        for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) step();
     }
 };
 
@@ -90,9 +89,10 @@ void work(double seconds) {
     }
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("both executives fly one landing alike: recorded packets, firings, events and tones, bit for bit; no task passes its bound of stack",
+TEST_CASE("both executives fly one landing alike: recorded packets, firings, events and tones, bit for bit; no task "
+          "passes its bound of stack",
           "[venue][threads][R8][R37]") {
     const auto executive = std::make_shared<ThreadedExecutive>();
     CommandedLanding deterministic{nullptr};
@@ -110,13 +110,14 @@ TEST_CASE("both executives fly one landing alike: recorded packets, firings, eve
     check_stacks(*executive);
 }
 
-TEST_CASE("both executives are alike through a restart of prime and a change of roles, bit for bit, within the same bounds of stack", "[venue][threads][R8][R32]") {
+TEST_CASE("both executives are alike through a restart of prime and a change of roles, bit for bit, within the same "
+          "bounds of stack",
+          "[venue][threads][R8][R32]") {
     const auto fly = [](std::shared_ptr<flight::CycleRunner> runner) {
         simulation::Landing landing{tests::gale_scenario(17000.0), 1};
         landing.run_prime_by(std::move(runner));
         const auto pass = [&](double for_s) {
-            for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick)
-                landing.step();
+            for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) landing.step();
         };
         landing.uplink(test::set_parameters(landing.solution()));
         pass(1.0);
@@ -143,7 +144,8 @@ TEST_CASE("a task that takes too long: sync reports the overruns, those cycles a
     ThreadedExecutive::Options options;
     options.clock = ThreadedExecutive::Clock::real_time;
     options.before_mail = [&](flight::ModuleId module, Sclk now) {
-        if (module == flight::ModuleId::edl && now == slow_at) std::this_thread::sleep_for(std::chrono::milliseconds{55});
+        if (module == flight::ModuleId::edl && now == slow_at)
+            std::this_thread::sleep_for(std::chrono::milliseconds{55});
     };
     ThreadedExecutive executive{options};
     Bench bench;
@@ -164,10 +166,11 @@ TEST_CASE("an overrun in a landing: the vehicle flies on through the skipped cyc
           "[venue][threads][R8][R22]") {
     ThreadedExecutive::Options options;
     options.clock = ThreadedExecutive::Clock::real_time;
-    Sclk slow_at, told; // the tick that the computer's clock interrupt brought last
+    Sclk slow_at, told;  // the tick that the computer's clock interrupt brought last
     options.before_mail = [&](flight::ModuleId module, Sclk now) {
         if (module == flight::ModuleId::sync) told = now;
-        if (module == flight::ModuleId::edl && now == slow_at) std::this_thread::sleep_for(std::chrono::milliseconds{55});
+        if (module == flight::ModuleId::edl && now == slow_at)
+            std::this_thread::sleep_for(std::chrono::milliseconds{55});
     };
     simulation::Landing landing{tests::gale_scenario(700.0), 1};
     const Sclk start = landing.sclk();
@@ -177,7 +180,7 @@ TEST_CASE("an overrun in a landing: the vehicle flies on through the skipped cyc
     for (int i = 0; i < 40; ++i) {
         const Sclk now = landing.sclk();
         const int skipped = landing.step().ticks_skipped;
-        CHECK(told == now); // never the same tick twice
+        CHECK(told == now);  // never the same tick twice
         flown += 1 + skipped;
         CHECK(landing.sclk() == start + flown * seconds_per_tick);
         CHECK(landing.truth().sclk == landing.sclk());
@@ -195,15 +198,13 @@ TEST_CASE("a check that fails in a task's thread resets the computer and nothing
     };
     ThreadedExecutive executive{options};
     Bench bench;
-    for (int i = 0; i < 9; ++i)
-        bench.cycle(executive);
+    for (int i = 0; i < 9; ++i) bench.cycle(executive);
     CHECK(bench.out->in_command);
     bench.cycle(executive);
     CHECK_FALSE(bench.out->in_command);
     CHECK(bench.computer.counters().resets == 1);
     CHECK(bench.computer.counters().cycles == 0);
-    for (int i = 0; i < static_cast<int>(flight::restart_s * 64.0) + 10; ++i)
-        bench.cycle(executive);
+    for (int i = 0; i < static_cast<int>(flight::restart_s * 64.0) + 10; ++i) bench.cycle(executive);
     CHECK(bench.computer.counters().resets == 1);
     CHECK(bench.computer.counters().cycles >= 10);
     CHECK(bench.out->in_command);
@@ -225,8 +226,7 @@ TEST_CASE("each task's processor time is measured by message, keeps its budget o
     for (const TaskTimes& times : executive->times().tasks) {
         INFO("task " << static_cast<int>(times.module));
         std::uint64_t handled = 0;
-        for (const Durations& of_type : times.by_message)
-            handled += of_type.count();
+        for (const Durations& of_type : times.by_message) handled += of_type.count();
         CHECK((handled > 0) == (times.cycle.count() > 0));
         // On average only: the worst belongs to this machine's other work as well. bench/threaded_bench has all of it.
         CHECK(times.cycle.mean_us() <= flight::limits_of(times.module).budget_us);
@@ -237,7 +237,7 @@ TEST_CASE("each task's processor time is measured by message, keeps its budget o
 TEST_CASE("a task's time is what it took in a whole cycle, however often it was woken; all tasks' that of one cycle",
           "[venue][threads][R8]") {
     const Sclk sync_works_at{1000.0 + 10 * seconds_per_tick}, edl_works_at{1000.0 + 20 * seconds_per_tick};
-    int woken = 0; // sync, in that cycle
+    int woken = 0;  // sync, in that cycle
     ThreadedExecutive::Options options;
     options.measure = true;
     options.before_mail = [&](flight::ModuleId module, Sclk now) {
@@ -246,14 +246,14 @@ TEST_CASE("a task's time is what it took in a whole cycle, however often it was 
             work(0.002);
         }
         // So long that sync has come to rest and is woken again.
-        if (module == flight::ModuleId::imu && now == sync_works_at) std::this_thread::sleep_for(std::chrono::milliseconds{50});
+        if (module == flight::ModuleId::imu && now == sync_works_at)
+            std::this_thread::sleep_for(std::chrono::milliseconds{50});
         if (module == flight::ModuleId::edl && now == edl_works_at) work(0.003);
         if (module == flight::ModuleId::mfsk && now == edl_works_at) work(0.003);
     };
     ThreadedExecutive executive{options};
     Bench bench;
-    for (int i = 0; i < 40; ++i)
-        bench.cycle(executive);
+    for (int i = 0; i < 40; ++i) bench.cycle(executive);
     const MeasuredTimes times = executive.times();
     const auto task = [&](flight::ModuleId id) { return times.tasks[static_cast<std::size_t>(id)].cycle; };
     REQUIRE(woken >= 2);

@@ -36,7 +36,8 @@ const dictionary::Dictionary& one_constraint() {
     static const auto words = [] {
         auto copy = tests::shipped_dictionary();
         std::erase_if(copy.constraints, [&](const dictionary::ConstraintRow& row) {
-            const bool about = moment_text(copy, row.from).starts_with("cruise_stage_separation") && moment_text(copy, row.to).starts_with("detumble");
+            const bool about = moment_text(copy, row.from).starts_with("cruise_stage_separation") &&
+                               moment_text(copy, row.to).starts_with("detumble");
             return row.kind == dictionary::ConstraintRow::Kind::required && !about;
         });
         return copy;
@@ -55,15 +56,13 @@ struct Stage {
 /// As the archive has a command with these stages.
 void add(v1::CommandList& list, const v1::CommandRequest& request, std::initializer_list<Stage> stages) {
     std::vector<commands::NamedValue> arguments;
-    for (const auto& argument : request.arguments())
-        arguments.push_back({argument.name(), argument.value()});
+    for (const auto& argument : request.arguments()) arguments.push_back({argument.name(), argument.value()});
     const auto packet = commands::encode(*tests::shipped_dictionary().command(request.command()), arguments, 0);
     REQUIRE(packet);
     auto& command = *list.add_commands();
     command.set_command(static_cast<std::uint64_t>(list.commands_size()));
     command.set_name(request.command());
-    for (const auto octet : *packet)
-        *command.mutable_octets() += fmt::format("{:02x}", octet);
+    for (const auto octet : *packet) *command.mutable_octets() += fmt::format("{:02x}", octet);
     for (const auto& [stage, status] : stages) {
         auto& item = *command.add_stages();
         item.set_seq(command.command() * 10 + static_cast<std::uint64_t>(command.stages_size()));
@@ -80,7 +79,7 @@ v1::CommandRequest later_separation() {
     return change("cruise_stage_separation", -594.0, 2.0);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a change is analysed on top of what left and what waits, and a failed one is not there", "[gateway][R19]") {
     TimelineCheck check{one_constraint()};
@@ -98,14 +97,16 @@ TEST_CASE("a change is analysed on top of what left and what waits, and a failed
     CHECK_FALSE(without.error().internal);
 }
 
-TEST_CASE("of two changes of one offset the one that leaves last stands, not the one that was asked for last", "[gateway][R19]") {
+TEST_CASE("of two changes of one offset the one that leaves last stands, not the one that was asked for last",
+          "[gateway][R19]") {
     TimelineCheck check{one_constraint()};
     v1::CommandList list;
     add(list, later_detumble(), {{"released", "pending"}});
-    add(list, change("detumble", -519.40625, 0.0), {{"released", "ok"}}); // as it was, and sent before the one that waits
-    CHECK(check.check(list, std::vector{later_separation()}, false, never)); // what waits goes after what has left
+    add(list, change("detumble", -519.40625, 0.0),
+        {{"released", "ok"}});  // as it was, and sent before the one that waits
+    CHECK(check.check(list, std::vector{later_separation()}, false, never));  // what waits goes after what has left
     list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status("ok");
-    list.mutable_commands(0)->mutable_stages(0)->set_seq(5); // it left first
+    list.mutable_commands(0)->mutable_stages(0)->set_seq(5);  // it left first
     CHECK_FALSE(check.check(list, std::vector{later_separation()}, false, never));
 }
 
@@ -119,7 +120,7 @@ TEST_CASE("what still waits is looked at again with what remains", "[gateway][R1
     CHECK_FALSE((look.known[0].refuted || look.known[1].refuted));
     CHECK_THAT(look.known[1].words, Catch::Contains("bounds of constraints.csv hold"));
 
-    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status("failed"); // cancelled
+    list.mutable_commands(0)->mutable_stages(0)->mutable_command_stage()->set_status("failed");  // cancelled
     look = check.look_again(list, never);
     REQUIRE(look.known.size() == 1);
     CHECK(look.known[0].number == 2);
@@ -129,7 +130,8 @@ TEST_CASE("what still waits is looked at again with what remains", "[gateway][R1
     CHECK(look.undone == 1);
 }
 
-TEST_CASE("an analysis that does not end in its time is no answer, and nothing is said of what waits", "[gateway][R19]") {
+TEST_CASE("an analysis that does not end in its time is no answer, and nothing is said of what waits",
+          "[gateway][R19]") {
     TimelineCheck check{one_constraint()};
     const auto answer = check.check({}, std::vector{later_detumble()}, false, at_once);
     REQUIRE_FALSE(answer);
@@ -140,5 +142,5 @@ TEST_CASE("an analysis that does not end in its time is no answer, and nothing i
     const auto look = check.look_again(list, at_once);
     CHECK(look.known.empty());
     CHECK_THAT(look.not_known, Catch::Contains("did not end"));
-    CHECK(check.look_again(list, never).known.size() == 1); // asked again it is found
+    CHECK(check.look_again(list, never).known.size() == 1);  // asked again it is found
 }

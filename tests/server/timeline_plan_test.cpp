@@ -18,7 +18,7 @@ std::size_t row_of(const dictionary::Dictionary& dictionary, const std::string& 
     return static_cast<std::size_t>(row - dictionary.timeline.begin());
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("what the plan alone gives is predicted as planned, while nothing was heard", "[archive][timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
@@ -30,9 +30,11 @@ TEST_CASE("what the plan alone gives is predicted as planned, while nothing was 
     }
 }
 
-TEST_CASE("after entry a timepoint is predicted by its anchor in the design, and by the minimum offsets before it", "[archive][timeline]") {
+TEST_CASE("after entry a timepoint is predicted by its anchor in the design, and by the minimum offsets before it",
+          "[archive][timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
-    const auto predicted = predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, Heard(dictionary.timeline.size()));
+    const auto predicted =
+        predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, Heard(dictionary.timeline.size()));
     const auto of = [&](const char* name) { return predicted[row_of(dictionary, name)].value_or(0.0); };
     CHECK(of("entry_guidance") == 43.0);
     CHECK(of("parachute_deploy") == 255.9);
@@ -40,18 +42,19 @@ TEST_CASE("after entry a timepoint is predicted by its anchor in the design, and
     CHECK(of("balance_2") == 241.0);
     CHECK(of("heatshield_separation") == 277.35);
     const auto planned = planned_from_entry_s(dictionary);
-    CHECK_FALSE(planned[row_of(dictionary, "parachute_deploy")].has_value()); // the plan alone cannot say
+    CHECK_FALSE(planned[row_of(dictionary, "parachute_deploy")].has_value());  // the plan alone cannot say
 }
 
-TEST_CASE("an entry that was heard of as later moves all that comes after it, and not the prediction of what had fired", "[archive][timeline]") {
+TEST_CASE("an entry that was heard of as later moves all that comes after it, and not the prediction of what had fired",
+          "[archive][timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     Heard heard(dictionary.timeline.size());
     const auto vent = row_of(dictionary, "coolant_vent"), uhf = row_of(dictionary, "uhf_start");
-    heard[vent] = -826.0 + 5.25; // it waited for a reply: later than its anchor says
+    heard[vent] = -826.0 + 5.25;  // it waited for a reply: later than its anchor says
     heard[uhf] = -800.0 + 5.0;
     const auto predicted = predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, heard);
     CHECK(predicted[vent] == -826.0);
-    CHECK(predicted[row_of(dictionary, "entry_interface")] == 5.0); // by the earliest of the two
+    CHECK(predicted[row_of(dictionary, "entry_interface")] == 5.0);  // by the earliest of the two
     CHECK(predicted[row_of(dictionary, "parachute_deploy")] == Approx(260.9));
 }
 

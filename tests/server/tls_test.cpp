@@ -34,7 +34,8 @@ void write_certificate(const std::filesystem::path& certificate, const std::file
     X509_gmtime_adj(X509_getm_notAfter(made), 3600);
     X509_set_pubkey(made, pair);
     const std::string host = "localhost";
-    X509_NAME_add_entry_by_txt(X509_get_subject_name(made), "CN", MBSTRING_ASC, reinterpret_cast<const unsigned char*>(host.c_str()), -1, -1, 0);
+    X509_NAME_add_entry_by_txt(X509_get_subject_name(made), "CN", MBSTRING_ASC,
+                               reinterpret_cast<const unsigned char*>(host.c_str()), -1, -1, 0);
     X509_set_issuer_name(made, X509_get_subject_name(made));
     auto* names = X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "DNS:localhost");
     X509_add_ext(made, names, -1);
@@ -68,20 +69,26 @@ struct SecureClient {
     }
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("the program's own client speaks only to a server whose certificate is of its name and of a known authority", "[access][http]") {
+TEST_CASE("the program's own client speaks only to a server whose certificate is of its name and of a known authority",
+          "[access][http]") {
     const TemporaryFolder folder;
     write_certificate(folder / "cert.pem", folder / "key.pem");
     write_certificate(folder / "other.pem", folder / "other_key.pem");
     RunningServer server{RunningServer::Secure{folder / "cert.pem", folder / "key.pem"}};
-    const auto post = [&](const std::string& scheme, const std::string& host, const std::filesystem::path& authorities) {
-        const server::HttpClient client{{.server = fmt::format("{}://{}:{}", scheme, host, server.port()), .token = "none", .authorities = authorities}};
+    const auto post = [&](const std::string& scheme, const std::string& host,
+                          const std::filesystem::path& authorities) {
+        const server::HttpClient client{{.server = fmt::format("{}://{}:{}", scheme, host, server.port()),
+                                         .token = "none",
+                                         .authorities = authorities}};
         const auto answer = client.post("/api/v1/runs/latest/sequences", "{}");
         if (!answer) return answer.error().message;
-        return answer->lost.empty() ? fmt::format("{} {}", answer->status, answer->body) : "perhaps sent: " + answer->lost;
+        return answer->lost.empty() ? fmt::format("{} {}", answer->status, answer->body)
+                                    : "perhaps sent: " + answer->lost;
     };
-    CHECK_THAT(post("https", "localhost", folder / "cert.pem"), Catch::StartsWith("401 ") && Catch::Contains("log in first"));
+    CHECK_THAT(post("https", "localhost", folder / "cert.pem"),
+               Catch::StartsWith("401 ") && Catch::Contains("log in first"));
     CHECK_THAT(post("https", "127.0.0.1", folder / "cert.pem"), Catch::Contains("no safe connection"));
     CHECK_THAT(post("https", "localhost", folder / "other.pem"), Catch::Contains("no safe connection"));
     CHECK_THAT(post("https", "localhost", {}), Catch::Contains("no safe connection"));
@@ -94,18 +101,20 @@ TEST_CASE("over http the program's own client gives a token to this machine only
         const server::HttpClient client{{.server = "http://" + host + ":1", .token = "a secret"}};
         const auto answer = client.post("/", "{}");
         INFO(host);
-        REQUIRE_FALSE(answer); // nobody listens there
+        REQUIRE_FALSE(answer);  // nobody listens there
         return answer.error().message;
     };
     for (const char* host : {"192.0.2.1", "station.example", "localhost.example", "[2001:db8::1]"})
-        CHECK_THAT(error_of(host), Catch::StartsWith(std::string{"--server http://"} + host) && Catch::Contains("others could read the token"));
+        CHECK_THAT(error_of(host), Catch::StartsWith(std::string{"--server http://"} + host) &&
+                                       Catch::Contains("others could read the token"));
     for (const char* host : {"127.0.0.1", "127.1.2.3", "localhost", "[::1]"})
         CHECK_THAT(error_of(host), !Catch::Contains("others could read the token"));
 }
 
 TEST_CASE("a request that has gone and gets no answer is told apart from one that has not gone", "[http]") {
     asio::io_context io;
-    tcp::acceptor silent{io, tcp::endpoint{asio::ip::make_address("127.0.0.1"), 0}}; // the system takes connections and octets for it
+    tcp::acceptor silent{
+        io, tcp::endpoint{asio::ip::make_address("127.0.0.1"), 0}};  // the system takes connections and octets for it
     const std::string silent_one = fmt::format("http://127.0.0.1:{}", silent.local_endpoint().port());
     const server::HttpClient client{{.server = silent_one, .answer_patience = std::chrono::seconds{1}}};
     const auto late = client.post("/", "{}");
@@ -137,7 +146,7 @@ TEST_CASE("with a certificate the server speaks TLS only: routes, cookies and st
     const std::string cookie{response[http::field::set_cookie]};
     CHECK_THAT(cookie, Catch::Contains("; Secure"));
 
-    request.set(http::field::origin, "http://" + host); // a page that was not loaded over TLS
+    request.set(http::field::origin, "http://" + host);  // a page that was not loaded over TLS
     http::write(stream, request);
     response = {};
     http::read(stream, buffer, response);
@@ -166,7 +175,9 @@ TEST_CASE("over TLS, too, a client that leaves is noticed while its question is 
     write_certificate(folder / "cert.pem", folder / "key.pem");
     std::promise<std::pair<std::function<bool()>, server::Respond>> asked;
     server::WebServer::Handlers handlers;
-    handlers.request = [&](const server::HttpRequest& request, const server::Respond& respond) { asked.set_value({request.gone, respond}); };
+    handlers.request = [&](const server::HttpRequest& request, const server::Respond& respond) {
+        asked.set_value({request.gone, respond});
+    };
     server::WebServer::Settings settings;
     settings.certificate = folder / "cert.pem";
     settings.key = folder / "key.pem";
@@ -183,8 +194,7 @@ TEST_CASE("over TLS, too, a client that leaves is noticed while its question is 
     error_code ignored;
     stream->next_layer().socket().shutdown(tcp::socket::shutdown_send, ignored);
     stream.reset();
-    for (int i = 0; i < 3000 && !gone(); ++i)
-        std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    for (int i = 0; i < 3000 && !gone(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds{10});
     CHECK(gone());
     respond({});
     server->stop();
@@ -208,8 +218,10 @@ TEST_CASE("a certificate or key that cannot serve is named", "[access][http]") {
     CHECK_THAT(refused("cert.pem", "cert.pem"), Catch::Contains("--tls-key"));
     CHECK_THAT(refused("cert.pem", "other-key.pem"), Catch::Contains("other-key.pem: key values mismatch"));
     server::ConsoleBackend::Settings open_to_all;
-    open_to_all.web_server = {.address = "0.0.0.0", .port = 0, .names = {}, .certificate = folder / "cert.pem", .key = folder / "key.pem"};
+    open_to_all.web_server = {
+        .address = "0.0.0.0", .port = 0, .names = {}, .certificate = folder / "cert.pem", .key = folder / "key.pem"};
     open_to_all.accounts = folder / "accounts.json";
     open_to_all.archive = folder / "a.db";
-    CHECK_THAT(server::ConsoleBackend::open(open_to_all, tests::shipped_dictionary()).error().message, Catch::Contains("--host"));
+    CHECK_THAT(server::ConsoleBackend::open(open_to_all, tests::shipped_dictionary()).error().message,
+               Catch::Contains("--host"));
 }

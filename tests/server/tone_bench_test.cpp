@@ -33,9 +33,10 @@ TEST_CASE("the statistical model's curve is that of the real receiver's correlat
     }
 }
 
-TEST_CASE("where the statistical model hears tones the whole receiver hears them as well, and below that it is the model "
-          "that is deaf",
-          "[tones][R31]") {
+TEST_CASE(
+    "where the statistical model hears tones the whole receiver hears them as well, and below that it is the model "
+    "that is deaf",
+    "[tones][R31]") {
     const MfskWaveform& mfsk = tests::shipped_dictionary().mfsk;
     constexpr std::uint64_t symbols = 60;
     const auto drawn_errors = [&](double total_c_n0_dbhz) {
@@ -51,11 +52,11 @@ TEST_CASE("where the statistical model hears tones the whole receiver hears them
         }
         return count.errors;
     };
-    const double least_heard_dbhz = 15.8 - simulation::XBandLink::carrier_power_db(); // its lock
+    const double least_heard_dbhz = 15.8 - simulation::XBandLink::carrier_power_db();  // its lock
     CHECK(drawn_errors(least_heard_dbhz + 0.05) == 0);
     CHECK(receiver_errors(mfsk, least_heard_dbhz + 0.05, symbols, 11).errors == 0);
     CHECK(drawn_errors(least_heard_dbhz - 0.05) == symbols);
-    CHECK(receiver_errors(mfsk, least_heard_dbhz - 2.0, symbols, 12).errors < symbols / 20); // once it has the carrier
+    CHECK(receiver_errors(mfsk, least_heard_dbhz - 2.0, symbols, 12).errors < symbols / 20);  // once it has the carrier
 }
 
 TEST_CASE("a counted rate's interval holds the rate, and an error rate tells its loss", "[tones]") {

@@ -60,9 +60,10 @@ struct Sky {
     }
 };
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a tone on a carrier that drifts is decoded from its samples, dated by them, with the symbol it is", "[tones][station]") {
+TEST_CASE("a tone on a carrier that drifts is decoded from its samples, dated by them, with the symbol it is",
+          "[tones][station]") {
     Sky sky{25.0};
     sky.fly(60.0, true);
     REQUIRE(sky.decided.size() == 1);
@@ -78,7 +79,7 @@ TEST_CASE("a tone on a carrier that drifts is decoded from its samples, dated by
     CHECK(tone.likelihood > 0.9);
     CHECK(static_cast<double>(tone.start.microseconds) == Approx(16.0e6).margin(0.3e6));
     CHECK(tone.c_n0_dbhz == Approx(25.0).margin(1.5));
-    CHECK(tone.doppler_hz == Approx(30.0 * 20.0).margin(10.0)); // in the middle of the symbol
+    CHECK(tone.doppler_hz == Approx(30.0 * 20.0).margin(10.0));  // in the middle of the symbol
 }
 
 TEST_CASE("a symbol that nobody can hear is an erasure in the end, and no tone is made of noise", "[tones][station]") {
@@ -107,9 +108,10 @@ TEST_CASE("when the transmitter goes off what waits is decided at once", "[tones
     CHECK(sky.decided.front().tone == ToneId{42});
 }
 
-TEST_CASE("a landing's tones are decoded from its waveform, none wrong, and what UHF brought through bursts of errors is in "
-          "the recording, bit for bit",
-          "[tones][station][R31]") {
+TEST_CASE(
+    "a landing's tones are decoded from its waveform, none wrong, and what UHF brought through bursts of errors is in "
+    "the recording, bit for bit",
+    "[tones][station][R31]") {
     auto scenario = test::shipped_scenario("nominal_auto");
     scenario.radio.tones_from_samples = true;
     scenario.radio.uhf_loss_fraction = 0.05;
@@ -120,24 +122,25 @@ TEST_CASE("a landing's tones are decoded from its waveform, none wrong, and what
             if (!link.up) outages.insert(link.link.name + ": " + link.reason);
     CHECK(rehearsal.outcome() == "touchdown");
     CHECK(rehearsal.recording_progress() == 1.0);
-    const auto silent = [&](const std::string& beginning) { return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); }); };
+    const auto silent = [&](const std::string& beginning) {
+        return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); });
+    };
     CHECK(silent("uhf_live: plasma blackout: predicted"));
     CHECK(silent("x_band: Earth set: predicted"));
     CHECK(rehearsal.run_start(0.0).tone_model == "signal");
     const auto& tones = rehearsal.tones();
     CHECK(tones.sent > 30);
     CHECK(tones.wrong == 0);
-    CHECK(tones.missed <= 2); // Earth sets in one, and the parachute may cost one
+    CHECK(tones.missed <= 2);  // Earth sets in one, and the parachute may cost one
     const auto proof = rehearsal.proof();
     CHECK(proof.holds());
     CHECK(proof.realtime > 5000);
     CHECK(rehearsal.station().links().at(0).pltus.counters().missing_frames > 10);
     CHECK(rehearsal.station().links().at(0).pltus.counters().bad_crc > 10);
 
-    scenario.radio.tones_from_samples.reset(); // nobody chooses: drawn
+    scenario.radio.tones_from_samples.reset();  // nobody chooses: drawn
     Rehearsal drawn{scenario, 1, 0, tests::shipped_dictionary()};
-    while (!drawn.finished())
-        drawn.step();
+    while (!drawn.finished()) drawn.step();
     CHECK(drawn.run_start(0.0).tone_model == "statistical");
-    CHECK(drawn.digest() == rehearsal.digest()); // what is recorded on board does not depend on who listens
+    CHECK(drawn.digest() == rehearsal.digest());  // what is recorded on board does not depend on who listens
 }

@@ -1,7 +1,7 @@
-#include "server/archive/upkeep.hpp"
 #include "server/archive/archive.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/schema.hpp"
+#include "server/archive/upkeep.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/schema_three.hpp"
@@ -28,7 +28,10 @@ void record(const std::filesystem::path& file, const dictionary::Dictionary& dic
         start.solution = {{"latitude_deg", -4.5}};
         REQUIRE(pipeline.begin(start).ok());
         for (std::size_t i = 0; i < 2500; ++i)
-            REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), static_cast<double>(i) / 64.0, static_cast<float>(i), 3.0F))).ok());
+            REQUIRE(pipeline
+                        .accept(live(navigation_packet(static_cast<std::uint16_t>(i), static_cast<double>(i) / 64.0,
+                                                       static_cast<float>(i), 3.0F)))
+                        .ok());
         REQUIRE(pipeline.finish({"touchdown", "", "", ""}).ok());
     }
 }
@@ -40,9 +43,10 @@ std::int64_t ask(const std::filesystem::path& file, const char* sql) {
     return *answer;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("pruned runs are gone from every table, are noted, and their numbers are not given again", "[archive][prune]") {
+TEST_CASE("pruned runs are gone from every table, are noted, and their numbers are not given again",
+          "[archive][prune]") {
     TemporaryFolder folder;
     const auto dictionary = small_dictionary();
     const auto file = folder / "a.db";
@@ -56,7 +60,7 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
         archive::AuditRecord by;
         by.who = "nina";
         by.from = "command line";
-        CHECK_FALSE(prune(*archive, {RunId{1}, RunId{9}}, by).ok()); // all or none
+        CHECK_FALSE(prune(*archive, {RunId{1}, RunId{9}}, by).ok());  // all or none
         CHECK(run_lines(archive->database())->size() == 3);
         REQUIRE(prune(*archive, {RunId{1}, RunId{3}}, by).ok());
     }
@@ -70,8 +74,9 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
     }
     CHECK(ask(file, "SELECT count(*) FROM units") == 2500);
     CHECK(ask(file, "SELECT count(*) FROM pruned_runs WHERE scenario = 'nominal'") == 2);
-    CHECK(ask(file, "SELECT count(*) FROM audit") == 1); // the refused one did nothing
-    CHECK(ask(file, "SELECT count(*) FROM audit WHERE who = 'nina' AND peer = 'command line' AND action = 'prune' AND detail = 'runs 1, 3' AND outcome = 'done'") == 1);
+    CHECK(ask(file, "SELECT count(*) FROM audit") == 1);  // the refused one did nothing
+    CHECK(ask(file, "SELECT count(*) FROM audit WHERE who = 'nina' AND peer = 'command line' AND action = 'prune' AND "
+                    "detail = 'runs 1, 3' AND outcome = 'done'") == 1);
     CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults.empty());
     auto archive = Archive::open(file);
     CHECK(*archive->begin_run({}, dictionary) == RunId{4});
@@ -80,17 +85,21 @@ TEST_CASE("pruned runs are gone from every table, are noted, and their numbers a
 TEST_CASE("every table of a run is known to prune", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    { REQUIRE(Archive::open(file).ok()); }
+    {
+        REQUIRE(Archive::open(file).ok());
+    }
     std::string known = "'dictionaries', 'dictionary_channels', 'dictionary_packets', 'words', 'pruned_runs', 'audit'";
-    for (const auto& table : run_tables)
-        known += std::string(", '") + table.name + "'";
-    CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT LIKE 'search_%' AND name NOT IN (" + known + ")").c_str()) == 0);
+    for (const auto& table : run_tables) known += std::string(", '") + table.name + "'";
+    CHECK(ask(file, ("SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name NOT LIKE 'sqlite%' AND name NOT "
+                     "LIKE 'search_%' AND name NOT IN (" +
+                     known + ")")
+                        .c_str()) == 0);
 }
 
 TEST_CASE("vacuum gives the room of pruned runs back", "[archive][prune]") {
     TemporaryFolder folder;
     const auto file = folder / "a.db";
-    record(file, small_dictionary(), 8); // beside which a page for each of the tables is little
+    record(file, small_dictionary(), 8);  // beside which a page for each of the tables is little
     auto archive = Maintenance::open(file);
     REQUIRE(prune(*archive, {{RunId{1}, RunId{2}, RunId{3}, RunId{4}, RunId{5}, RunId{6}, RunId{7}}}, {}).ok());
     const auto before = std::filesystem::file_size(file);
@@ -114,7 +123,8 @@ TEST_CASE("a backup is a whole archive of one moment while its writer goes on", 
         if (!pipeline.begin({}).ok()) return;
         for (std::size_t i = 0; !stop; ++i) {
             const auto count = static_cast<std::uint16_t>(i & 0x3FFFU);
-            if (!pipeline.accept(live(navigation_packet(count, static_cast<double>(i) / 64.0, 1.0F, 7000.0F))).ok()) return;
+            if (!pipeline.accept(live(navigation_packet(count, static_cast<double>(i) / 64.0, 1.0F, 7000.0F))).ok())
+                return;
             if (i % 50 == 49 && !pipeline.commit().ok()) return;
             written = pipeline.last_durable();
         }
@@ -122,7 +132,7 @@ TEST_CASE("a backup is a whole archive of one moment while its writer goes on", 
     std::uint64_t copied = 0;
     for (int i = 0; i < 5; ++i) {
         const auto since = written.load();
-        while (written < since + 3000) // it writes before, during and after each copy
+        while (written < since + 3000)  // it writes before, during and after each copy
             std::this_thread::yield();
         const auto copy = folder / ("copy" + std::to_string(i)).c_str();
         const auto before = written.load();
@@ -144,7 +154,8 @@ TEST_CASE("a backup is a whole archive of one moment while its writer goes on", 
     stop = true;
     writer.join();
     CHECK(while_copied >= 15'000);
-    CHECK(backup(file, folder / "copy0").error().message == (folder / "copy0").string() + " is there already: nothing is overwritten");
+    CHECK(backup(file, folder / "copy0").error().message ==
+          (folder / "copy0").string() + " is there already: nothing is overwritten");
 }
 
 TEST_CASE("a backup that fails leaves no file under its name", "[archive][backup]") {
@@ -164,11 +175,14 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
     record(file, small_dictionary(), 1);
     auto database = std::move(sqlite::Database::open(file.string(), sqlite::Mode::read_write_create)).value();
     CHECK(sequence_faults(database, RunId{1}, "main.", 10)->empty());
-    REQUIRE(database.execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + 21, 1, 1, '', 0);"
-                             "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
+    REQUIRE(database
+                .execute("DELETE FROM units WHERE key = (1 << 40) + 11; INSERT INTO link_changes VALUES ((1 << 40) + "
+                         "21, 1, 1, '', 0);"
+                         "UPDATE units SET sampled = 0 WHERE key = (1 << 40) + 31")
                 .ok());
     CHECK(*sequence_faults(database, RunId{1}, "main.", 10) ==
-          std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21", "run 1: no item has the number 32"});
+          std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21",
+                                   "run 1: no item has the number 32"});
 }
 
 TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a rebuild", "[archive][rebuild]") {
@@ -191,9 +205,9 @@ TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a 
     CHECK(ask(file, "PRAGMA user_version") == 3);
     CHECK(answer() == packed);
     CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->notes.size() == 1);
-    CHECK(ask(file, "PRAGMA user_version") == 3); // it was only read
+    CHECK(ask(file, "PRAGMA user_version") == 3);  // it was only read
 
-    record(file, dictionary, 1); // opened for writing
+    record(file, dictionary, 1);  // opened for writing
     CHECK(ask(file, "PRAGMA user_version") == schema_version);
     CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 6);
     CHECK(ask(file, "SELECT max(position) FROM segments WHERE run = 2") == 2);
@@ -210,6 +224,6 @@ TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a 
     CHECK(answer() == packed);
     const auto after = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
     CHECK(after->faults.empty());
-    REQUIRE(after->notes.size() == 1); // nothing but that the rebuilds are in the audit
+    REQUIRE(after->notes.size() == 1);  // nothing but that the rebuilds are in the audit
     CHECK_THAT(after->notes[0], Catch::StartsWith("audit: "));
 }

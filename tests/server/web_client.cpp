@@ -17,7 +17,8 @@ namespace http = beast::http;
 using tcp = asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::chrono::seconds patience{120}; // a loaded machine with sanitizers is slow: a run can be half a minute in starting
+constexpr std::chrono::seconds patience{
+    120};  // a loaded machine with sanitizers is slow: a run can be half a minute in starting
 
 std::string authority(std::uint16_t port) {
     return "127.0.0.1:" + std::to_string(port);
@@ -33,7 +34,7 @@ error_code finish(asio::io_context& io, Start start) {
     return result;
 }
 
-} // namespace
+}  // namespace
 
 WebReply web_request(std::uint16_t port, std::string_view method, std::string_view target, std::string_view body,
                      const Headers& headers) {
@@ -43,13 +44,12 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     http::request<http::string_body> request{http::verb::get, {target.data(), target.size()}, 11};
     request.method_string({method.data(), method.size()});
     request.set(http::field::host, authority(port));
-    for (const auto& [name, value] : headers)
-        request.set(name, value);
+    for (const auto& [name, value] : headers) request.set(name, value);
     request.body() = body;
     request.prepare_payload();
     stream.expires_after(patience);
     error_code ignored;
-    http::write(stream, request, ignored); // the server may answer, and close, before it has read all
+    http::write(stream, request, ignored);  // the server may answer, and close, before it has read all
     http::response_parser<http::string_body> parser;
     parser.body_limit(64 << 20);
     if (method == "HEAD") parser.skip(true);
@@ -58,8 +58,13 @@ WebReply web_request(std::uint16_t port, std::string_view method, std::string_vi
     if (error) return {};
     const auto& response = parser.get();
     const auto text = [&](http::field field) { return std::string{response[field]}; };
-    return {response.result_int(), text(http::field::content_type), text(http::field::cache_control), text(http::field::set_cookie),
-            std::string{response["Content-Security-Policy"]}, response.body(), std::string{response["Aeolis-Next-After"]}};
+    return {response.result_int(),
+            text(http::field::content_type),
+            text(http::field::cache_control),
+            text(http::field::set_cookie),
+            std::string{response["Content-Security-Policy"]},
+            response.body(),
+            std::string{response["Aeolis-Next-After"]}};
 }
 
 std::string raw_exchange(std::uint16_t port, std::string_view octets) {
@@ -89,8 +94,7 @@ StreamClient::StreamClient(std::uint16_t port, const std::string& subprotocols, 
     beast::get_lowest_layer(socket).connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), port});
     socket.set_option(beast::websocket::stream_base::decorator([&](beast::websocket::request_type& request) {
         if (!subprotocols.empty()) request.set(http::field::sec_websocket_protocol, subprotocols);
-        for (const auto& [name, value] : headers)
-            request.set(name, value);
+        for (const auto& [name, value] : headers) request.set(name, value);
     }));
     socket.read_message_max(64 << 20);
     error_code error;
@@ -133,4 +137,4 @@ std::string StreamClient::close_words() const {
     return {words.data(), words.size()};
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

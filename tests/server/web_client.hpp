@@ -30,12 +30,12 @@ class StreamClient {
     StreamClient(StreamClient&&) noexcept;
 
     bool open() const;
-    unsigned status() const; ///< 101 when open
+    unsigned status() const;  ///< 101 when open
     std::string subprotocol() const;
     void send(std::string_view payload, bool binary);
     /// None when the server has closed, or said nothing for some seconds.
     std::optional<std::string> receive();
-    std::uint16_t close_code() const; ///< after receive() gave none
+    std::uint16_t close_code() const;  ///< after receive() gave none
     std::string close_words() const;
 
   private:
@@ -43,4 +43,4 @@ class StreamClient {
     std::unique_ptr<State> state_;
 };
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

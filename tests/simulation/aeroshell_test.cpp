@@ -44,8 +44,7 @@ TEST_CASE("the scenario's air is the density inferred from the published flight,
         std::istringstream fields{line};
         std::string field;
         std::vector<double> row;
-        while (std::getline(fields, field, ','))
-            row.push_back(std::strtod(field.c_str(), nullptr));
+        while (std::getline(fields, field, ',')) row.push_back(std::strtod(field.c_str(), nullptr));
         if (row.size() < 10 || row[0] < 50.0 || row[0] > 150.0) continue;
         const double altitude_m = row[1] * 1e3, inferred_kgm3 = row[9];
         CAPTURE(altitude_m);

@@ -28,8 +28,7 @@ const Inertia uneven{{4000.0, 4300.0, 5000.0}};
 RigidBody flown(RigidBody body, double for_s, double step_s, const Inertia& inertia = uneven) {
     const auto nothing = [](double, const RigidBody&) { return Wrench{}; };
     const auto steps = static_cast<int>(std::lround(for_s / step_s));
-    for (int i = 0; i < steps; ++i)
-        body = runge_kutta_step(body, step_s, 3000.0, inertia, nothing);
+    for (int i = 0; i < steps; ++i) body = runge_kutta_step(body, step_s, 3000.0, inertia, nothing);
     return body;
 }
 
@@ -42,7 +41,7 @@ double energy(const RigidBody& body) {
     return 0.5 * body.rate_B_rps.dot(uneven.moments_B.cwiseProduct(body.rate_B_rps));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a body that nothing turns keeps its angular momentum in inertial space, and its energy of rotation",
           "[simulation][attitude]") {
@@ -53,7 +52,8 @@ TEST_CASE("a body that nothing turns keeps its angular momentum in inertial spac
     CHECK(end.q_MB.norm() == Approx(1.0));
 }
 
-TEST_CASE("halving the step makes the error of rotation sixteen times smaller: fourth order", "[simulation][attitude]") {
+TEST_CASE("halving the step makes the error of rotation sixteen times smaller: fourth order",
+          "[simulation][attitude]") {
     const RigidBody start = tumbling();
     const Quaternion best = flown(start, 20.0, 0.0025).q_MB;
     const auto error = [&](double step_s) { return flown(start, 20.0, step_s).q_MB.angularDistance(best); };
@@ -71,14 +71,15 @@ TEST_CASE("a thruster's pulse gives its whole impulse, wherever the steps fall",
         double impulse_Ns = 0.0;
         Vector3 twist_Nms = Vector3::Zero();
         for (int step = 0; step < 10; ++step) {
-            if (step == 4) thrusters.command({}, true, 10.0 + seconds_per_tick); // does not cut off what still burns
+            if (step == 4) thrusters.command({}, true, 10.0 + seconds_per_tick);  // does not cut off what still burns
             const auto push = thrusters.mean(10.0 + 0.00390625 * step, 0.00390625);
             impulse_Ns += push.force_B.norm() * 0.00390625;
             twist_Nms += push.torque_B * 0.00390625;
         }
         CHECK(impulse_Ns == Approx(302.0 * on_s));
         const auto mounted = flight::entry_thrusters()[2];
-        CHECK((twist_Nms - vector3(mounted.position_B_m).cross(302.0 * on_s * vector3(mounted.direction_B))).norm() < 1e-9);
+        CHECK((twist_Nms - vector3(mounted.position_B_m).cross(302.0 * on_s * vector3(mounted.direction_B))).norm() <
+              1e-9);
     }
     Thrusters off;
     flight::ThrusterCommand command;
@@ -90,12 +91,11 @@ TEST_CASE("a thruster's pulse gives its whole impulse, wherever the steps fall",
 TEST_CASE("a bank reversal is flown within 20 degrees a second, in the time that the published flight took",
           "[simulation][attitude][R27]") {
     tests::TruthPilot pilot{tests::undisturbed_scenario(620.0)};
-    pilot.run_until(98.0); // where the stand-in asks for it
+    pilot.run_until(98.0);  // where the stand-in asks for it
     double fastest_dps = 0.0, taken_s = 0.0, before = pilot.world.inspect().bank_deg;
     CHECK(before == Approx(-48.0).margin(3.0));
     while (pilot.world.truth().e_s < 118.0) {
-        for (int tick = 0; tick < 16; ++tick)
-            pilot.step();
+        for (int tick = 0; tick < 16; ++tick) pilot.step();
         const double bank = pilot.world.inspect().bank_deg;
         fastest_dps = std::max(fastest_dps, std::abs(bank - before) * 4.0);
         before = bank;
@@ -103,14 +103,15 @@ TEST_CASE("a bank reversal is flown within 20 degrees a second, in the time that
     }
     CHECK(fastest_dps < 21.0);
     CHECK(fastest_dps > 12.0);
-    CHECK(taken_s > 7.5); // [od137]: from -45 to 56 degrees between E+94 and 102
+    CHECK(taken_s > 7.5);  // [od137]: from -45 to 56 degrees between E+94 and 102
     CHECK(taken_s < 12.0);
 }
 
-TEST_CASE("thrusters take the spin out and turn to the entry attitude before the air is felt", "[simulation][attitude][R27]") {
+TEST_CASE("thrusters take the spin out and turn to the entry attitude before the air is felt",
+          "[simulation][attitude][R27]") {
     tests::TruthPilot pilot{tests::undisturbed_scenario(620.0)};
     pilot.run_until(-506.0);
-    CHECK(vector3(pilot.world.inspect().rate_B_rps).norm() < 0.5 * degree_rad); // [od137]: nil by E-452
+    CHECK(vector3(pilot.world.inspect().rate_B_rps).norm() < 0.5 * degree_rad);  // [od137]: nil by E-452
     pilot.run_until(0.0);
     CHECK(vector3(pilot.world.inspect().rate_B_rps).norm() < 0.5 * degree_rad);
     CHECK(pilot.world.inspect().angle_of_attack_deg == Approx(16.0).margin(1.0));

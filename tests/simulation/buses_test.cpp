@@ -62,7 +62,7 @@ Scenario entry_at_tick(std::int64_t tick, Scenario scenario = without_errors()) 
     return scenario;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a command goes out with the next frame of its bus: 1/64 s, or the next multiple of 1/8 s", "[buses][R2]") {
     for (std::int64_t phase = 0; phase < 8; ++phase) {
@@ -72,8 +72,7 @@ TEST_CASE("a command goes out with the next frame of its bus: 1/64 s, or the nex
         out.pyros.push_back(PyroId::coolant_vent);
         bench.cycle(out);
         CHECK(bench.buses.fired().size() == 1);
-        while (!bench.buses.devices().on(SwitchId::radar))
-            bench.cycle({});
+        while (!bench.buses.devices().on(SwitchId::radar)) bench.cycle({});
         CHECK(bench.tick == 64008);
     }
 }
@@ -127,15 +126,14 @@ TEST_CASE("garbled messages are repeated, in their frame or in the next, and the
         repeated += bench.buses.counters_8_hz().repeated;
         failed += bench.buses.counters_8_hz().failed;
     }
-    CHECK(as_last_commanded >= 195); // three tries in three frames fail in 0.3^6 of the cases
+    CHECK(as_last_commanded >= 195);  // three tries in three frames fail in 0.3^6 of the cases
     CHECK(repeated > 100);
     CHECK(failed > 20);
 }
 
 TEST_CASE("without errors nothing is repeated", "[buses]") {
     Bench bench{without_errors()};
-    for (int i = 0; i < 640; ++i)
-        bench.cycle(fire(PyroId::coolant_vent));
+    for (int i = 0; i < 640; ++i) bench.cycle(fire(PyroId::coolant_vent));
     CHECK(bench.buses.counters_64_hz().messages > 640);
     CHECK(bench.buses.counters_64_hz().repeated == 0);
     CHECK(bench.buses.counters_64_hz().given_up == 0);
@@ -148,8 +146,7 @@ TEST_CASE("a silent terminal is tried in three frames and given up; nothing come
         scenario.device_faults = {fault(Device::pyro, DeviceFault::Kind::silent, 0.0, ticks / 64.0)};
         Bench bench{scenario};
         bool answered = bench.cycle(fire(PyroId::coolant_vent)).pyro_replies.size() != 0;
-        for (int i = 0; i < 32; ++i)
-            answered |= bench.cycle({}).pyro_replies.size() != 0;
+        for (int i = 0; i < 32; ++i) answered |= bench.cycle({}).pyro_replies.size() != 0;
         CHECK(bench.buses.devices().fired(PyroId::coolant_vent) == fired);
         CHECK(answered == fired);
         CHECK(bench.buses.counters_64_hz().given_up == (fired ? 0U : 1U));
@@ -164,8 +161,7 @@ TEST_CASE("only the addressed unit answers, and says which it is", "[buses][R2]"
     out.units[Device::pyro] = Unit::b;
     std::vector<flight::PyroReply> replies;
     for (int i = 0; i < 16; ++i) {
-        for (const auto& reply : bench.cycle(out).pyro_replies)
-            replies.push_back(reply);
+        for (const auto& reply : bench.cycle(out).pyro_replies) replies.push_back(reply);
         out.pyros.clear();
     }
     REQUIRE(replies.size() == 1);
@@ -185,8 +181,7 @@ TEST_CASE("a device that refuses says so and does nothing; one that is late does
     std::vector<flight::PyroReply> replies;
     for (int i = 0; i < 200; ++i) {
         const auto in = bench.cycle(out);
-        for (const auto& reply : in.pyro_replies)
-            replies.push_back(reply);
+        for (const auto& reply : in.pyro_replies) replies.push_back(reply);
         if (in.thrusters) thrusters_after = bench.tick - 64000;
         out = {};
     }
@@ -206,8 +201,7 @@ TEST_CASE("engines that hear nothing keep their last command for two seconds and
     bench.cycle(out);
     CHECK(bench.buses.thrusters().on_s[3] == 0.01);
     bench.buses.leave_alone();
-    for (int i = 0; i < 128; ++i)
-        bench.frame();
+    for (int i = 0; i < 128; ++i) bench.frame();
     CHECK(bench.buses.engines().ignited);
     CHECK(bench.buses.thrusters().on_s[3] == 0.0);
     bench.frame();

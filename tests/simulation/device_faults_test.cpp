@@ -34,7 +34,7 @@ struct Landed {
     Outcome outcome{};
     std::string reason;
     std::vector<std::uint8_t> recording;
-    std::map<std::uint16_t, flight::TimepointVerdict> verdicts; ///< by timepoint
+    std::map<std::uint16_t, flight::TimepointVerdict> verdicts;  ///< by timepoint
     std::map<std::uint16_t, int> events;
 
     flight::TimepointVerdict verdict(TimepointId timepoint) const { return verdicts.at(timepoint.value); }
@@ -73,11 +73,9 @@ Landed land(const std::vector<DeviceFault>& faults, const Selection& units = all
     Landing landing{scenario, 1, 0};
     landing.uplink(test::set_parameters(landing.solution()));
     if (units != all_a) landing.uplink(test::select_units(units));
-    for (int i = 0; i < 64; ++i)
-        landing.step();
+    for (int i = 0; i < 64; ++i) landing.step();
     landing.uplink(test::do_edl());
-    while (landing.outcome() == Outcome::running)
-        landing.step();
+    while (landing.outcome() == Outcome::running) landing.step();
     Landed landed{landing.outcome(), landing.outcome_reason(), {}, {}, {}};
     landed.recording.assign(landing.recording().begin(), landing.recording().end());
     read(landed);
@@ -93,7 +91,7 @@ DeviceFault at_its_start(Kind kind) {
     return {Device::uhf, Unit::a, kind, 810.0, 60.0};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a landing without faults has every reply in time, and no device module has anything to report",
           "[simulation][faults][R2][R14]") {
@@ -160,8 +158,7 @@ TEST_CASE("EDL does not switch units over: a selection after do edl is refused a
           "[simulation][faults][R2]") {
     Landing landing{tests::gale_scenario(900.0), 1, 0};
     const auto fly_on = [&] {
-        for (int i = 0; i < 64; ++i)
-            landing.step();
+        for (int i = 0; i < 64; ++i) landing.step();
     };
     landing.uplink(test::set_parameters(landing.solution()));
     fly_on();
@@ -233,7 +230,8 @@ TEST_CASE("faults that a device cannot have are refused with the scenario", "[si
     CHECK(impossible_values(scenario).size() == 1);
 }
 
-TEST_CASE("a fault that is injected in mid-flight is the scenario's fault that begins then, to the last bit", "[simulation][faults]") {
+TEST_CASE("a fault that is injected in mid-flight is the scenario's fault that begins then, to the last bit",
+          "[simulation][faults]") {
     constexpr double begins_s = 700.0, for_s = 40.0;
     const auto flown = [&](bool injected, const std::optional<Fault>& fault) {
         Scenario scenario = tests::gale_scenario(900.0);
@@ -245,23 +243,22 @@ TEST_CASE("a fault that is injected in mid-flight is the scenario's fault that b
         }
         Landing landing{scenario, 1, 0};
         landing.uplink(test::set_parameters(landing.solution()));
-        for (int i = 0; i < 64; ++i)
-            landing.step();
+        for (int i = 0; i < 64; ++i) landing.step();
         landing.uplink(test::do_edl());
-        while (scenario.entry_sclk - landing.sclk() > begins_s)
-            landing.step();
+        while (scenario.entry_sclk - landing.sclk() > begins_s) landing.step();
         if (injected) landing.inject(*fault);
-        while (scenario.entry_sclk - landing.sclk() > begins_s - 2.0 * for_s)
-            landing.step();
+        while (scenario.entry_sclk - landing.sclk() > begins_s - 2.0 * for_s) landing.step();
         return std::vector<std::uint8_t>{landing.recording().begin(), landing.recording().end()};
     };
     const auto sound = flown(false, std::nullopt);
-    const Fault faults[] = {DeviceFault{Device::imu, Unit::a, Kind::dropout, begins_s, for_s}, SystemFault{begins_s, for_s}, ComputerReset{begins_s}};
+    const Fault faults[] = {DeviceFault{Device::imu, Unit::a, Kind::dropout, begins_s, for_s},
+                            SystemFault{begins_s, for_s}, ComputerReset{begins_s}};
     for (const Fault& fault : faults) {
         INFO("fault " << fault.index());
         const auto planned = flown(false, fault), injected = flown(true, fault);
         const auto differ = std::ranges::mismatch(planned, injected);
-        INFO("they differ from octet " << differ.in1 - planned.begin() << " of " << planned.size() << " on, " << injected.size() << " were injected");
+        INFO("they differ from octet " << differ.in1 - planned.begin() << " of " << planned.size() << " on, "
+                                       << injected.size() << " were injected");
         CHECK((planned == injected));
         CHECK((injected != sound));
     }

@@ -38,7 +38,7 @@ double deviation(int cases, const std::function<double(std::uint64_t)>& value) {
     return std::sqrt((squares - sum * sum / cases) / (cases - 1));
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("before the moment of dispersion nothing of a case shows", "[simulation][campaign]") {
     World one = flown_to_dispersion(1), two = flown_to_dispersion(2);
@@ -110,7 +110,7 @@ TEST_CASE("an impossible moment of dispersion is named", "[simulation][scenario]
     CHECK_FALSE(disperses_later(scenario));
     scenario.disperse_before_entry_s = 700.0;
     CHECK(impossible_values(scenario).empty());
-    CHECK_FALSE(disperses_later(scenario)); // at the start, as ever
+    CHECK_FALSE(disperses_later(scenario));  // at the start, as ever
     for (const auto& [value, says] : {std::pair{701.0, "disperse_before_entry_s: 701 is not between"},
                                       std::pair{-1.0, "disperse_before_entry_s: -1 is not between"},
                                       std::pair{10.01, "disperse_before_entry_s: 10.01 is not a multiple of 1/64 s"}}) {

@@ -18,15 +18,14 @@ struct Disturbance {
     double altitude_m = 0.0, flight_path_rad = 0.0, lift_to_drag = 0.0;
 };
 struct Flown {
-    double range_m = 0.0;                            ///< from the disturbance to the end of the reference
-    double drag_mps2 = 0.0, altitude_rate_mps = 0.0; ///< just after the disturbance
+    double range_m = 0.0;                             ///< from the disturbance to the end of the reference
+    double drag_mps2 = 0.0, altitude_rate_mps = 0.0;  ///< just after the disturbance
 };
 
 double vertical_lift(const flight::EntryReference& reference, double v) {
     const auto* rows = reference.rows.data();
     std::size_t i = 1;
-    while (i + 1 < reference.row_count && rows[i].velocity_mps < v)
-        ++i;
+    while (i + 1 < reference.row_count && rows[i].velocity_mps < v) ++i;
     const double part =
         std::clamp((v - rows[i - 1].velocity_mps) / (rows[i].velocity_mps - rows[i - 1].velocity_mps), 0.0, 1.0);
     return rows[i - 1].lift_to_drag + part * (rows[i].lift_to_drag - rows[i - 1].lift_to_drag);
@@ -69,7 +68,7 @@ Flown fly(const Scenario& scenario, const flight::EntryReference& reference, dou
     return flown;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the reference is in the order that guidance needs, and ends at the target", "[gnc][R27]") {
     const flight::EntryReference reference = make_entry_reference(Scenario{});
@@ -92,8 +91,7 @@ TEST_CASE("what the reference takes flight to do is what flight does", "[gnc][R2
 TEST_CASE("its peak of drag is that of the published entry within five percent", "[gnc][R27]") {
     const flight::EntryReference reference = make_entry_reference(Scenario{});
     double peak_mps2 = 0.0;
-    for (const auto& row : reference.rows)
-        peak_mps2 = std::max(peak_mps2, row.drag_mps2);
+    for (const auto& row : reference.rows) peak_mps2 = std::max(peak_mps2, row.drag_mps2);
     CHECK(peak_mps2 == Approx(120.0).epsilon(0.05));
 }
 
@@ -120,7 +118,7 @@ TEST_CASE("its partials are what re-flown disturbances give", "[gnc][R27]") {
 
 TEST_CASE("a nearer target is reached by more bank", "[gnc][R27]") {
     Scenario near;
-    near.target.longitude_deg -= 0.5; // 30 km
+    near.target.longitude_deg -= 0.5;  // 30 km
     const auto usual = make_entry_reference(Scenario{}), nearer = make_entry_reference(near);
     const auto middle = [](const flight::EntryReference& r) { return r.rows[35].lift_to_drag; };
     CHECK(middle(nearer) < middle(usual));

@@ -21,7 +21,8 @@ inline simulation::Scenario gale_scenario(double start_before_entry_s = 700.0) {
     for (std::string line; std::getline(file, line);)
         if (std::sscanf(line.c_str(), "density_scale { altitude_m: %lf scale: %lf }", &at.altitude_m, &at.scale) == 2)
             scenario.density_scale.push_back(at);
-    if (scenario.density_scale.size() <= 10) throw std::runtime_error{"nominal.textproto has no table of density_scale"};
+    if (scenario.density_scale.size() <= 10)
+        throw std::runtime_error{"nominal.textproto has no table of density_scale"};
     return scenario;
 }
 
@@ -30,4 +31,4 @@ inline simulation::Scenario undisturbed_scenario(double start_before_entry_s = 7
     return simulation::undispersed(gale_scenario(start_before_entry_s));
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

@@ -28,7 +28,7 @@ struct Near {
     double speed_mps, within_mps;
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("GNC alone lands the published case, and near its published times", "[gnc][R27]") {
     tests::GncVenue venue(without_errors(), 1);
@@ -87,7 +87,7 @@ void check_landings(std::uint64_t cases) {
         INFO("case " << number);
         tests::GncVenue venue(tests::gale_scenario(), 1, number);
         venue.run();
-        check_soft_landing(venue.world(), 10000.0); // [facts]: 99 % ellipse 20 km long
+        check_soft_landing(venue.world(), 10000.0);  // [facts]: 99 % ellipse 20 km long
         const auto* parachute = venue.event(Trigger::parachute);
         REQUIRE(parachute != nullptr);
         CHECK(parachute->seen.mach > 1.4);
@@ -98,7 +98,7 @@ void check_landings(std::uint64_t cases) {
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("dispersed cases all land, softly and with the parachute in its box", "[gnc][R27]") {
     check_landings(5);
@@ -108,7 +108,8 @@ TEST_CASE("two hundred dispersed cases do", "[.long][gnc][R27]") {
     check_landings(200);
 }
 
-TEST_CASE("each change of configuration changes what GNC controls with: none, rates, bank, hanging, thrust", "[gnc][R26]") {
+TEST_CASE("each change of configuration changes what GNC controls with: none, rates, bank, hanging, thrust",
+          "[gnc][R26]") {
     using Attitude = AttitudeCommand::Mode;
     tests::GncVenue venue(without_errors(), 1);
     std::vector<Attitude> modes{Attitude::idle};
@@ -118,10 +119,11 @@ TEST_CASE("each change of configuration changes what GNC controls with: none, ra
         const Output& told = venue.told();
         if (told.attitude.mode != modes.back()) modes.push_back(told.attitude.mode);
         throttled_before_priming |= !venue.configuration().engines_primed && told.engines.ignited;
-        engines_and_thrusters |= told.mode > Mode::free_fall && told.engines.ignited &&
-                                 told.thrusters != flight::ThrusterCommand{};
+        engines_and_thrusters |=
+            told.mode > Mode::free_fall && told.engines.ignited && told.thrusters != flight::ThrusterCommand{};
     }
-    CHECK(modes == std::vector{Attitude::idle, Attitude::detumble, Attitude::entry_bank, Attitude::suspended, Attitude::thrust});
+    CHECK(modes ==
+          std::vector{Attitude::idle, Attitude::detumble, Attitude::entry_bank, Attitude::suspended, Attitude::thrust});
     CHECK_FALSE(throttled_before_priming);
     CHECK_FALSE(engines_and_thrusters);
 }

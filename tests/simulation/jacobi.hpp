@@ -16,4 +16,4 @@ inline double jacobi_m2ps2(const simulation::PointMass& at) {
     return 0.5 * at.v_MB_M.squaredNorm() - mars_gm_m3ps2 / r * (1.0 - oblate) - centrifugal;
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

@@ -46,12 +46,10 @@ struct Flown {
             pltus.receive(piece.octets);
             while (const auto frame = pltus.next()) {
                 packets.add(*frame);
-                while (const auto packet = packets.next())
-                    live.emplace_back(packet->begin(), packet->end());
+                while (const auto packet = packets.next()) live.emplace_back(packet->begin(), packet->end());
             }
         }
-        for (const TruthEvent& event : report.events)
-            events.insert(event.name);
+        for (const TruthEvent& event : report.events) events.insert(event.name);
         for (const LinkState& link : report.links)
             if (first_link_us == 0) first_link_us = link.ert.microseconds;
     }
@@ -59,8 +57,7 @@ struct Flown {
 
 void command(Landing& landing, Flown& flown) {
     landing.uplink(set_parameters(landing.solution()));
-    for (int i = 0; i < 640; ++i)
-        flown.step(landing);
+    for (int i = 0; i < 640; ++i) flown.step(landing);
     landing.uplink(do_edl());
 }
 
@@ -71,20 +68,18 @@ std::set<std::vector<std::uint8_t>> packets_of(std::span<const std::uint8_t> rec
     return packets;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a commanded landing stands, and all that was sent live is in its recording",
-          "[simulation][landing][R29]") {
+TEST_CASE("a commanded landing stands, and all that was sent live is in its recording", "[simulation][landing][R29]") {
     Landing landing{tests::gale_scenario(1200.0), 1, 0, event_reports()};
     Flown flown;
     command(landing, flown);
-    while (!landing.flown())
-        flown.step(landing);
+    while (!landing.flown()) flown.step(landing);
     INFO(landing.outcome_reason());
     REQUIRE(landing.outcome() == Outcome::touchdown);
     for (const char* name : {"guidance_start", "heading_alignment", "radar_lock", "touchdown"})
         CHECK(flown.events.count(name) == 1);
-    CHECK_FALSE(landing.finished()); // nobody has told the rover that its files are down
+    CHECK_FALSE(landing.finished());  // nobody has told the rover that its files are down
     CHECK(landing.relaying());
     const auto recorded = packets_of(landing.recording());
     CHECK(flown.live.size() > 1000);
@@ -95,8 +90,7 @@ TEST_CASE("a copied landing stepped alike stays bit-identical", "[simulation][la
     Landing original{tests::gale_scenario(900.0), 3};
     Flown flown;
     command(original, flown);
-    for (int i = 0; i < 64 * 200; ++i)
-        flown.step(original);
+    for (int i = 0; i < 64 * 200; ++i) flown.step(original);
     Landing copy{original};
     for (int i = 0; i < 64 * 600; ++i) {
         original.step();
@@ -104,7 +98,7 @@ TEST_CASE("a copied landing stepped alike stays bit-identical", "[simulation][la
     }
     CHECK(std::ranges::equal(copy.recording(), original.recording()));
     CHECK(copy.truth().p_MoB_M_m == original.truth().p_MoB_M_m);
-    CHECK(original.truth().e_s < 0.0); // flown on, not stuck at the end
+    CHECK(original.truth().e_s < 0.0);  // flown on, not stuck at the end
 }
 
 TEST_CASE("commands and data each take a light time", "[simulation][landing]") {
@@ -114,17 +108,15 @@ TEST_CASE("commands and data each take a light time", "[simulation][landing]") {
     const std::int64_t start_us = landing.ert_now().microseconds;
     const std::size_t before = landing.recording().size();
     Flown flown;
-    landing.uplink(do_edl()); // refused, since no parameters came: the refusal is recorded
+    landing.uplink(do_edl());  // refused, since no parameters came: the refusal is recorded
     const auto records_of_a_second = [&] {
         const std::size_t size = landing.recording().size();
-        for (int i = 0; i < 64; ++i)
-            flown.step(landing);
+        for (int i = 0; i < 64; ++i) flown.step(landing);
         return landing.recording().size() - size;
     };
     const std::size_t quiet = (records_of_a_second(), records_of_a_second());
-    for (int i = 2; i < 29; ++i)
-        records_of_a_second();
-    CHECK(flown.first_link_us == 0); // Earth has heard nothing yet
+    for (int i = 2; i < 29; ++i) records_of_a_second();
+    CHECK(flown.first_link_us == 0);  // Earth has heard nothing yet
     const std::size_t arrival = records_of_a_second() + records_of_a_second();
     CHECK(arrival > 2 * quiet);
     CHECK(flown.first_link_us == start_us + 30'000'000);
@@ -135,23 +127,22 @@ TEST_CASE("a landing that nobody commands ends as not commanded and brings no re
           "[simulation][landing]") {
     Landing landing{tests::gale_scenario(60.0), 1};
     Flown flown;
-    while (!landing.finished())
-        flown.step(landing);
+    while (!landing.finished()) flown.step(landing);
     CHECK(landing.outcome() == Outcome::not_commanded);
     CHECK(flown.relayed_octets == 0);
     CHECK_FALSE(landing.relaying());
 }
 
-TEST_CASE("when the computers go off Earth hears that their links are down, and why, a light time later", "[simulation][links]") {
+TEST_CASE("when the computers go off Earth hears that their links are down, and why, a light time later",
+          "[simulation][links]") {
     auto scenario = tests::gale_scenario(60.0);
-    scenario.timeout_after_entry_s = 60.0; // nobody commands it
+    scenario.timeout_after_entry_s = 60.0;  // nobody commands it
     scenario.radio.light_time_s = 5.0;
     Landing landing{scenario, 1};
     std::map<std::string, LinkState> last;
     std::optional<Ert> off;
     while (!landing.finished()) {
-        for (const LinkState& link : landing.step().links)
-            last[link.link.name] = link;
+        for (const LinkState& link : landing.step().links) last[link.link.name] = link;
         if (landing.flown() && !off) off = landing.ert_now();
     }
     REQUIRE(off);
@@ -159,14 +150,16 @@ TEST_CASE("when the computers go off Earth hears that their links are down, and 
         INFO(name);
         REQUIRE(last.contains(name));
         CHECK_FALSE(last.at(name).up);
-        if (last.at(name).reason == "computer off") CHECK(last.at(name).ert.microseconds - off->microseconds == Approx(5.0e6).margin(2.0e5));
+        if (last.at(name).reason == "computer off")
+            CHECK(last.at(name).ert.microseconds - off->microseconds == Approx(5.0e6).margin(2.0e5));
     }
     CHECK(last.at("x_band").reason == "computer off");
 }
 
-TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is", "[simulation][links][faults]") {
+TEST_CASE("while the station is out nothing of what reaches Earth reaches ground; then each link is told as it is",
+          "[simulation][links][faults]") {
     auto scenario = tests::gale_scenario(60.0);
-    scenario.timeout_after_entry_s = 60.0; // nobody commands it: X-band's carrier alone, and UHF from the start
+    scenario.timeout_after_entry_s = 60.0;  // nobody commands it: X-band's carrier alone, and UHF from the start
     scenario.radio.light_time_s = 5.0;
     Landing whole{scenario, 1}, cut{scenario, 1};
     std::size_t octets = 0, octets_whole = 0;
@@ -176,9 +169,9 @@ TEST_CASE("while the station is out nothing of what reaches Earth reaches ground
         const bool begins = cut.sclk() == scenario.entry_sclk - 30.0;
         if (begins) cut.inject(StationOutage{0.0, 10.0});
         const CycleReport& report = cut.step();
-        const double e_s = cut.sclk() - scenario.entry_sclk; // Earth's clock at the cycle's end
+        const double e_s = cut.sclk() - scenario.entry_sclk;  // Earth's clock at the cycle's end
         CHECK(report.station_out == (e_s > -30.0 && e_s < -20.0));
-        CHECK(std::ranges::equal(report.recorded, seen.recorded)); // the vehicle knows nothing of it
+        CHECK(std::ranges::equal(report.recorded, seen.recorded));  // the vehicle knows nothing of it
         octets_whole += seen.octets.size();
         octets += report.octets.size();
         if (report.station_out) CHECK(report.octets.empty());

@@ -22,7 +22,7 @@ UhfLink::Surroundings coasting() {
     return {-300.0, 800000.0, 5500.0, true};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("UHF carries its rate and no more, octet for octet", "[simulation][uhf]") {
     Radio radio;
@@ -38,7 +38,7 @@ TEST_CASE("UHF carries its rate and no more, octet for octet", "[simulation][uhf
         const auto octets = link.cycle(coasting());
         arrived.insert(arrived.end(), octets.begin(), octets.end());
     }
-    CHECK(arrived.size() == 5000); // 5 s at 1000 octets a second
+    CHECK(arrived.size() == 5000);  // 5 s at 1000 octets a second
     CHECK(std::equal(arrived.begin(), arrived.end(), offered.begin()));
 }
 
@@ -46,8 +46,7 @@ TEST_CASE("an idle UHF link saves nothing up, and what finds no room is counted"
     Radio radio;
     radio.uhf_rate_bps = 8000.0;
     UhfLink link{radio};
-    for (int cycle = 0; cycle < 640; ++cycle)
-        CHECK(link.cycle(coasting()).empty());
+    for (int cycle = 0; cycle < 640; ++cycle) CHECK(link.cycle(coasting()).empty());
     link.offer(std::vector<std::uint8_t>(70000));
     CHECK(link.lost_octets() == 70000 - 65536);
     CHECK(link.cycle(coasting()).size() <= 16);
@@ -55,7 +54,7 @@ TEST_CASE("an idle UHF link saves nothing up, and what finds no room is counted"
 
 TEST_CASE("UHF is down in plasma, when switched off, and what is on the air then is lost", "[simulation][uhf]") {
     Radio radio;
-    radio.uhf_rate_bps = 16 * 8 * 64; // one packet a cycle
+    radio.uhf_rate_bps = 16 * 8 * 64;  // one packet a cycle
     UhfLink link{radio};
     const auto cycle = [&](UhfLink::Surroundings at) {
         link.offer(packet_of(16));
@@ -106,7 +105,8 @@ TEST_CASE("a full recorder refuses whole packets and counts them", "[simulation]
 }
 
 TEST_CASE("tone decisions err as theory says for 256 non-coherent tones", "[simulation][tones]") {
-    // Tone power to noise density for a symbol error of 1e-2 and 1e-3 in 10 s: 2.36 and 3.53 dB-Hz. [proakis-digital-communications]
+    // Tone power to noise density for a symbol error of 1e-2 and 1e-3 in 10 s: 2.36 and 3.53 dB-Hz.
+    // [proakis-digital-communications]
     Random random{7, 0, Stream::x_band};
     const auto errors = [&](double c_n0_dbhz, int symbols) {
         int wrong = 0;
@@ -154,14 +154,14 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
     REQUIRE(heard[0].best);
     CHECK((*heard[0].best)[0].tone == 42);
     CHECK((*heard[0].best)[1].likelihood >= (*heard[0].best)[4].likelihood);
-    CHECK_FALSE(heard[0].spectrum); // nothing was sampled
+    CHECK_FALSE(heard[0].spectrum);  // nothing was sampled
     CHECK(heard[0].c_n0_dbhz == Approx(22.0).margin(1.0));
     CHECK(heard[1].sent_at - heard[0].sent_at == 10.0);
     CHECK_FALSE(heard[2].tone.has_value());
     CHECK(heard[2].sent == ToneId{43});
     heard.clear();
     send({}, 99 * 64 - static_cast<int>(tick) - 320);
-    send(ToneId{44}, 640); // Earth sets in its middle
+    send(ToneId{44}, 640);  // Earth sets in its middle
     send(ToneId{45}, 640);
     REQUIRE(heard.size() == 1);
     CHECK_FALSE(heard[0].tone.has_value());
@@ -170,7 +170,8 @@ TEST_CASE("X-band gives one decision a symbol, erases a broken one, and is silen
     CHECK(std::string{link.reason()} == "Earth set");
 }
 
-TEST_CASE("a symbol has the mean of its antenna's gain, and without an antenna there is none", "[simulation][tones][R31]") {
+TEST_CASE("a symbol has the mean of its antenna's gain, and without an antenna there is none",
+          "[simulation][tones][R31]") {
     XBandLink link{Radio{}, Random{1, 0, Stream::x_band}};
     std::optional<ReceivedTone> heard;
     const auto send = [&](std::optional<double> gain, std::int64_t from_tick, int ticks) {
@@ -185,7 +186,7 @@ TEST_CASE("a symbol has the mean of its antenna's gain, and without an antenna t
     send({}, 641, 1);
     CHECK_FALSE(link.up());
     CHECK(std::string{link.reason()} == "not switched on");
-    send(0.1, 642, 1); // 22 dB-Hz less 10 are too little for the carrier's lock
+    send(0.1, 642, 1);  // 22 dB-Hz less 10 are too little for the carrier's lock
     CHECK_FALSE(link.up());
     CHECK(link.earth_up());
     CHECK(std::string{link.reason()} == "carrier too weak");
@@ -202,8 +203,9 @@ TEST_CASE("a scenario may set Earth earlier or later than the terrain does", "[s
     CHECK(std::string{link.reason()} == "Earth set");
 }
 
-TEST_CASE("Earth sets behind highlands: at -2.0 degrees from 8.2 km, lower from higher, at the horizontal from below them",
-          "[simulation][earth][R31]") {
+TEST_CASE(
+    "Earth sets behind highlands: at -2.0 degrees from 8.2 km, lower from higher, at the horizontal from below them",
+    "[simulation][earth][R31]") {
     constexpr double radius_m = 3391148.0;
     // A vehicle somewhere on the meridian of Earth's place, so far away that Earth stands at `elevation`.
     const auto up = [&](double altitude_m, double elevation_deg) {

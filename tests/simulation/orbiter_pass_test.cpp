@@ -28,7 +28,7 @@ std::vector<std::uint8_t> counted(std::size_t octets) {
     return made;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("an orbiter is in view from rise to set, and nearest half-way", "[simulation][relay]") {
     const OrbiterPass pass{ten_minutes(false), Radio{}, Random{1, 0, Stream::uhf}};
@@ -60,11 +60,11 @@ TEST_CASE("octets are lost the more the farther the orbiter is, by the square of
 TEST_CASE("a burst of errors ends by the clock, also while the vehicle has little to send", "[simulation][relay]") {
     Radio radio;
     radio.uhf_loss_fraction = 0.1;
-    radio.uhf_loss_range_km = 2000.0; // 0.1 at the horizon
+    radio.uhf_loss_range_km = 2000.0;  // 0.1 at the horizon
     radio.uhf_burst_s = 0.2;
     OrbiterPass pass{ten_minutes(false), radio, Random{1, 0, Stream::uhf}};
     const std::vector<std::uint8_t> packet(124, 0);
-    constexpr int packets = 20'000; // one each two seconds, ten bursts' length apart
+    constexpr int packets = 20'000;  // one each two seconds, ten bursts' length apart
     int spoilt = 0, in_a_row = 0;
     bool before = false;
     for (int i = 0; i < packets; ++i) {
@@ -73,13 +73,12 @@ TEST_CASE("a burst of errors ends by the clock, also while the vehicle has littl
         spoilt += now ? 1 : 0;
         in_a_row += now && before ? 1 : 0;
         before = now;
-        for (int cycle = 1; cycle < 128; ++cycle)
-            pass.hear(Traffic::realtime, {}, 0.0);
+        for (int cycle = 1; cycle < 128; ++cycle) pass.hear(Traffic::realtime, {}, 0.0);
     }
     const double part = static_cast<double>(spoilt) / packets;
     CHECK(part > 0.1);
     CHECK(part < 0.2);
-    CHECK(static_cast<double>(in_a_row) / spoilt == Approx(part).margin(0.03)); // the next one is no worse off
+    CHECK(static_cast<double>(in_a_row) / spoilt == Approx(part).margin(0.03));  // the next one is no worse off
 }
 
 TEST_CASE("a bent pipe gives at once what it hears; an orbiter that records gives it after its pass, at its rate",
@@ -99,7 +98,7 @@ TEST_CASE("a bent pipe gives at once what it hears; an orbiter that records give
         delivered.insert(delivered.end(), now.begin(), now.end());
     }
     CHECK(delivered == counted(16000));
-    CHECK(cycles * seconds_per_tick == Approx(2.0).margin(0.05)); // 128 kbit at 64 kb/s
+    CHECK(cycles * seconds_per_tick == Approx(2.0).margin(0.05));  // 128 kbit at 64 kb/s
 
     OrbiterPass both{ten_minutes(true), Radio{}, Random{1, 0, Stream::uhf}};
     both.hear(Traffic::files, counted(16000), 20.0);
@@ -112,7 +111,7 @@ TEST_CASE("a bent pipe gives at once what it hears; an orbiter that records give
         octets += files;
     }
     CHECK(files_while_realtime == 0);
-    CHECK(cycles * seconds_per_tick == Approx(4.0).margin(0.05)); // both over the one link
+    CHECK(cycles * seconds_per_tick == Approx(4.0).margin(0.05));  // both over the one link
 }
 
 TEST_CASE("files go at the rate of the pass, which changes as its table says", "[simulation][relay]") {

@@ -13,17 +13,16 @@ const auto vacuum = [](double, const Vector3&, const Vector3&) -> Vector3 { retu
 
 PointMass flown(PointMass at, double duration_s, double step_s) {
     const auto steps = static_cast<int>(std::llround(duration_s / step_s));
-    for (int i = 0; i < steps; ++i)
-        at = runge_kutta_step(at, step_s, vacuum);
+    for (int i = 0; i < steps; ++i) at = runge_kutta_step(at, step_s, vacuum);
     return at;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a vehicle in vacuum keeps its energy relative to rotating Mars", "[simulation][mars]") {
     const double before = aeolis::tests::jacobi_m2ps2(approach);
     const double after = aeolis::tests::jacobi_m2ps2(flown(approach, 500.0, 0.25));
-    CHECK(std::abs(after - before) < 1e-3); // of 10 MJ/kg
+    CHECK(std::abs(after - before) < 1e-3);  // of 10 MJ/kg
 }
 
 TEST_CASE("the integrator's error falls with the fourth power of its step", "[simulation][mars]") {
@@ -57,6 +56,6 @@ TEST_CASE("a ballistic entry decelerates as Allen and Eggers say", "[simulation]
         if (felt.norm() > peak_mps2) peak_mps2 = felt.norm(), speed_at_peak_mps = at.v_MB_M.norm();
     }
     const double expected_mps2 = speed_mps * speed_mps * std::sin(angle_rad) / (2.0 * std::numbers::e * scale_height_m);
-    CHECK(peak_mps2 == Approx(expected_mps2).epsilon(0.03)); // theory leaves gravity out
+    CHECK(peak_mps2 == Approx(expected_mps2).epsilon(0.03));  // theory leaves gravity out
     CHECK(speed_at_peak_mps == Approx(speed_mps * std::exp(-0.5)).epsilon(0.03));
 }

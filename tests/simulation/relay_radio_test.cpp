@@ -19,7 +19,7 @@ std::vector<std::uint8_t> recording_of(std::size_t packets) {
     return recording;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the rover sends at the rate of the pass, and nothing without one", "[simulation][relay]") {
     RelayRadio radio{0.0};
@@ -36,8 +36,8 @@ TEST_CASE("without any answer the ends of the files are announced again, and it 
     const auto octets = recording_of(100);
     const flight::RecordingDelivery::Recording recording{octets, true};
     int times = 0;
-    for (int i = 0; i < 64; ++i) radio.cycle(recording, 2.0e6); // all of it
+    for (int i = 0; i < 64; ++i) radio.cycle(recording, 2.0e6);  // all of it
     for (int i = 0; i < 64 * 1000; ++i) times += !radio.cycle(recording, 2.0e6).empty();
-    CHECK(times == 4); // the end every 210 s
+    CHECK(times == 4);  // the end every 210 s
     CHECK_FALSE(radio.done(recording));
 }

@@ -22,13 +22,13 @@ namespace {
 /// When the reset comes, in the words of the rules.
 struct Moment {
     bool pre_edl = false;
-    bool touchdown = false;   ///< declared on board
+    bool touchdown = false;  ///< declared on board
     bool bridle_cut = false;
     double since_flyaway_s = -1.0;  ///< since fly-away started; below 0: not yet
 };
 
-constexpr double hold_s = 2.0;          // devices hold their last command for so long [facts-l]
-constexpr double thrown_far_s = 4.0;    // ours: with hold_s more the stage has burnt long enough to fall clear
+constexpr double hold_s = 2.0;        // devices hold their last command for so long [facts-l]
+constexpr double thrown_far_s = 4.0;  // ours: with hold_s more the stage has burnt long enough to fall clear
 
 struct Expected {
     int rule;
@@ -41,7 +41,7 @@ Expected expected(const Moment& at) {
     if (!at.touchdown) return {2, Outcome::touchdown};  // Second Chance takes over
     if (!at.bridle_cut) return {3, Outcome::lost};      // nobody may act: the stage comes down with the rover on it
     if (at.since_flyaway_s < thrown_far_s) return {4, Outcome::lost};  // the stage falls where it stands
-    return {5, Outcome::touchdown};                     // it is away
+    return {5, Outcome::touchdown};                                    // it is away
 }
 
 struct Reset {
@@ -101,7 +101,8 @@ class Resets {
 };
 
 void check(const Reset& reset) {
-    INFO("reset " << reset.name << ": expected " << name_of(expected(reset.at).outcome) << ", flown " << name_of(reset.outcome));
+    INFO("reset " << reset.name << ": expected " << name_of(expected(reset.at).outcome) << ", flown "
+                  << name_of(reset.outcome));
     CHECK(reset.outcome == expected(reset.at).outcome);
     if (reset.outcome == Outcome::touchdown) CHECK(reset.touchdown_mps < 1.0);
 }
@@ -125,7 +126,8 @@ TEST_CASE("a reset just after any of every eighth timepoint ends as the rule say
     CHECK(boundaries >= 8);
 }
 
-TEST_CASE("the table of resets: at every boundary of a timepoint and at 200 random cycles", "[.long][second_chance][R32][R33]") {
+TEST_CASE("the table of resets: at every boundary of a timepoint and at 200 random cycles",
+          "[.long][second_chance][R32][R33]") {
     std::mt19937 random{2012};
     std::vector<double> at_random(200);
     // Every tenth in the last twenty seconds, in which the outcome changes.

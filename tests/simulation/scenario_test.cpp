@@ -17,7 +17,7 @@ std::string only_fault(const Scenario& scenario) {
     return found.front();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the nominal scenario is possible", "[simulation][scenario]") {
     CHECK(impossible_values(tests::gale_scenario()).empty());
@@ -57,27 +57,31 @@ TEST_CASE("every fault is told, not only the first", "[simulation][scenario]") {
     Scenario scenario;
     scenario.entry.azimuth_deg = 400.0;
     const auto found = impossible_values(scenario);
-    CHECK(found.size() == 3); // azimuth, name, entry_scet
+    CHECK(found.size() == 3);  // azimuth, name, entry_scet
 }
 
-TEST_CASE("each list of a scenario has a bound, and one that is too long is told in one line", "[simulation][scenario]") {
+TEST_CASE("each list of a scenario has a bound, and one that is too long is told in one line",
+          "[simulation][scenario]") {
     const auto too_long = [](const std::string& list, std::size_t most, auto&& fill) {
         INFO(list);
         Scenario scenario = tests::gale_scenario();
         fill(scenario, most);
-        for (const auto& line : impossible_values(scenario))
-            CHECK(line.find("more than the") == std::string::npos);
+        for (const auto& line : impossible_values(scenario)) CHECK(line.find("more than the") == std::string::npos);
         scenario = tests::gale_scenario();
         fill(scenario, most + 1);
-        CHECK(only_fault(scenario) == list + ": has " + std::to_string(most + 1) + " rows, more than the " + std::to_string(most) + " that are taken");
+        CHECK(only_fault(scenario) == list + ": has " + std::to_string(most + 1) + " rows, more than the " +
+                                          std::to_string(most) + " that are taken");
     };
-    too_long("radio.tracking_passes", scenario_passes_max, [](Scenario& s, std::size_t rows) { s.radio.tracking_passes.resize(rows); });
-    too_long("radio.relay_passes", scenario_passes_max, [](Scenario& s, std::size_t rows) { s.radio.relay_passes.resize(rows); });
+    too_long("radio.tracking_passes", scenario_passes_max,
+             [](Scenario& s, std::size_t rows) { s.radio.tracking_passes.resize(rows); });
+    too_long("radio.relay_passes", scenario_passes_max,
+             [](Scenario& s, std::size_t rows) { s.radio.relay_passes.resize(rows); });
     too_long("radio.relay_passes[0].rates", scenario_rows_max, [](Scenario& s, std::size_t rows) {
         s.radio.relay_passes.resize(1);
         s.radio.relay_passes[0].rates.resize(rows);
     });
-    too_long("radio.tone_outages", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.radio.tone_outages.resize(rows); });
+    too_long("radio.tone_outages", scenario_rows_max,
+             [](Scenario& s, std::size_t rows) { s.radio.tone_outages.resize(rows); });
     too_long("radio.delivery_restarts_after_touchdown_s", scenario_rows_max,
              [](Scenario& s, std::size_t rows) { s.radio.delivery_restarts_after_touchdown_s.resize(rows); });
     too_long("density_scale", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.density_scale.resize(rows); });
@@ -89,6 +93,8 @@ TEST_CASE("each list of a scenario has a bound, and one that is too long is told
     too_long("second_person", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.second_person.resize(rows); });
     too_long("system_faults", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.system_faults.resize(rows); });
     too_long("device_faults", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.device_faults.resize(rows); });
-    too_long("station_outages", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.station_outages.resize(rows); });
-    too_long("computer_resets", scenario_rows_max, [](Scenario& s, std::size_t rows) { s.computer_resets.resize(rows); });
+    too_long("station_outages", scenario_rows_max,
+             [](Scenario& s, std::size_t rows) { s.station_outages.resize(rows); });
+    too_long("computer_resets", scenario_rows_max,
+             [](Scenario& s, std::size_t rows) { s.computer_resets.resize(rows); });
 }

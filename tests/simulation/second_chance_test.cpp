@@ -47,7 +47,9 @@ struct Recorded {
     static const dictionary::Packet* packet_with_channels(Apid apid) {
         const auto& packets = tests::shipped_dictionary().packets;
         const auto found = std::ranges::find_if(packets, [&](const dictionary::Packet& packet) {
-            return packet.apid == apid && std::ranges::any_of(packet.fields, [](const dictionary::Field& field) { return field.channel.has_value(); });
+            return packet.apid == apid && std::ranges::any_of(packet.fields, [](const dictionary::Field& field) {
+                       return field.channel.has_value();
+                   });
         });
         return found == packets.end() ? nullptr : &*found;
     }
@@ -111,7 +113,8 @@ TEST_CASE("a reset in guided entry: Second Chance flies within a second, with it
     CHECK(recorded.times<flight::evr::PRIME_STANDS_BY>().size() == 1);
 }
 
-TEST_CASE("a channel is of one computer at any time: both speak at once, one takes over, the other starts again on a whole second",
+TEST_CASE("a channel is of one computer at any time: both speak at once, one takes over, the other starts again on a "
+          "whole second",
           "[second_chance][R29][R33]") {
     Commanded run{900.0};
     run.fly_to(120.0);
@@ -218,9 +221,11 @@ TEST_CASE("prime cannot be designated once EDL has begun", "[second_chance][R1]"
     CHECK(recorded.times<flight::evr::COMMAND_REFUSED>().size() == 1);
 }
 
-TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichever it is", "[second_chance][R32][R33]") {
+TEST_CASE("around the end of pre-EDL a reset finds one of the two ready, whichever it is",
+          "[second_chance][R32][R33]") {
     Commanded run{14500.0};
-    for (const double e_s : {-14431.0, -14415.0, -14400.0 - 2.0 / 64, -14400.0 - 1.0 / 64, -14400.0, -14400.0 + 1.0 / 64, -14399.0}) {
+    for (const double e_s :
+         {-14431.0, -14415.0, -14400.0 - 2.0 / 64, -14400.0 - 1.0 / 64, -14400.0, -14400.0 + 1.0 / 64, -14399.0}) {
         run.fly_to(e_s);
         Commanded fork{run};
         fork.landing.reset_prime();

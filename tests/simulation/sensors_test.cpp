@@ -25,16 +25,16 @@ TEST_CASE("a perfect IMU's readings carry the vehicle along its true path", "[si
             q_MB = (rotation({0, 0, -mars_spin_rps * 0.005}) * q_MB * rotation(angle)).normalized();
         }
     };
-    pilot.step(); // brings the readings up to the start, which are of the past
+    pilot.step();  // brings the readings up to the start, which are of the past
     while (pilot.world.truth().e_s < 95.0) {
         pilot.step();
         navigate();
     }
-    pilot.imu = pilot.world.sense().imu; // of the last tick
+    pilot.imu = pilot.world.sense().imu;  // of the last tick
     navigate();
     const World& world = pilot.world;
     const auto truth = world.truth();
-    CHECK((at.v_MB_M - vector3(truth.v_MB_M_mps)).norm() < 0.05); // of 3500 m/s taken away
+    CHECK((at.v_MB_M - vector3(truth.v_MB_M_mps)).norm() < 0.05);  // of 3500 m/s taken away
     CHECK((at.p_MoB_M - vector3(truth.p_MoB_M_m)).norm() < 3.0);
 }
 
@@ -44,8 +44,7 @@ TEST_CASE("the IMU gives 200 readings a second, three or four a tick, and counts
     for (int tick = 0; tick <= 64; ++tick) {
         const auto& in = world.sense();
         if (tick > 0) CHECK((in.imu.size() == 3 || in.imu.size() == 4));
-        for (const auto& reading : in.imu)
-            CHECK(reading.count == ++count);
+        for (const auto& reading : in.imu) CHECK(reading.count == ++count);
         world.advance(flight::DeviceOutputs{});
     }
     CHECK(count == 200);
@@ -106,7 +105,8 @@ TEST_CASE("a beam measures up to its own range, and nothing nearer than four met
     CHECK_FALSE(measures(0, 3.9));
 }
 
-TEST_CASE("on a slope the beam that would graze it measures nothing, the one across from it does", "[simulation][radar]") {
+TEST_CASE("on a slope the beam that would graze it measures nothing, the one across from it does",
+          "[simulation][radar]") {
     Scenario scenario = tests::undisturbed_scenario();
     scenario.ground.slope_deg = 18.0;
     const Terrain slope{scenario, Random{1, 0, Stream::terrain}};
@@ -126,7 +126,8 @@ TEST_CASE("on a slope the beam that would graze it measures nothing, the one acr
     CHECK_FALSE(downhill.valid);
 }
 
-TEST_CASE("the part of the radar's readings that the scenario says fails, and by its own draws", "[simulation][radar]") {
+TEST_CASE("the part of the radar's readings that the scenario says fails, and by its own draws",
+          "[simulation][radar]") {
     Dispersions some = tests::undisturbed_scenario().dispersions;
     some.radar_range_fraction = 0.01;
     const Terrain flat{tests::undisturbed_scenario(), Random{1, 0, Stream::terrain}};
@@ -201,8 +202,7 @@ TEST_CASE("a gyro's scale error grows with the turn, along each axis by its own"
 TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]") {
     for (std::uint32_t beam = 0; beam < Radar::beams; ++beam) {
         int count = 0;
-        for (std::int64_t tick = 1000; tick < 1640; ++tick)
-            count += Radar::due(beam, (tick - 1) * 25, tick * 25);
+        for (std::int64_t tick = 1000; tick < 1640; ++tick) count += Radar::due(beam, (tick - 1) * 25, tick * 25);
         CHECK(count == 200);
     }
 }

@@ -29,7 +29,7 @@ struct Still {
     void tick(SeparatedBody& body, const Vector3& p_MoB_M) const { body.tick(p_MoB_M, {}, atmosphere, wind, terrain); }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a backshell under its parachute comes down at the terminal speed of its mass, and stays where it lands",
           "[simulation][separated]") {
@@ -37,8 +37,7 @@ TEST_CASE("a backshell under its parachute comes down at the terminal speed of i
     SeparatedBody backshell{10.0, 40.0};
     backshell.release(at_height(1660.0, 79.0), 349.0, 205.0);
     const auto fly = [&](double for_s) {
-        for (double t = 0.0; t < for_s; t += seconds_per_tick)
-            air.tick(backshell, ground_m * up);
+        for (double t = 0.0; t < for_s; t += seconds_per_tick) air.tick(backshell, ground_m * up);
     };
     fly(40.0);
     const double height_m = backshell.at().p_MoB_M.norm() - ground_m;
@@ -68,8 +67,7 @@ TEST_CASE("the rover on its bridle is watched as the stage is", "[simulation][se
     const auto tick = [&](double stage_m, std::optional<PointMass> rover) {
         backshell.tick(backshell.at().p_MoB_M + stage_m * up, rover, air.atmosphere, air.wind, air.terrain);
     };
-    for (int i = 0; i < 64; ++i)
-        tick(100.0, {});
+    for (int i = 0; i < 64; ++i) tick(100.0, {});
     CHECK_FALSE(backshell.struck());
     tick(99.0, backshell.at());
     CHECK(backshell.struck());
@@ -96,11 +94,9 @@ TEST_CASE("only who has got clear can be struck, by coming within its size again
     const PointMass start = at_height(100000.0, 0.0);
     body.release(start, 385.0, 0.0);
     const auto vehicle_at = [&](double distance_m) { air.tick(body, start.p_MoB_M + distance_m * up); };
-    for (const double leaving_m : {1.0, 4.0, 2.0, 14.0, 4.0})
-        vehicle_at(leaving_m);
+    for (const double leaving_m : {1.0, 4.0, 2.0, 14.0, 4.0}) vehicle_at(leaving_m);
     CHECK_FALSE(body.least_m());
-    for (const double distance_m : {16.0, 20.0, 8.0, 12.0})
-        vehicle_at(distance_m);
+    for (const double distance_m : {16.0, 20.0, 8.0, 12.0}) vehicle_at(distance_m);
     REQUIRE(body.least_m());
     CHECK(*body.least_m() == Approx(8.0).margin(0.1));
     CHECK_FALSE(body.struck());
@@ -119,14 +115,14 @@ TEST_CASE("in a landing nothing that was let go is met again", "[simulation][sep
     CHECK(*separation.backshell_least_m > 50.0);
 }
 
-TEST_CASE("without the sidestep the backshell comes down on the stage, and the landing is lost", "[simulation][separated][gnc]") {
+TEST_CASE("without the sidestep the backshell comes down on the stage, and the landing is lost",
+          "[simulation][separated][gnc]") {
     const Scenario scenario = tests::undisturbed_scenario(620.0);
     World world{scenario, 1};
     flight::Load load = load_for(scenario);
     load.divert_m = 0.0;
     GncAlone gnc{load, world.solution(), world.sclk()};
-    while (world.outcome() == Outcome::running)
-        world.advance(gnc.cycle(world.sense()));
+    while (world.outcome() == Outcome::running) world.advance(gnc.cycle(world.sense()));
     CHECK(world.outcome() == Outcome::lost);
     CHECK_THAT(world.outcome_reason(), Catch::StartsWith("the vehicle was struck by its backshell at E+"));
 }

@@ -62,13 +62,15 @@ Vehicle hanging_above_the_air() {
     return vehicle;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("a hanging rover stretches the bridle by its weight, and the bridle never pushes", "[simulation][sky_crane]") {
+TEST_CASE("a hanging rover stretches the bridle by its weight, and the bridle never pushes",
+          "[simulation][sky_crane]") {
     Pendulum rover;
     rover.p = -7.7 * Vector3::UnitZ();
     rover.fly(5.0);
-    CHECK(rover.bridle.pull_N(paid_out_s, rover_kg, rover.p, rover.v).z() == Approx(rover_kg * weight_mps2).epsilon(1e-3));
+    CHECK(rover.bridle.pull_N(paid_out_s, rover_kg, rover.p, rover.v).z() ==
+          Approx(rover_kg * weight_mps2).epsilon(1e-3));
     CHECK(rover.p.z() == Approx(-7.7).margin(1e-3));
     CHECK(rover.bridle.pull_N(paid_out_s, rover_kg, -7.6 * Vector3::UnitZ(), Vector3::Zero()).isZero());
     CHECK(rover.bridle.pull_N(paid_out_s, rover_kg, -7.7 * Vector3::UnitZ(), 9.0 * Vector3::UnitZ()).isZero());
@@ -98,12 +100,13 @@ TEST_CASE("a rover let down at three quarters of a metre a second stands without
         }
         CHECK(highest_m < 0.0);
         CHECK(-p.dot(normal) == Approx(0.02 * std::cos(slope_deg * degree_rad)).epsilon(0.02));
-        CHECK(v.norm() < 0.01); // friction holds it on the slope
+        CHECK(v.norm() < 0.01);  // friction holds it on the slope
         CHECK(p.head<2>().norm() < 0.05);
     }
 }
 
-TEST_CASE("stage and rover keep their momentum together, whatever the bridle does between them", "[simulation][sky_crane]") {
+TEST_CASE("stage and rover keep their momentum together, whatever the bridle does between them",
+          "[simulation][sky_crane]") {
     Vehicle vehicle = hanging_above_the_air();
     const double stage_kg = vehicle.configuration().rigid_kg();
     const auto together = [&] {
@@ -115,15 +118,15 @@ TEST_CASE("stage and rover keep their momentum together, whatever the bridle doe
     };
     PointMass falls = together();
     vehicle.command({}, false, {}, true, 0.0);
-    for (int i = 0; i < 1200; ++i)
-        vehicle.step(0.005 * i, 0.005);
+    for (int i = 0; i < 1200; ++i) vehicle.step(0.005 * i, 0.005);
     falls = coast(falls, 6.0);
-    CHECK((vehicle.rover()->v_MB_M - vehicle.at().v_MB_M).norm() > 0.01); // the bridle was under load
-    CHECK((together().p_MoB_M - falls.p_MoB_M).norm() < 1e-5); // gravity differs over some metres
+    CHECK((vehicle.rover()->v_MB_M - vehicle.at().v_MB_M).norm() > 0.01);  // the bridle was under load
+    CHECK((together().p_MoB_M - falls.p_MoB_M).norm() < 1e-5);             // gravity differs over some metres
     CHECK((together().v_MB_M - falls.v_MB_M).norm() < 1e-5);
 }
 
-TEST_CASE("halving the step makes the error of stage and rover together sixteen times smaller", "[simulation][sky_crane][convergence]") {
+TEST_CASE("halving the step makes the error of stage and rover together sixteen times smaller",
+          "[simulation][sky_crane][convergence]") {
     constexpr double stage_kg = 1100.0;
     const Inertia inertia{{800.0, 800.0, 1000.0}};
     Bridle bridle;
@@ -133,15 +136,15 @@ TEST_CASE("halving the step makes the error of stage and rover together sixteen 
     start.stage.p_MoB_M = 3391200.0 * up;
     start.stage.q_MB = Quaternion::FromTwoVectors(Vector3::UnitZ(), -up) * rotation({0.03, 0.0, 0.0});
     start.stage.rate_B_rps = {0.02, -0.03, 0.1};
-    start.rover = {start.stage.p_MoB_M - 7.905 * up, {0.05, 0.5, -0.3}}; // it bobs, without slack, and swings
+    start.rover = {start.stage.p_MoB_M - 7.905 * up, {0.05, 0.5, -0.3}};  // it bobs, without slack, and swings
     const auto flown = [&](double step_s) {
         StageAndRover both = start;
         for (int i = 0; i < static_cast<int>(std::lround(0.32 / step_s)); ++i)
             both = runge_kutta_step(both, step_s, stage_kg, inertia, rover_kg, [&](double, const StageAndRover& at) {
                 const Vector3 arm_B{0.0, 0.0, Bridle::confluence_m};
-                const Vector3 pull_M = bridle.pull_N(
-                    paid_out_s, rover_kg, at.rover.p_MoB_M - at.stage.p_MoB_M - at.stage.q_MB * arm_B,
-                    at.rover.v_MB_M - at.stage.v_MB_M - at.stage.q_MB * at.stage.rate_B_rps.cross(arm_B));
+                const Vector3 pull_M =
+                    bridle.pull_N(paid_out_s, rover_kg, at.rover.p_MoB_M - at.stage.p_MoB_M - at.stage.q_MB * arm_B,
+                                  at.rover.v_MB_M - at.stage.v_MB_M - at.stage.q_MB * at.stage.rate_B_rps.cross(arm_B));
                 return StageAndRoverLoads{{(stage_kg + rover_kg) * weight_mps2 * up - pull_M,
                                            -arm_B.cross(at.stage.q_MB.conjugate() * pull_M)},
                                           pull_M};
@@ -157,11 +160,12 @@ TEST_CASE("halving the step makes the error of stage and rover together sixteen 
     const auto coarse = errors(0.02), fine = errors(0.01);
     CHECK(std::log2(coarse[0] / fine[0]) == Approx(4.0).margin(0.5));
     CHECK(std::log2(coarse[1] / fine[1]) == Approx(4.0).margin(0.5));
-    CHECK(errors(0.005)[0] < 1e-5); // as it is flown
+    CHECK(errors(0.005)[0] < 1e-5);  // as it is flown
 }
 
-TEST_CASE("in a landing the rover hangs quietly, touches as slowly as the stage sinks, and takes its weight off the engines",
-          "[simulation][sky_crane][gnc]") {
+TEST_CASE(
+    "in a landing the rover hangs quietly, touches as slowly as the stage sinks, and takes its weight off the engines",
+    "[simulation][sky_crane][gnc]") {
     tests::GncVenue venue(tests::undisturbed_scenario(620.0), 1);
     double most_swing_deg = 0.0, thrust_before_N = 0.0, thrust_after_N = 0.0;
     while (venue.running()) {
@@ -180,7 +184,8 @@ TEST_CASE("in a landing the rover hangs quietly, touches as slowly as the stage 
     CHECK(venue.world().touchdown()->horizontal_mps < 0.2);
 }
 
-TEST_CASE("GNC damps a swing that something has started, by nulling the stage's drift", "[simulation][sky_crane][gnc]") {
+TEST_CASE("GNC damps a swing that something has started, by nulling the stage's drift",
+          "[simulation][sky_crane][gnc]") {
     const Scenario scenario = tests::undisturbed_scenario(620.0);
     World world{scenario, 1};
     GncAlone gnc{load_for(scenario), world.solution(), world.sclk()};
@@ -190,7 +195,7 @@ TEST_CASE("GNC damps a swing that something has started, by nulling the stage's 
         const auto seen = world.inspect();
         if (seen.bridle_m > 7.49 && !world.contact()) {
             since_s += seconds_per_tick;
-            if (since_s < 0.7) { // two engines across from each other go astray
+            if (since_s < 0.7) {  // two engines across from each other go astray
                 out.engines.throttle[0] += 0.1;
                 out.engines.throttle[4] -= 0.1;
             }

@@ -23,13 +23,13 @@ Terrain terrain_of(const Scenario& scenario, std::uint64_t case_number = 0) {
 
 /// Over the target, `north_m` and `east_m` away.
 Vector3 over_target(const Scenario& scenario, double height_m, double north_m = 0.0, double east_m = 0.0) {
-    const Horizon at = horizon(
-        place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
+    const Horizon at =
+        horizon(place(scenario.target.latitude_deg * degree_rad, scenario.target.longitude_deg * degree_rad, 1.0));
     const Vector3 direction = scenario.target.radius_m * at.up + north_m * at.north + east_m * at.east;
     return direction.normalized() * (scenario.target.radius_m + height_m);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("without height and slope the ground is the sphere of the landing radius", "[simulation][terrain]") {
     const Scenario scenario = with_ground({});
@@ -52,7 +52,7 @@ TEST_CASE("the ground rises towards its azimuth by its slope, and a ray meets it
     CHECK(tilted.height_m(over_target(scenario, 0.0, 0.0, 1000.0)) == Approx(30.0 - 1000.0 * rise).margin(0.1));
     CHECK(tilted.height_m(over_target(scenario, 0.0, 1000.0, 0.0)) == Approx(30.0).margin(0.1));
 
-    const Vector3 p = over_target(scenario, 970.0); // 1000 m above the ground
+    const Vector3 p = over_target(scenario, 970.0);  // 1000 m above the ground
     const Horizon at = horizon(p);
     CHECK(tilted.normal(p).dot(at.up) == Approx(std::cos(10.0 * degree_rad)));
     CHECK(tilted.normal(p).dot(at.east) == Approx(-std::sin(10.0 * degree_rad)));
@@ -70,7 +70,8 @@ TEST_CASE("far from the site the ground is level: a slope there is no mountain a
     scenario.ground.slope_deg = 20.0;
     scenario.ground.uphill_azimuth_deg = 270.0;
     const Terrain slope{scenario, Random{1, 0, Stream::terrain}};
-    const Vector3 entry = place(scenario.entry.latitude_deg * degree_rad, scenario.entry.longitude_deg * degree_rad, 3.5222e6);
+    const Vector3 entry =
+        place(scenario.entry.latitude_deg * degree_rad, scenario.entry.longitude_deg * degree_rad, 3.5222e6);
     CHECK(slope.height_m(entry) == Approx(131052.0 - 30000.0 * std::tan(20.0 * degree_rad)).margin(100.0));
 }
 
@@ -89,7 +90,8 @@ TEST_CASE("a case has its own height and rise, of the scenario's deviations", "[
     CHECK(std::sqrt(rises2 / 1000.0) == Approx(std::sin(2.0 * degree_rad)).epsilon(0.07));
 }
 
-TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar tells it", "[simulation][terrain][gnc]") {
+TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar tells it",
+          "[simulation][terrain][gnc]") {
     for (const Ground& ground : {Ground{150.0, 0.0, 0.0}, Ground{-150.0, 0.0, 0.0}, Ground{0.0, 5.0, 45.0}}) {
         INFO(ground.height_m << " m, " << ground.slope_deg << " deg");
         tests::GncVenue venue(with_ground(ground), 1);

@@ -30,15 +30,14 @@ Scenario in_venue(TestVenue venue, double start_before_entry_s) {
 
 void fly_to_the_end(Landing& landing, std::set<std::string>& events) {
     while (landing.outcome() == Outcome::running)
-        for (const TruthEvent& event : landing.step().events)
-            events.insert(event.name);
+        for (const TruthEvent& event : landing.step().events) events.insert(event.name);
     INFO(landing.outcome_reason());
     REQUIRE(landing.outcome() == Outcome::touchdown);
     CHECK(landing.touchdown()->vertical_mps < 0.9);
     CHECK(landing.touchdown()->horizontal_mps < 0.5);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("in the venue GNC alone a landing needs no computer: nothing is recorded, and GNC's decisions are told",
           "[venue][R36]") {
@@ -47,15 +46,13 @@ TEST_CASE("in the venue GNC alone a landing needs no computer: nothing is record
     fly_to_the_end(landing, events);
     CHECK(landing.recording().empty());
     CHECK(landing.counters().cycles == 0);
-    for (const char* name : decided_on_board)
-        CHECK(events.count(name) == 1);
+    for (const char* name : decided_on_board) CHECK(events.count(name) == 1);
 }
 
 TEST_CASE("in the venue all but GNC the whole timeline fires around a stand-in that sees the truth", "[venue][R36]") {
     Landing landing{in_venue(TestVenue::all_but_gnc, 900.0), 1};
     landing.uplink(test::set_parameters(landing.solution()));
-    for (int tick = 0; tick < 64; ++tick)
-        landing.step();
+    for (int tick = 0; tick < 64; ++tick) landing.step();
     landing.uplink(test::do_edl());
     std::set<std::string> events;
     fly_to_the_end(landing, events);
@@ -66,7 +63,8 @@ TEST_CASE("in the venue all but GNC the whole timeline fires around a stand-in t
     CHECK(tests::count_recorded<flight::evr::TIMEPOINT_TIMED_OUT>(landing.recording()) == 0);
 }
 
-TEST_CASE("venues are dispersed alike: another case is another landing, the same one the same bits", "[venue][R36][invariant1]") {
+TEST_CASE("venues are dispersed alike: another case is another landing, the same one the same bits",
+          "[venue][R36][invariant1]") {
     struct Flown {
         double longitude_deg = 0.0;
         std::array<double, 3> started_M_m{};
@@ -78,12 +76,10 @@ TEST_CASE("venues are dispersed alike: another case is another landing, the same
         flown.started_M_m = landing.truth().p_MoB_M_m;
         if (venue == TestVenue::all_but_gnc) {
             landing.uplink(test::set_parameters(landing.solution()));
-            for (int tick = 0; tick < 64; ++tick)
-                landing.step();
+            for (int tick = 0; tick < 64; ++tick) landing.step();
             landing.uplink(test::do_edl());
         }
-        while (landing.outcome() == Outcome::running)
-            landing.step();
+        while (landing.outcome() == Outcome::running) landing.step();
         INFO(landing.outcome_reason());
         REQUIRE(landing.outcome() == Outcome::touchdown);
         flown.longitude_deg = landing.touchdown()->longitude_deg;
@@ -101,8 +97,7 @@ TEST_CASE("venues are dispersed alike: another case is another landing, the same
 TEST_CASE("a fork of a landing in a venue of its own goes on alike", "[venue][R36][invariant2]") {
     for (const TestVenue venue : {TestVenue::gnc_alone, TestVenue::all_but_gnc}) {
         Landing landing{in_venue(venue, 620.0), 1};
-        for (int tick = 0; tick < 64 * 200; ++tick)
-            landing.step();
+        for (int tick = 0; tick < 64 * 200; ++tick) landing.step();
         Landing fork{landing};
         for (int tick = 0; tick < 64 * 30; ++tick) {
             landing.step();
@@ -158,7 +153,8 @@ TEST_CASE("the lines in place of the timeline stand where the shipped timeline h
     }
 }
 
-TEST_CASE("GNC alone navigates from what a computer makes of the shipped command with the same solution", "[venue][R36]") {
+TEST_CASE("GNC alone navigates from what a computer makes of the shipped command with the same solution",
+          "[venue][R36]") {
     const Landing landing{in_venue(TestVenue::gnc_alone, 620.0), 5};
     const auto* command = tests::shipped_dictionary().command("EDL_SET_PARAMETERS");
     REQUIRE(command != nullptr);
@@ -193,10 +189,10 @@ TEST_CASE("each line in place of the timeline happens once, at its time, and wai
     };
     at(-700.0);
     CHECK(out.pyros.empty());
-    for (const auto& [e_s, pyro] : {std::pair{-608.0, flight::PyroId::cruise_cable_cutter},
-                                    std::pair{-600.046875, flight::PyroId::cruise_stage_separation},
-                                    std::pair{-489.0, flight::PyroId::cruise_balance_1},
-                                    std::pair{-488.0, flight::PyroId::cruise_balance_2}}) {
+    for (const auto& [e_s, pyro] :
+         {std::pair{-608.0, flight::PyroId::cruise_cable_cutter},
+          std::pair{-600.046875, flight::PyroId::cruise_stage_separation},
+          std::pair{-489.0, flight::PyroId::cruise_balance_1}, std::pair{-488.0, flight::PyroId::cruise_balance_2}}) {
         INFO(e_s);
         at(e_s - seconds_per_tick);
         CHECK(out.pyros.empty());

@@ -32,11 +32,10 @@ Vehicle vehicle_at(double altitude_m, double speed_mps, double below_horizon_rad
 }
 
 void fly(Vehicle& vehicle, double from_s, double until_s) {
-    for (double t = from_s; t < until_s; t += 0.005)
-        vehicle.step(t, 0.005);
+    for (double t = from_s; t < until_s; t += 0.005) vehicle.step(t, 0.005);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the masses of each phase are the published ones", "[simulation][vehicle]") {
     Configuration configuration{Scenario{}};
@@ -57,14 +56,14 @@ TEST_CASE("the masses of each phase are the published ones", "[simulation][vehic
 TEST_CASE("the entry vehicle's centre of mass is a tenth of a metre off the axis until the balance masses are gone",
           "[simulation][vehicle]") {
     Configuration configuration{Scenario{}};
-    CHECK(std::abs(configuration.centre_B_m().x()) < 1e-12); // the cruise balance masses hold it
+    CHECK(std::abs(configuration.centre_B_m().x()) < 1e-12);  // the cruise balance masses hold it
     configuration = Configuration::at_entry(Scenario{});
-    CHECK(configuration.centre_B_m().x() == Approx(0.1).margin(0.001)); // [facts]
+    CHECK(configuration.centre_B_m().x() == Approx(0.1).margin(0.001));  // [facts]
     const double at_entry_m = configuration.centre_B_m().z();
     configuration.entry_balance_pairs = 0;
     CHECK(configuration.centre_B_m().x() == 0.0);
     configuration.heatshield = false;
-    CHECK(configuration.centre_B_m().z() < at_entry_m); // it moves away from what has gone
+    CHECK(configuration.centre_B_m().z() < at_entry_m);  // it moves away from what has gone
     configuration.backshell = false;
     CHECK((configuration.centre_B_m() - Configuration::at_powered_descent(Scenario{}).centre_B_m()).isZero());
     configuration.rover_on_stage = false;
@@ -91,7 +90,8 @@ TEST_CASE("inertia and stations are the scenario's", "[simulation][vehicle][scen
 }
 
 TEST_CASE("a pyro fired twice has fired once", "[simulation][vehicle]") {
-    Vehicle vehicle{tests::undisturbed_scenario(), {{3.5e6, 0.0, 0.0}, {0.0, 100.0, 0.0}}, Quaternion::Identity(), 1, 0};
+    Vehicle vehicle{
+        tests::undisturbed_scenario(), {{3.5e6, 0.0, 0.0}, {0.0, 100.0, 0.0}}, Quaternion::Identity(), 1, 0};
     for (int twice = 0; twice < 2; ++twice)
         for (const auto pyro : {flight::PyroId::cruise_balance_1, flight::PyroId::entry_balance_2})
             vehicle.fire(pyro, 1.0 + twice);
@@ -101,7 +101,7 @@ TEST_CASE("a pyro fired twice has fired once", "[simulation][vehicle]") {
 
 TEST_CASE("a jettison gives each part its share of the momentum, and the rest flies on about its own centre of mass",
           "[simulation][vehicle]") {
-    Vehicle vehicle = vehicle_at(400000.0, 3000.0); // above the air
+    Vehicle vehicle = vehicle_at(400000.0, 3000.0);  // above the air
     flight::ThrusterCommand turning;
     turning.on_s[0] = turning.on_s[4] = turning.on_s[7] = seconds_per_tick;
     for (int i = 0; i < 64; ++i) {
@@ -142,10 +142,9 @@ TEST_CASE("under the parachute it falls at the terminal speed of its drag area",
     const double terminal_mps = std::sqrt(2.0 * 2618.0 * 3.71 / (vehicle.flow().density_kgm3 * 205.0));
     CHECK(speed_mps > terminal_mps);
     CHECK(speed_mps < 1.06 * terminal_mps);
-    CHECK(vehicle.specific_force_M().norm() ==
-          Approx(0.5 * vehicle.flow().density_kgm3 * speed_mps * speed_mps * 205.0 / 2618.0 *
-                 std::hypot(1.0, parachute_lift_to_drag))
-              .epsilon(1e-3));
+    CHECK(vehicle.specific_force_M().norm() == Approx(0.5 * vehicle.flow().density_kgm3 * speed_mps * speed_mps *
+                                                      205.0 / 2618.0 * std::hypot(1.0, parachute_lift_to_drag))
+                                                   .epsilon(1e-3));
 }
 
 TEST_CASE("from the published mortar state the parachute takes the published time and speeds",
@@ -156,14 +155,13 @@ TEST_CASE("from the published mortar state the parachute takes the published tim
     vehicle.fire(flight::PyroId::parachute_mortar, 0.0);
     fly(vehicle, 0.0, 1.8);
     const double peak_N = 3003.0 * vehicle.specific_force_M().norm();
-    CHECK(peak_N == Approx(154e3).epsilon(0.08)); // the flight's peak load
+    CHECK(peak_N == Approx(154e3).epsilon(0.08));  // the flight's peak load
     fly(vehicle, 1.8, 21.4);
     CHECK(vehicle.at().v_MB_M.norm() == Approx(142.0).margin(6.0));
     vehicle.fire(flight::PyroId::heatshield_separation, 21.4);
     double t = 21.4;
     const auto fall_to = [&](double altitude_m) {
-        for (; vehicle.altitude_m() > altitude_m; t += 0.005)
-            vehicle.step(t, 0.005);
+        for (; vehicle.altitude_m() > altitude_m; t += 0.005) vehicle.step(t, 0.005);
         return vehicle.at().v_MB_M.norm();
     };
     CHECK(fall_to(6500.0) == Approx(92.0).margin(2.0));
@@ -194,8 +192,7 @@ TEST_CASE("engines light only when primed, follow the throttle, and burn by thei
     engines.command(full, 10.0);
     CHECK(engines.advance(10.1, 0.005, 387.0) == 0.0);
     double burnt_kg = 0.0;
-    for (int i = 0; i < 400; ++i)
-        burnt_kg = engines.advance(10.2 + 0.005 * i, 0.005, 387.0);
+    for (int i = 0; i < 400; ++i) burnt_kg = engines.advance(10.2 + 0.005 * i, 0.005, 387.0);
     CHECK(engines.thrust_N() == Approx(8 * 3603.0));
     CHECK(burnt_kg / 0.005 == Approx(8 * 3603.0 / (223.0 * standard_gravity_mps2)));
     CHECK(engines.advance(20.0, 0.005, 0.0) < 0.1 * 387.0);

@@ -37,13 +37,13 @@ Seen seen(double altitude_m, double airspeed_mps, double step_s, int lag) {
     return {std::sqrt(squares / static_cast<double>(n)), products / squares};
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("gusts have the deviation of their height whatever the step, and are alike over their length",
           "[simulation][wind]") {
     for (const double step_s : {0.05, 0.2}) {
         const auto lag = static_cast<int>(std::lround(1.0 / step_s));
-        const Seen low = seen(200.0, 50.0, step_s, 2 * lag); // 100 m of way, which is the length at 200 m
+        const Seen low = seen(200.0, 50.0, step_s, 2 * lag);  // 100 m of way, which is the length at 200 m
         CHECK(low.deviation_mps == Approx(3.0 * (1.0 - 200.0 / 5000.0)).epsilon(0.05));
         CHECK(low.correlation == Approx(std::exp(-1.0)).margin(0.05));
     }
@@ -63,8 +63,7 @@ TEST_CASE("without a deviation and above five kilometres there are no gusts", "[
 TEST_CASE("a case has its own gusts, and the same ones each time", "[simulation][wind]") {
     const auto after_a_second = [](std::uint64_t case_number) {
         Wind wind = gusty(3.0, case_number);
-        for (int i = 0; i < 200; ++i)
-            wind.advance(p_site, {0.0, 0.0, 80.0}, 1000.0, 0.005);
+        for (int i = 0; i < 200; ++i) wind.advance(p_site, {0.0, 0.0, 80.0}, 1000.0, 0.005);
         return wind.at(p_site, 1000.0);
     };
     CHECK((after_a_second(1) - after_a_second(1)).isZero());

@@ -35,7 +35,7 @@ TEST_CASE("fast normals have mean 0, deviation 1, kurtosis 3, no correlation, an
 TEST_CASE("noise has power 1 a sample and the signal what is asked for, at gain and set", "[tones]") {
     XBandPath path;
     path.rate_hz = 4096.0;
-    path.total_c_n0_dbhz = 10.0 * std::log10(4096.0) + 20.0; // a hundred times the noise
+    path.total_c_n0_dbhz = 10.0 * std::log10(4096.0) + 20.0;  // a hundred times the noise
     path.gain_db = table({0.0, 4.9, 5.0, 5.5, 5.6, 10.0}, {0.0, 0.0, 0.0, -20.0, -20.0, -20.0});
     path.set_s = 8.0;
     const auto samples = samples_of(path, {{0.0, 200}}, 10.0);
@@ -45,7 +45,7 @@ TEST_CASE("noise has power 1 a sample and the signal what is asked for, at gain 
             total += std::norm(samples[i]);
         return total / ((to_s - from_s) * 4096.0);
     };
-    CHECK(power(0.0, 4.8) == Approx(1.0 + 100.0).epsilon(0.08)); // the harmonics beyond the band are missing
+    CHECK(power(0.0, 4.8) == Approx(1.0 + 100.0).epsilon(0.08));  // the harmonics beyond the band are missing
     CHECK(power(6.0, 7.9) == Approx(2.0).epsilon(0.05));
     CHECK(power(8.1, 10.0) == Approx(1.0).epsilon(0.05));
 }
@@ -53,7 +53,7 @@ TEST_CASE("noise has power 1 a sample and the signal what is asked for, at gain 
 TEST_CASE("carrier and first sidebands have the powers of the budget", "[tones]") {
     XBandPath path;
     path.rate_hz = 8192.0;
-    path.total_c_n0_dbhz = 10.0 * std::log10(8192.0) + 30.0; // amplitude² 1000
+    path.total_c_n0_dbhz = 10.0 * std::log10(8192.0) + 30.0;  // amplitude² 1000
     const auto samples = samples_of(path, {{0.0, 100}}, 10.0);
     const auto line_power = [&](double frequency_hz) {
         std::complex<double> sum{};
@@ -70,11 +70,11 @@ TEST_CASE("carrier and first sidebands have the powers of the budget", "[tones]"
 TEST_CASE("samples are the same whatever the portions, and others with another seed", "[tones]") {
     XBandPath path;
     path.doppler_hz = table({0.0, 10.0}, {100.0, -300.0});
-    XBandChannel whole{mfsk, path, {{0.5, 3}}, 1, 0}, portions{mfsk, path, {{0.5, 3}}, 1, 0}, other{mfsk, path, {{0.5, 3}}, 2, 0};
+    XBandChannel whole{mfsk, path, {{0.5, 3}}, 1, 0}, portions{mfsk, path, {{0.5, 3}}, 1, 0},
+        other{mfsk, path, {{0.5, 3}}, 2, 0};
     std::vector<std::complex<float>> a(50000), b(50000), c(50000);
     whole.next(a);
-    for (std::size_t at = 0; at < b.size(); at += 625)
-        portions.next(std::span{b}.subspan(at, 625));
+    for (std::size_t at = 0; at < b.size(); at += 625) portions.next(std::span{b}.subspan(at, 625));
     other.next(c);
     CHECK(a == b);
     CHECK(a != c);

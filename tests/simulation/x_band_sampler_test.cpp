@@ -44,18 +44,18 @@ double amplitude_at(const Samples& samples, double frequency_hz) {
     return std::abs(sum) / static_cast<double>(samples.size());
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("with nothing to hear the samples are noise of power 1", "[tones]") {
     XBandSampler sampler{mfsk, rate_hz, 1, 0};
     double power = 0.0;
-    for (const auto& sample : second_of(sampler, steady({})))
-        power += std::norm(sample) / rate_hz;
-    CHECK(power == Approx(1.0).margin(0.04)); // 5 deviations
+    for (const auto& sample : second_of(sampler, steady({}))) power += std::norm(sample) / rate_hz;
+    CHECK(power == Approx(1.0).margin(0.04));  // 5 deviations
 }
 
-TEST_CASE("the carrier has the power and the frequency that are asked for, and a tone takes its part of it", "[tones]") {
-    const double amplitude = std::sqrt(1.0e4 / rate_hz); // 40 dB-Hz
+TEST_CASE("the carrier has the power and the frequency that are asked for, and a tone takes its part of it",
+          "[tones]") {
+    const double amplitude = std::sqrt(1.0e4 / rate_hz);  // 40 dB-Hz
     XBandSampler sampler{mfsk, rate_hz, 1, 0};
     CHECK(amplitude_at(second_of(sampler, steady(40.0, 100.0)), 100.0) == Approx(amplitude).margin(0.03));
     XBandSampler toned{mfsk, rate_hz, 1, 0};

@@ -17,9 +17,10 @@ bool some_line(const std::string& file, std::initializer_list<const char*> words
     return false;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("every event and every tone of prime's that the dictionary words is asked for by flight or by a row of the timeline",
+TEST_CASE("every event and every tone of prime's that the dictionary words is asked for by flight or by a row of the "
+          "timeline",
           "[structure][R48]") {
     const auto& dictionary = aeolis::tests::shipped_dictionary();
     std::string flight;
@@ -27,12 +28,14 @@ TEST_CASE("every event and every tone of prime's that the dictionary words is as
         for (const std::string& line : lines_of(file)) flight += line + '\n';
     std::string unused;
     for (const auto& event : dictionary.events) {
-        const bool by_timeline = std::ranges::count(dictionary.timeline, event.name, &aeolis::dictionary::TimelineRow::event) > 0;
+        const bool by_timeline =
+            std::ranges::count(dictionary.timeline, event.name, &aeolis::dictionary::TimelineRow::event) > 0;
         if (!by_timeline && flight.find("evr::" + event.name) == std::string::npos) unused += event.name + ' ';
     }
     for (const auto& tone : dictionary.tones) {
         if (tone.set != aeolis::dictionary::ToneSet::prime) continue;
-        const bool by_timeline = std::ranges::any_of(dictionary.timeline, [&](const auto& row) { return row.tone == tone.id; });
+        const bool by_timeline =
+            std::ranges::any_of(dictionary.timeline, [&](const auto& row) { return row.tone == tone.id; });
         if (!by_timeline && flight.find("tone::" + tone.name) == std::string::npos) unused += tone.name + ' ';
     }
     INFO("nobody asks for " << unused);

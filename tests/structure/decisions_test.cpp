@@ -21,9 +21,10 @@ std::vector<std::string> bullets_under(const std::string& file, const std::strin
     return bullets;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("each decision record lists what the chosen way costs, and what each refused one would have", "[structure][R49]") {
+TEST_CASE("each decision record lists what the chosen way costs, and what each refused one would have",
+          "[structure][R49]") {
     const auto records = files_under("docs/decisions", {".md"});
     CHECK(records.size() >= 4);
     for (const std::string& record : records) {
@@ -33,7 +34,7 @@ TEST_CASE("each decision record lists what the chosen way costs, and what each r
         CHECK(!refused.empty());
         for (const std::string& way : refused) {
             INFO(way);
-            CHECK(way.find("ost") != std::string::npos); // "Cost: …", "costs …"
+            CHECK(way.find("ost") != std::string::npos);  // "Cost: …", "costs …"
         }
     }
 }

@@ -12,7 +12,7 @@ using namespace aeolis::structure;
 struct Include {
     std::string file;
     std::size_t line;
-    std::string target; // as written, without the marks
+    std::string target;  // as written, without the marks
     bool system;
 };
 
@@ -61,7 +61,8 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
          {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "simulation/"}},
         // The rover's radio runs flight's delivery of files.
         {"simulation/devices",
-         {"common/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "flight/file_delivery/", "simulation/"}},
+         {"common/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "flight/file_delivery/",
+          "simulation/"}},
         // A test venue flies parts of the flight software without the rest, so it knows them by name.
         {"simulation/venues",
          {"common/", "flight/devices/", "flight/gnc/", "flight/load.hpp", "generated/", "simulation/"}},
@@ -122,7 +123,7 @@ const std::vector<Home>& homes() {
     return rules;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a folder includes only what stands before it in the house", "[structure]") {
     std::string broken;
@@ -135,7 +136,8 @@ TEST_CASE("a folder includes only what stands before it in the house", "[structu
         }
         ++seen;
         const std::string folder = include.file.substr(0, include.file.rfind('/'));
-        if (!starts_with_any(include.target, allowed().at(allowed().contains(folder) ? folder : top_folder(include.file)))) {
+        if (!starts_with_any(include.target,
+                             allowed().at(allowed().contains(folder) ? folder : top_folder(include.file)))) {
             broken += where(include) + "\n";
         }
     }
@@ -162,7 +164,8 @@ TEST_CASE("each third party and each effect has one home", "[structure][R46]") {
     CHECK(broken.empty());
 }
 
-TEST_CASE("headers that name Boost are those of server/net for its own use, so that Beast is compiled in few files", "[structure]") {
+TEST_CASE("headers that name Boost are those of server/net for its own use, so that Beast is compiled in few files",
+          "[structure]") {
     std::string broken;
     std::set<std::string> with_boost;
     for (const Include& include : all_includes()) {
@@ -171,10 +174,12 @@ TEST_CASE("headers that name Boost are those of server/net for its own use, so t
         if (!include.file.starts_with("server/net/")) broken += where(include) + "\n";
     }
     for (const Include& include : all_includes())
-        if (with_boost.contains(include.target) && !include.file.starts_with("server/net/")) broken += where(include) + "\n";
+        if (with_boost.contains(include.target) && !include.file.starts_with("server/net/"))
+            broken += where(include) + "\n";
     // Through no other header of server/net, either.
     for (const Include& include : all_includes())
-        if (with_boost.contains(include.target) && include.file.ends_with(".hpp") && !with_boost.contains(include.file)) broken += where(include) + "\n";
+        if (with_boost.contains(include.target) && include.file.ends_with(".hpp") && !with_boost.contains(include.file))
+            broken += where(include) + "\n";
     INFO(broken);
     CHECK(broken.empty());
 }
@@ -205,7 +210,8 @@ TEST_CASE(
     for (const Include& include : all_includes()) {
         const bool modules_of_others =
             include.target.starts_with("flight/") && include.target != "flight/load.hpp" &&
-            !starts_with_any(include.target, {"flight/gnc/", "flight/devices/device_messages", "flight/devices/effectors"});
+            !starts_with_any(include.target,
+                             {"flight/gnc/", "flight/devices/device_messages", "flight/devices/effectors"});
         if (include.file.starts_with("flight/gnc/") && modules_of_others) {
             broken += where(include) + "\n";
         }

@@ -45,7 +45,7 @@ bool has_test_file(const std::string& header) {
     return std::any_of(files.begin(), files.end(), exists);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("every public header has a test file of its name, or a reason why not", "[structure]") {
     const auto excused = exceptions();

@@ -58,4 +58,4 @@ inline std::string trimmed(std::string_view text) {
     return std::string{text.substr(first, text.find_last_not_of(" \t") - first + 1)};
 }
 
-} // namespace aeolis::structure
+}  // namespace aeolis::structure

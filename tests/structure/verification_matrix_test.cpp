@@ -18,7 +18,7 @@ constexpr int rows_in_matrix = 49;
 struct Row {
     std::string claim;
     std::string state;
-    std::vector<std::string> tests; // names of Catch2 tests, or paths of files that the other runners take
+    std::vector<std::string> tests;  // names of Catch2 tests, or paths of files that the other runners take
 };
 
 /// Rows of docs/verification.md: | R1 | claim | open or shown | `test`<br>`test` |
@@ -89,7 +89,7 @@ bool is_run_by_file(const std::string& path) {
     return (browser || console) && std::filesystem::exists(std::filesystem::path{AEOLIS_SOURCE_DIR} / path);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the verification matrix has each of R1 to R49 once, open or shown by tests", "[structure]") {
     std::map<int, int> times;

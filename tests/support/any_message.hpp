@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <utility>
 
-// Values of any type of message from given octets, a fuzzer's or random ones. What a type is made of is taken from the type itself; a field
-// that is added to a message is filled too.
+// Values of any type of message from given octets, a fuzzer's or random ones. What a type is made of is taken from the
+// type itself; a field that is added to a message is filled too.
 namespace aeolis::test {
 
 /// The octets given, then zeros.
@@ -23,7 +23,7 @@ class Source {
     T take() {
         T value{};
         const std::size_t size = std::min(sizeof(T), rest_.size());
-        if (size > 0) std::memcpy(&value, rest_.data(), size); // of no octets there is no address
+        if (size > 0) std::memcpy(&value, rest_.data(), size);  // of no octets there is no address
         rest_ = rest_.subspan(size);
         return value;
     }
@@ -40,9 +40,7 @@ struct AnyField {
 
 template <typename T, std::size_t... I>
 constexpr bool takes_fields(std::index_sequence<I...>) {
-    return requires {
-        T{(static_cast<void>(I), AnyField{})...};
-    };
+    return requires { T{(static_cast<void>(I), AnyField{})...}; };
 }
 /// How many fields an aggregate has.
 template <typename T, std::size_t N = 24>
@@ -62,8 +60,7 @@ void fill_each(Source& from, Fields&... fields) {
 }
 template <typename T, std::size_t N>
 void fill(Source& from, std::array<T, N>& values) {
-    for (T& value : values)
-        fill(from, value);
+    for (T& value : values) fill(from, value);
 }
 template <typename T, std::size_t N>
 void fill(Source& from, FixedVector<T, N>& values) {
@@ -139,4 +136,4 @@ flight::Message message_of(std::size_t index, Source& from) {
     return content;
 }
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

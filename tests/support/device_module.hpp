@@ -21,7 +21,8 @@ struct Spoken {
 
 inline flight::UnitsSelected all_b() {
     flight::UnitsSelected selected;
-    for (std::size_t i = 0; i < flight::device_count; ++i) selected.units[static_cast<flight::Device>(i)] = flight::Unit::b;
+    for (std::size_t i = 0; i < flight::device_count; ++i)
+        selected.units[static_cast<flight::Device>(i)] = flight::Unit::b;
     return selected;
 }
 

@@ -76,8 +76,7 @@ class FlownComputers {
     }
     void command(const std::vector<std::uint8_t>& packet) {
         AEOLIS_CHECK(world_.receive(packet));
-        for (int cycle = 0; cycle < 16; ++cycle)
-            step();
+        for (int cycle = 0; cycle < 16; ++cycle) step();
     }
 
     simulation::World world_;

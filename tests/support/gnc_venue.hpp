@@ -39,8 +39,7 @@ class GncVenue {
     }
 
     void run() {
-        while (running())
-            step();
+        while (running()) step();
     }
 
     const simulation::World& world() const { return world_; }
@@ -62,4 +61,4 @@ class GncVenue {
     std::vector<Event> events_;
 };
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

@@ -34,7 +34,8 @@ inline telemetry::LeapSeconds leap_seconds() {
 }
 
 inline Result<telemetry::ClockKernel> clock_of(const std::string& assignments) {
-    const auto kernel = telemetry::TextKernel::parse("KPL/SCLK\n\\begindata\n" + assignments + "\n\\begintext\n", "clock.tsc");
+    const auto kernel =
+        telemetry::TextKernel::parse("KPL/SCLK\n\\begindata\n" + assignments + "\n\\begintext\n", "clock.tsc");
     if (!kernel) return kernel.error();
     return telemetry::ClockKernel::read(*kernel);
 }
@@ -49,4 +50,4 @@ SCLK_PARTITION_START_76 = ( 0.0 )
 SCLK_PARTITION_END_76 = ( 2.8147497671065E+14 )
 SCLK01_COEFFICIENTS_76 = ( 0.0 @2000-JAN-1/12:12:20.584 1.0 ))";
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

@@ -56,9 +56,8 @@ inline unsigned line_at(std::string_view text, std::size_t position) {
 /// All findings, a line each.
 inline std::string lines_of(const dictionary::Loaded& loaded) {
     std::string lines;
-    for (const auto& finding : loaded.findings)
-        lines += finding.text() + "\n";
+    for (const auto& finding : loaded.findings) lines += finding.text() + "\n";
     return lines;
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

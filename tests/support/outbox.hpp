@@ -12,7 +12,9 @@ struct OutboxRecorder {
     std::unique_ptr<flight::DeviceOutputs> bus = std::make_unique<flight::DeviceOutputs>();
     flight::Outbox out;
 
-    explicit OutboxRecorder(flight::ModuleId from = flight::ModuleId::edl, Sclk now = Sclk{1000.0}) { begin(from, now); }
+    explicit OutboxRecorder(flight::ModuleId from = flight::ModuleId::edl, Sclk now = Sclk{1000.0}) {
+        begin(from, now);
+    }
     void begin(flight::ModuleId from, Sclk now) { out.begin(from, now, *bus); }
 
     template <typename M>

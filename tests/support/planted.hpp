@@ -11,10 +11,10 @@ namespace aeolis::tests {
 struct Planted {
     const char* rule;
     const char* file;
-    const char* find; ///< first occurrence in the file
+    const char* find;  ///< first occurrence in the file
     const char* replace;
-    const char* message; ///< part of the finding's text
-    int line_offset = 0; ///< of the finding, from the line where the change begins
+    const char* message;  ///< part of the finding's text
+    int line_offset = 0;  ///< of the finding, from the line where the change begins
 };
 
 inline void check_planted(const Planted& planted) {
@@ -36,4 +36,4 @@ inline void check_planted(const Planted& planted) {
     CHECK_THAT(loaded.findings.front().message, Catch::Contains(planted.message));
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

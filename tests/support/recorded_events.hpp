@@ -23,4 +23,4 @@ int count_recorded(std::span<const std::uint8_t> recording) {
     return count;
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

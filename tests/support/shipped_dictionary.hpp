@@ -8,10 +8,9 @@ namespace aeolis::tests {
 /// dictionaries/msl, loaded once.
 inline const dictionary::Dictionary& shipped_dictionary() {
     static const auto loaded = dictionary::load(AEOLIS_SOURCE_DIR "/dictionaries/msl");
-    for (const auto& finding : loaded.findings)
-        UNSCOPED_INFO(finding.text());
+    for (const auto& finding : loaded.findings) UNSCOPED_INFO(finding.text());
     REQUIRE(loaded.dictionary);
     return *loaded.dictionary;
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

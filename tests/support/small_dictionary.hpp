@@ -171,8 +171,7 @@ inline void add_packets(dictionary::Dictionary& dictionary) {
 inline void add_argument(dictionary::Command& command, std::string_view name, dictionary::Type type,
                          std::optional<double> default_value = {}) {
     unsigned at = 0;
-    for (const auto& argument : command.arguments)
-        at = argument.position_bits + argument.type.bits;
+    for (const auto& argument : command.arguments) at = argument.position_bits + argument.type.bits;
     command.arguments.push_back({std::string{name}, "", std::move(type), at, default_value});
     command.argument_octets = (at + command.arguments.back().type.bits + 7) / 8;
 }
@@ -255,4 +254,4 @@ class PacketFiller {
     std::vector<std::uint8_t> octets_;
 };
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

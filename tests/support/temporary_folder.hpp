@@ -29,4 +29,4 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-} // namespace aeolis::test
+}  // namespace aeolis::test

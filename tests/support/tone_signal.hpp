@@ -28,12 +28,12 @@ inline std::vector<std::complex<float>> samples_of(const simulation::XBandPath& 
     return samples;
 }
 
-inline std::vector<telemetry::ToneReception> received(telemetry::ToneReceiver& receiver,
-                                                      std::span<const std::complex<float>> samples, std::size_t block = 10000) {
+inline std::vector<telemetry::ToneReception>
+received(telemetry::ToneReceiver& receiver, std::span<const std::complex<float>> samples, std::size_t block = 10000) {
     for (std::size_t at = 0; at < samples.size(); at += block)
         receiver.push(samples.subspan(at, std::min(block, samples.size() - at)));
     receiver.finish();
     return receiver.take();
 }
 
-} // namespace aeolis::tests
+}  // namespace aeolis::tests

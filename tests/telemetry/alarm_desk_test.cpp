@@ -34,7 +34,7 @@ struct Desk {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("an alarm that came and went unseen stays until someone has seen it", "[alarms]") {
     Desk desk;
@@ -48,7 +48,7 @@ TEST_CASE("an acknowledged alarm is normal as soon as its cause is gone", "[alar
     desk.after(Severity::warning);
     CHECK(desk.after(AlarmAct::acknowledge) == "acknowledged");
     CHECK(desk.after(Severity::none) == "normal");
-    CHECK(desk.after(Severity::watch) == "unacknowledged"); // it came again
+    CHECK(desk.after(Severity::watch) == "unacknowledged");  // it came again
 }
 
 TEST_CASE("an alarm that grows more severe than it was asks again, one that shrinks does not", "[alarms]") {
@@ -60,7 +60,8 @@ TEST_CASE("an alarm that grows more severe than it was asks again, one that shri
     CHECK(desk.after(Severity::severe) == "unacknowledged");
 }
 
-TEST_CASE("an alarm that latches goes only when it is acknowledged, its cause gone, and someone resets it", "[alarms]") {
+TEST_CASE("an alarm that latches goes only when it is acknowledged, its cause gone, and someone resets it",
+          "[alarms]") {
     Desk desk;
     desk.latches = true;
     desk.after(Severity::critical);

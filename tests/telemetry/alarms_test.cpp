@@ -24,7 +24,7 @@ struct Speed {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("an alarm is raised by as many samples in a row as the dictionary asks for", "[alarms]") {
     Speed speed;
@@ -90,7 +90,7 @@ TEST_CASE("an alarm that asks for conformance clears only after as many samples 
     CHECK(speed.after(650.0) == Severity::warning);
     CHECK(speed.after(500.0) == Severity::warning);
     CHECK(speed.after(500.0) == Severity::warning);
-    CHECK(speed.after(601.0) == Severity::warning); // begins again
+    CHECK(speed.after(601.0) == Severity::warning);  // begins again
     CHECK(speed.after(500.0) == Severity::warning);
     CHECK(speed.after(500.0) == Severity::warning);
     CHECK(speed.after(500.0) == Severity::none);
@@ -112,14 +112,14 @@ struct InContext : Speed {
     void enter(double value) { monitor.sample(phase, value, Sclk{sclk}, changes); }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("limits are those of the phase: what is right in one is an alarm in the next", "[alarms]") {
     InContext mission;
     CHECK(mission.after(400.0) == Severity::none);
     CHECK(mission.after(400.0) == Severity::none);
     mission.enter(1.0);
-    CHECK(mission.after(400.0) == Severity::none); // counting begins with the context
+    CHECK(mission.after(400.0) == Severity::none);  // counting begins with the context
     CHECK(mission.after(400.0) == Severity::critical);
     CHECK(mission.changes.back().limit == "> 200.0 m/s in parachute_descent");
     mission.enter(0.0);
@@ -135,7 +135,8 @@ TEST_CASE("before the phase is known the default limits count", "[alarms]") {
     CHECK(mission.after(650.0) == Severity::warning);
 }
 
-TEST_CASE("the shipped dictionary has limits by phase for load and descent rate, and the load's latches", "[alarms][dictionary]") {
+TEST_CASE("the shipped dictionary has limits by phase for load and descent rate, and the load's latches",
+          "[alarms][dictionary]") {
     const auto& shipped = tests::shipped_dictionary();
     const auto phases_of = [&](const char* name) {
         std::string phases;

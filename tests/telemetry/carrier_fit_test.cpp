@@ -18,19 +18,20 @@ std::vector<std::complex<float>> line(double phase_rad, double frequency_hz, dou
     std::vector<std::complex<float>> samples;
     for (int i = 0; i < length; ++i) {
         const double t = (i - 0.5 * (length - 1)) * step_s;
-        samples.emplace_back(std::polar(
-            amplitude, phase_rad + 2.0 * std::numbers::pi * (frequency_hz * t + 0.5 * rate_hzps * t * t)));
+        samples.emplace_back(
+            std::polar(amplitude, phase_rad + 2.0 * std::numbers::pi * (frequency_hz * t + 0.5 * rate_hzps * t * t)));
     }
     return samples;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a fit without noise gives phase, frequency, rate and amplitude back", "[tones]") {
     CarrierFit fit{length, step_s};
     for (const auto& [frequency_hz, rate_hzps] :
          {std::pair{0.0, 0.0}, std::pair{31.3, 12.0}, std::pair{-77.7, -60.0}, std::pair{4.1, 75.0}}) {
-        const CarrierLine found = fit.fit(line(1.0, frequency_hz, rate_hzps, 0.5), 1.0, {100.0, CarrierFit::rate_lines_max});
+        const CarrierLine found =
+            fit.fit(line(1.0, frequency_hz, rate_hzps, 0.5), 1.0, {100.0, CarrierFit::rate_lines_max});
         CHECK(found.frequency_hz == Approx(frequency_hz).margin(0.1));
         CHECK(found.rate_hzps == Approx(rate_hzps).margin(0.7));
         CHECK(found.phase_rad == Approx(1.0).margin(0.06));

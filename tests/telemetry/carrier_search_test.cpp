@@ -19,7 +19,7 @@ simulation::XBandPath drifting(double frequency_hz, double rate_hzps, double c_n
     return path;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the sum of exponentials passes x as often as the Poisson sum says", "[tones]") {
     CHECK(exceeded_by_noise(1, 3.0) == Approx(std::exp(-3.0)));

@@ -25,7 +25,7 @@ std::vector<CarrierHop> tracked(const simulation::XBandPath& path, double length
     return hops;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("hops are an eighth of a second, of 32 parts, whatever the rate", "[tones]") {
     for (const double rate_hz : {3000.0, 8192.0, 16384.0, 44100.0, 100000.0, 1e6}) {
@@ -51,7 +51,7 @@ TEST_CASE("each hop comes out once and in order, with the frequency of a swingin
     double squares = 0.0;
     for (std::size_t i = 0; i < hops.size(); ++i) {
         CHECK(hops[i].first_sample == static_cast<std::int64_t>(i) * 1024);
-        CHECK(hops[i].found == (i < 238)); // the last two have no half window after them
+        CHECK(hops[i].found == (i < 238));  // the last two have no half window after them
         squares += std::pow(hops[i].frequency_hz - path.doppler_hz.at((static_cast<double>(i) + 0.5) * 0.125), 2);
     }
     CHECK(std::sqrt(squares / 240.0) < 0.5);
@@ -79,8 +79,7 @@ TEST_CASE("a weak carrier is followed by longer looks", "[tones]") {
     const auto hops = tracked(path, 80.0, 0.0);
     REQUIRE(hops.size() == 640);
     int found = 0;
-    for (std::size_t i = 320; i < hops.size(); ++i)
-        found += hops[i].found;
+    for (std::size_t i = 320; i < hops.size(); ++i) found += hops[i].found;
     CHECK(found > 290);
     CHECK(hops[500].lock == CarrierLock::fluctuating);
 }

@@ -1,5 +1,5 @@
-#include "telemetry/cfdp_receiver.hpp"
 #include "flight/file_delivery/cfdp_source.hpp"
+#include "telemetry/cfdp_receiver.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
@@ -65,7 +65,7 @@ std::vector<cfdp::Content> answers(CfdpReceiver& receiver, std::deque<Octets>& k
     return all;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the file arrives identical over bursts, breaks between passes and restarts of either end", "[telemetry]") {
     for (unsigned seed = 0; seed < 60; ++seed) {
@@ -82,7 +82,7 @@ TEST_CASE("the file arrives identical over bursts, breaks between passes and res
         int passes = 0;
         for (; passes < 400 && !(source.done() && receiver.state().outcome_acknowledged); ++passes) {
             if (random() % 4 == 0) source = random() % 2 == 0 ? older : flight::CfdpSource{description, "recording"};
-            if (random() % 4 == 0) receiver = CfdpReceiver{receiver.state()}; // what it wanted to say is forgotten
+            if (random() % 4 == 0) receiver = CfdpReceiver{receiver.state()};  // what it wanted to say is forgotten
             if (random() % 3 == 0) older = source;
             receiver.ask();
             source.repeat();
@@ -113,14 +113,14 @@ TEST_CASE("pieces in any order, overlapping and repeated, are written once each 
         while (received_octets(receiver.state()) < size) {
             const std::size_t start = random() % file.size();
             const std::size_t count = 1 + random() % std::min<std::size_t>(300, file.size() - start);
-            disk.write(receiver.on(from_sender(
-                cfdp::FileData{static_cast<std::uint32_t>(start), std::span{file}.subspan(start, count)})));
+            disk.write(receiver.on(
+                from_sender(cfdp::FileData{static_cast<std::uint32_t>(start), std::span{file}.subspan(start, count)})));
             const auto& ranges = receiver.state().received;
             for (std::size_t i = 1; i < ranges.size(); ++i) REQUIRE(ranges[i - 1].end < ranges[i].start);
         }
         CHECK(receiver.state().checksum == cfdp::modular_checksum(0, file));
         receiver.on(from_sender(cfdp::Eof{.checksum = cfdp::modular_checksum(0, file), .file_octets = size}));
-        CHECK(receiver.state().outcome == Outcome::under_way); // its name is not known yet
+        CHECK(receiver.state().outcome == Outcome::under_way);  // its name is not known yet
         receiver.on(from_sender(cfdp::Metadata{.file_octets = size}));
         CHECK(receiver.state().outcome == Outcome::complete);
         CHECK(disk.octets == file);

@@ -31,7 +31,7 @@ std::string fault(const std::string& from, const std::string& to) {
     return clock ? "" : clock.error().message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("counts become time along the pieces between measured points", "[telemetry][kernel]") {
     const auto clock = tests::clock_of(reset_clock);
@@ -40,7 +40,7 @@ TEST_CASE("counts become time along the pieces between measured points", "[telem
     CHECK(clock->partitions() == 2);
     CHECK(*clock->parallel_time_of(0.0) == 1000.0);
     CHECK(*clock->parallel_time_of(499.99) == Approx(1499.99));
-    CHECK(*clock->parallel_time_of(500.0) == 1600.0); // a jump where the next point says so
+    CHECK(*clock->parallel_time_of(500.0) == 1600.0);  // a jump where the next point says so
     CHECK(*clock->parallel_time_of(502.0) == 1603.0);
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("time to count and back is the same time, in both partitions", "[telem
     for (int i = 0; i < 1000; ++i) {
         const double time_s = 1600.0 + 0.001 * static_cast<double>(random() % 5'000'000);
         const auto count = clock->count_at(time_s);
-        REQUIRE(count.has_value() == (time_s < 2350.0 || time_s >= 2400.0)); // between them lies no count
+        REQUIRE(count.has_value() == (time_s < 2350.0 || time_s >= 2400.0));  // between them lies no count
         if (!count) continue;
         REQUIRE(*clock->parallel_time_of(count->first, count->second) == Approx(time_s).margin(1e-9));
     }
@@ -92,15 +92,21 @@ TEST_CASE("a clock that cannot be is refused with file and line", "[telemetry][k
     CHECK(fault("SCLK_DATA_TYPE_9 = ( 1 )", "SCLK_DATA_TYPE_9 = ( 2 )") ==
           "clock.tsc:3: SCLK_DATA_TYPE_9 is not 1: other types of clock are not supported");
     CHECK(fault("SCLK_DATA_TYPE_9", "OTHER") == "clock.tsc: it says no SCLK_DATA_TYPE_…: it is no SCLK kernel");
-    CHECK(fault("TIME_SYSTEM_9 = ( 1 )", "TIME_SYSTEM_9 = ( 3 )") == "clock.tsc:4: SCLK01_TIME_SYSTEM_9 is neither 1 (TDB) nor 2 (TDT)");
+    CHECK(fault("TIME_SYSTEM_9 = ( 1 )", "TIME_SYSTEM_9 = ( 3 )") ==
+          "clock.tsc:4: SCLK01_TIME_SYSTEM_9 is neither 1 (TDB) nor 2 (TDT)");
     CHECK(fault("( 100000 100 )", "( 100000 )") == "clock.tsc:6: SCLK01_MODULI_9 has 1 values where 2 are wanted");
     CHECK(fault("( 100000 100 )", "( 100000 0 )") == "clock.tsc:6: SCLK01_MODULI_9 holds no possible number");
-    CHECK(fault("N_FIELDS_9 = ( 2 )", "N_FIELDS_9 = ( 1e9 )") == "clock.tsc:5: SCLK01_N_FIELDS_9 is not a whole number from 1 to 10");
-    CHECK(fault("( 100000 9000000 )", "( 100000 )") == "clock.tsc:9: SCLK_PARTITION_END_9 has 1 values where 2 are wanted");
-    CHECK(fault("( 100000 9000000 )", "( 100000 400 )") == "clock.tsc:9: SCLK_PARTITION_END_9 ends partition 2 before it begins, or nowhere");
-    CHECK(fault("1600 1.5", "1600") == "clock.tsc:10: SCLK01_COEFFICIENTS_9 is not a list of threes: ticks, time, rate");
+    CHECK(fault("N_FIELDS_9 = ( 2 )", "N_FIELDS_9 = ( 1e9 )") ==
+          "clock.tsc:5: SCLK01_N_FIELDS_9 is not a whole number from 1 to 10");
+    CHECK(fault("( 100000 9000000 )", "( 100000 )") ==
+          "clock.tsc:9: SCLK_PARTITION_END_9 has 1 values where 2 are wanted");
+    CHECK(fault("( 100000 9000000 )", "( 100000 400 )") ==
+          "clock.tsc:9: SCLK_PARTITION_END_9 ends partition 2 before it begins, or nowhere");
+    CHECK(fault("1600 1.5", "1600") ==
+          "clock.tsc:10: SCLK01_COEFFICIENTS_9 is not a list of threes: ticks, time, rate");
     CHECK(fault("50000 1600", "50000 900") == "clock.tsc:10: SCLK01_COEFFICIENTS_9 is not in order at its point 2");
-    CHECK(fault("2400 2 )", "2400 0 )") == "clock.tsc:10: SCLK01_COEFFICIENTS_9 has a rate that is not above 0 at its point 3");
+    CHECK(fault("2400 2 )", "2400 0 )") ==
+          "clock.tsc:10: SCLK01_COEFFICIENTS_9 has a rate that is not above 0 at its point 3");
     CHECK(fault("SCLK_DATA_TYPE_9 = ( 1 )", "SCLK_DATA_TYPE_8 = 1\nSCLK_DATA_TYPE_9 = 1") ==
           "clock.tsc:4: SCLK_DATA_TYPE_9 is the clock of a second spacecraft: give a kernel of one");
 }

@@ -22,10 +22,11 @@ struct Mission {
 
     Mission(const std::string& types, const std::vector<std::pair<std::string, std::string>>& parameters,
             const std::string& containers) {
-        std::string text = "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
-                           "<IntegerParameterType name='u8'><IntegerDataEncoding sizeInBits='8'/></IntegerParameterType>"
-                           "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>" +
-                           types + "</ParameterTypeSet><ParameterSet>";
+        std::string text =
+            "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet>"
+            "<IntegerParameterType name='u8'><IntegerDataEncoding sizeInBits='8'/></IntegerParameterType>"
+            "<IntegerParameterType name='u16'><IntegerDataEncoding sizeInBits='16'/></IntegerParameterType>" +
+            types + "</ParameterTypeSet><ParameterSet>";
         for (const auto& [name, type] : parameters)
             text += "<Parameter name='" + name + "' parameterTypeRef='" + type + "'/>";
         text += "</ParameterSet><ContainerSet>" + containers + "</ContainerSet></TelemetryMetaData></SpaceSystem>";
@@ -38,7 +39,8 @@ struct Mission {
 };
 
 std::string container(const std::string& name, const std::string& entries, const std::string& base = "") {
-    return "<SequenceContainer name='" + name + "'><EntryList>" + entries + "</EntryList>" + base + "</SequenceContainer>";
+    return "<SequenceContainer name='" + name + "'><EntryList>" + entries + "</EntryList>" + base +
+           "</SequenceContainer>";
 }
 std::string entry(const std::string& name, const std::string& inside = "") {
     return "<ParameterRefEntry parameterRef='" + name + "'>" + inside + "</ParameterRefEntry>";
@@ -59,11 +61,12 @@ std::string text(const DecodedContents& contents) {
     return all;
 }
 
-const std::string dynamic_octets = "<BinaryParameterType name='rest'><BinaryDataEncoding><SizeInBits><DynamicValue>"
-                                   "<ParameterInstanceRef parameterRef='n'/><LinearAdjustment slope='8' intercept='-8'/>"
-                                   "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
+const std::string dynamic_octets =
+    "<BinaryParameterType name='rest'><BinaryDataEncoding><SizeInBits><DynamicValue>"
+    "<ParameterInstanceRef parameterRef='n'/><LinearAdjustment slope='8' intercept='-8'/>"
+    "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
 
-} // namespace
+}  // namespace
 
 TEST_CASE("every packet of ours reads the same by its XTCE file as by the decommutator", "[telemetry]") {
     std::ifstream in{AEOLIS_SOURCE_DIR "/dictionaries/msl/msl.xml"};
@@ -119,7 +122,8 @@ TEST_CASE("every packet of ours reads the same by its XTCE file as by the decomm
 }
 
 TEST_CASE("octets whose number another value tells, and what stands behind them", "[telemetry]") {
-    const Mission mission{dynamic_octets, {{"n", "u8"}, {"data", "rest"}, {"after", "u8"}},
+    const Mission mission{dynamic_octets,
+                          {{"n", "u8"}, {"data", "rest"}, {"after", "u8"}},
                           container("P", entry("n") + entry("data") + entry("after"))};
     CHECK(mission.findings.empty());
     CHECK(text(mission.decode("04 a1b2c3 ff")) == "n=4|4 data=a1b2c3|a1b2c3 after=255|255");
@@ -128,15 +132,17 @@ TEST_CASE("octets whose number another value tells, and what stands behind them"
     CHECK(mission.decode("00 07").problem.starts_with("the size of data cannot be known"));
 }
 
-TEST_CASE("the first derived container whose restriction holds goes on; none leaves the packet where it is", "[telemetry]") {
+TEST_CASE("the first derived container whose restriction holds goes on; none leaves the packet where it is",
+          "[telemetry]") {
     const Mission mission{
         "",
         {{"kind", "u8"}, {"a", "u8"}, {"b", "u16"}},
         container("Root", entry("kind")) + container("One", entry("a"), base("Root", when("kind", "==", "1"))) +
             container("Big", entry("b"),
-                      base("Root", "<BooleanExpression><ORedConditions><Condition><ParameterInstanceRef "
-                                   "parameterRef='kind'/><ComparisonOperator>&gt;=</ComparisonOperator><Value>0x10</Value>"
-                                   "</Condition></ORedConditions></BooleanExpression>"))};
+                      base("Root",
+                           "<BooleanExpression><ORedConditions><Condition><ParameterInstanceRef "
+                           "parameterRef='kind'/><ComparisonOperator>&gt;=</ComparisonOperator><Value>0x10</Value>"
+                           "</Condition></ORedConditions></BooleanExpression>"))};
     CHECK(mission.findings.empty());
     CHECK(mission.decode("01 05").container == "One");
     CHECK(text(mission.decode("10 0102")) == "kind=16|16 b=258|258");
@@ -145,12 +151,15 @@ TEST_CASE("the first derived container whose restriction holds goes on; none lea
 
 TEST_CASE("entries repeat as often as told, are there only when their condition holds, and stand where told",
           "[telemetry]") {
-    const std::string repeat = "<RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef='n'/></DynamicValue>"
-                               "</Count><Offset><FixedValue>8</FixedValue></Offset></RepeatEntry>";
+    const std::string repeat =
+        "<RepeatEntry><Count><DynamicValue><ParameterInstanceRef parameterRef='n'/></DynamicValue>"
+        "</Count><Offset><FixedValue>8</FixedValue></Offset></RepeatEntry>";
     const std::string include = "<IncludeCondition>" + when("n", "!=", "2") + "</IncludeCondition>";
-    const std::string at_start = "<LocationInContainerInBits referenceLocation='containerStart'><FixedValue>4</FixedValue>"
-                                 "</LocationInContainerInBits>";
-    const Mission mission{"", {{"n", "u8"}, {"a", "u8"}, {"b", "u8"}, {"c", "u8"}},
+    const std::string at_start =
+        "<LocationInContainerInBits referenceLocation='containerStart'><FixedValue>4</FixedValue>"
+        "</LocationInContainerInBits>";
+    const Mission mission{"",
+                          {{"n", "u8"}, {"a", "u8"}, {"b", "u8"}, {"c", "u8"}},
                           container("P", entry("n") + entry("a", repeat) + entry("b", include) + entry("c", at_start))};
     CHECK(mission.findings.empty());
     CHECK(text(mission.decode("02 01ff02 99")) == "n=2|2 a[0]=1|1 a[1]=2|2 c=32|32");
@@ -168,7 +177,8 @@ TEST_CASE("labels, flags, polynomials, splines and calibrators by context", "[te
         "coefficient='0.5' exponent='1'/></PolynomialCalibrator></DefaultCalibrator><ContextCalibratorList>"
         "<ContextCalibrator><ContextMatch>" +
             when("m", "==", "WARM") +
-            "</ContextMatch><Calibrator><PolynomialCalibrator><Term coefficient='10' exponent='1'/></PolynomialCalibrator>"
+            "</ContextMatch><Calibrator><PolynomialCalibrator><Term coefficient='10' "
+            "exponent='1'/></PolynomialCalibrator>"
             "</Calibrator></ContextCalibrator></ContextCalibratorList></IntegerDataEncoding></FloatParameterType>"
             "<FloatParameterType name='temp'><IntegerDataEncoding sizeInBits='8'><DefaultCalibrator><SplineCalibrator>"
             "<SplinePoint raw='100' calibrated='30'/><SplinePoint raw='0' calibrated='-10'/></SplineCalibrator>"
@@ -183,7 +193,8 @@ TEST_CASE("labels, flags, polynomials, splines and calibrators by context", "[te
 
 TEST_CASE("text of fixed size, ended by a character, and behind its own size", "[telemetry]") {
     const auto type = [](const std::string& name, const std::string& size) {
-        return "<StringParameterType name='" + name + "'><StringDataEncoding>" + size + "</StringDataEncoding></StringParameterType>";
+        return "<StringParameterType name='" + name + "'><StringDataEncoding>" + size +
+               "</StringDataEncoding></StringParameterType>";
     };
     const Mission mission{
         type("fixed", "<SizeInBits><Fixed><FixedValue>32</FixedValue></Fixed></SizeInBits>") +
@@ -201,8 +212,10 @@ TEST_CASE("text of fixed size, ended by a character, and behind its own size", "
 
 TEST_CASE("what is composed: members, arrays of one and two dimensions, containers within containers", "[telemetry]") {
     const Mission mission{
-        "<AggregateParameterType name='pair'><MemberList><Member name='x' typeRef='u8'/><Member name='y' typeRef='u16'/>"
-        "</MemberList></AggregateParameterType><ArrayParameterType name='row' arrayTypeRef='u8'><DimensionList><Dimension>"
+        "<AggregateParameterType name='pair'><MemberList><Member name='x' typeRef='u8'/><Member name='y' "
+        "typeRef='u16'/>"
+        "</MemberList></AggregateParameterType><ArrayParameterType name='row' "
+        "arrayTypeRef='u8'><DimensionList><Dimension>"
         "<StartingIndex><FixedValue>0</FixedValue></StartingIndex><EndingIndex><DynamicValue><ParameterInstanceRef "
         "parameterRef='n'/></DynamicValue></EndingIndex></Dimension><Dimension><EndingIndex><FixedValue>1</FixedValue>"
         "</EndingIndex></Dimension></DimensionList></ArrayParameterType>",
@@ -215,32 +228,39 @@ TEST_CASE("what is composed: members, arrays of one and two dimensions, containe
 }
 
 TEST_CASE("a condition and a size may ask for a member of what is composed", "[telemetry]") {
-    const std::string types = "<AggregateParameterType name='head'><MemberList><Member name='id' typeRef='u8'/><Member "
-                              "name='sizes' typeRef='sizes'/></MemberList></AggregateParameterType><AggregateParameterType "
-                              "name='sizes'><MemberList><Member name='all' typeRef='u8'/><Member name='n' typeRef='u8'/>"
-                              "</MemberList></AggregateParameterType>";
+    const std::string types =
+        "<AggregateParameterType name='head'><MemberList><Member name='id' typeRef='u8'/><Member "
+        "name='sizes' typeRef='sizes'/></MemberList></AggregateParameterType><AggregateParameterType "
+        "name='sizes'><MemberList><Member name='all' typeRef='u8'/><Member name='n' typeRef='u8'/>"
+        "</MemberList></AggregateParameterType>";
     const std::string octets = "<BinaryParameterType name='octets'><BinaryDataEncoding><SizeInBits><DynamicValue>"
                                "<ParameterInstanceRef parameterRef='h/sizes/n'/><LinearAdjustment slope='8'/>"
                                "</DynamicValue></SizeInBits></BinaryDataEncoding></BinaryParameterType>";
-    const Mission mission{types + octets, {{"h", "head"}, {"d", "octets"}},
-                          container("Root", entry("h")) + container("Seven", entry("d"), base("Root", when("h/id", "==", "7")))};
+    const Mission mission{types + octets,
+                          {{"h", "head"}, {"d", "octets"}},
+                          container("Root", entry("h")) +
+                              container("Seven", entry("d"), base("Root", when("h/id", "==", "7")))};
     CHECK(mission.findings.empty());
     CHECK(text(mission.decode("07 0902 a1b2c3")) == "h.id=7|7 h.sizes.all=9|9 h.sizes.n=2|2 d=a1b2|a1b2");
     CHECK(mission.decode("08 0902 a1b2c3").container == "Root");
-    const Mission dangling{types, {{"h", "head"}}, container("Root", entry("h"), base("Root", when("h/gone", "==", "7")))};
+    const Mission dangling{
+        types, {{"h", "head"}}, container("Root", entry("h"), base("Root", when("h/gone", "==", "7")))};
     REQUIRE(dangling.findings.size() == 1);
     CHECK(dangling.findings[0].message == "there is no parameter 'h/gone'");
 }
 
 TEST_CASE("time is seconds from the epoch, by offset and scale", "[telemetry]") {
-    const Mission mission{"<AbsoluteTimeParameterType name='when'><Encoding offset='1000' scale='0.5'><IntegerDataEncoding "
-                          "sizeInBits='32'/></Encoding></AbsoluteTimeParameterType>",
-                          {{"t", "when"}}, container("P", entry("t"))};
+    const Mission mission{
+        "<AbsoluteTimeParameterType name='when'><Encoding offset='1000' scale='0.5'><IntegerDataEncoding "
+        "sizeInBits='32'/></Encoding></AbsoluteTimeParameterType>",
+        {{"t", "when"}},
+        container("P", entry("t"))};
     CHECK(mission.decode("00000009").time->seconds == 1004.5);
 }
 
 TEST_CASE("what is not supported is named with its line, and the packet is read up to it", "[telemetry]") {
-    const Mission mission{"", {{"a", "u8"}, {"b", "nowhere"}, {"c", "u8"}},
+    const Mission mission{"",
+                          {{"a", "u8"}, {"b", "nowhere"}, {"c", "u8"}},
                           container("P", entry("a") + "\n<StreamSegmentEntry streamRef='s'/>" + entry("c")) +
                               container("Q", entry("b"))};
     REQUIRE(mission.findings.size() == 2);
@@ -258,13 +278,15 @@ TEST_CASE("containers and types that hold themselves, and counts without end, co
     CHECK_FALSE(loop.decode("0102").problem.empty());
     const Mission bases{"", {{"a", "u8"}}, container("A", "", base("B", "")) + container("B", "", base("A", ""))};
     CHECK(bases.decode("0102").problem == "the XTCE file has no container to begin with");
-    const Mission nothing{"", {{"a", "u8"}},
+    const Mission nothing{"",
+                          {{"a", "u8"}},
                           container("P", "<ContainerRefEntry containerRef='E'>" + endless + "</ContainerRefEntry>") +
                               container("E", "")};
     CHECK_FALSE(nothing.decode("0102").problem.empty());
     const Mission type{"<AggregateParameterType name='t'><MemberList><Member name='m' typeRef='t'/><Member name='n' "
                        "typeRef='t'/></MemberList></AggregateParameterType>",
-                       {{"a", "t"}}, container("P", entry("a"))};
+                       {{"a", "t"}},
+                       container("P", entry("a"))};
     CHECK_FALSE(type.decode("0102").problem.empty());
 }
 
@@ -276,14 +298,20 @@ TEST_CASE("a datum is written in the fewest digits that read back the same", "[t
     CHECK(datum_text(std::vector<std::uint8_t>{0x0A, 0xFF}) == "0aff");
 }
 
-TEST_CASE("a fine time that counts from the coarse one makes the packet's time finer; a duration is no time of a packet", "[telemetry]") {
+TEST_CASE(
+    "a fine time that counts from the coarse one makes the packet's time finer; a duration is no time of a packet",
+    "[telemetry]") {
     const std::string types =
-        "<AbsoluteTimeParameterType name='coarse_t'><Encoding><IntegerDataEncoding sizeInBits='16'/></Encoding><ReferenceTime>"
-        "<Epoch>Gps</Epoch></ReferenceTime></AbsoluteTimeParameterType><AbsoluteTimeParameterType name='fine_t'><Encoding "
+        "<AbsoluteTimeParameterType name='coarse_t'><Encoding><IntegerDataEncoding "
+        "sizeInBits='16'/></Encoding><ReferenceTime>"
+        "<Epoch>Gps</Epoch></ReferenceTime></AbsoluteTimeParameterType><AbsoluteTimeParameterType "
+        "name='fine_t'><Encoding "
         "scale='0.25'><IntegerDataEncoding sizeInBits='8'/></Encoding><ReferenceTime><OffsetFrom parameterRef='c'/>"
-        "</ReferenceTime></AbsoluteTimeParameterType><RelativeTimeParameterType name='span'><Encoding><IntegerDataEncoding "
+        "</ReferenceTime></AbsoluteTimeParameterType><RelativeTimeParameterType "
+        "name='span'><Encoding><IntegerDataEncoding "
         "sizeInBits='8'/></Encoding></RelativeTimeParameterType>";
-    const Mission mission{types, {{"c", "coarse_t"}, {"f", "fine_t"}, {"d", "span"}},
+    const Mission mission{types,
+                          {{"c", "coarse_t"}, {"f", "fine_t"}, {"d", "span"}},
                           container("P", entry("d") + entry("c") + entry("f"))};
     CHECK(mission.findings.empty());
     const auto contents = mission.decode("09 0064 03");
@@ -292,11 +320,14 @@ TEST_CASE("a fine time that counts from the coarse one makes the packet's time f
     CHECK(contents.time->epoch == "GPS");
 }
 
-TEST_CASE("two numbers right behind the primary header are the clock when their names say so, and nowhere else", "[telemetry]") {
-    const std::string types = "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
-                              "<IntegerParameterType name='u32'><IntegerDataEncoding sizeInBits='32'/></IntegerParameterType>";
+TEST_CASE("two numbers right behind the primary header are the clock when their names say so, and nowhere else",
+          "[telemetry]") {
+    const std::string types =
+        "<IntegerParameterType name='u48'><IntegerDataEncoding sizeInBits='48'/></IntegerParameterType>"
+        "<IntegerParameterType name='u32'><IntegerDataEncoding sizeInBits='32'/></IntegerParameterType>";
     const auto time_of = [&](const std::string& first, const std::string& second, const std::string& type = "u32") {
-        const Mission mission{types, {{"header", "u48"}, {first, type}, {second, "u16"}},
+        const Mission mission{types,
+                              {{"header", "u48"}, {first, type}, {second, "u16"}},
                               container("P", entry("header") + entry(first) + entry(second))};
         return mission.decode("000000000000 00000007 8000 0000").time;
     };
@@ -306,7 +337,8 @@ TEST_CASE("two numbers right behind the primary header are the clock when their 
     CHECK_FALSE(time_of("SHCOARSE", "COUNT"));
     CHECK_FALSE(time_of("COUNT", "SHFINE"));
     CHECK_FALSE(time_of("SHCOARSE", "SHFINE", "u48"));
-    const Mission elsewhere{types, {{"SHCOARSE", "u32"}, {"SHFINE", "u16"}}, container("P", entry("SHCOARSE") + entry("SHFINE"))};
+    const Mission elsewhere{
+        types, {{"SHCOARSE", "u32"}, {"SHFINE", "u16"}}, container("P", entry("SHCOARSE") + entry("SHFINE"))};
     CHECK_FALSE(elsewhere.decode("000000000000 00000007 8000").time);
 }
 
@@ -314,9 +346,11 @@ TEST_CASE("a value is undefined where the condition of its validity does not hol
     std::vector<dictionary::Finding> findings;
     dictionary::Findings into{"t.xml", findings};
     const auto model = xtce::read_packet_model(
-        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType name='u8'><IntegerDataEncoding/>"
+        "<SpaceSystem name='T'><TelemetryMetaData><ParameterTypeSet><IntegerParameterType "
+        "name='u8'><IntegerDataEncoding/>"
         "</IntegerParameterType></ParameterTypeSet><ParameterSet><Parameter name='flag' parameterTypeRef='u8'/>"
-        "<Parameter name='x' parameterTypeRef='u8'><ParameterProperties><ValidityCondition><Comparison parameterRef='flag' "
+        "<Parameter name='x' parameterTypeRef='u8'><ParameterProperties><ValidityCondition><Comparison "
+        "parameterRef='flag' "
         "value='1'/></ValidityCondition></ParameterProperties></Parameter></ParameterSet><ContainerSet>" +
             container("P", entry("flag") + entry("x")) + "</ContainerSet></TelemetryMetaData></SpaceSystem>",
         into);

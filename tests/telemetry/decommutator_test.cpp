@@ -25,7 +25,7 @@ void renew_crc(std::vector<std::uint8_t>& packet) {
     packet[packet.size() - 1] = static_cast<std::uint8_t>(crc & 0xFF);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("each field of a packet comes out as its type says", "[decommutator][R48]") {
     const auto dictionary = small_dictionary();
@@ -142,8 +142,7 @@ TEST_CASE("whatever the octets are, each packet is decoded or refused", "[decomm
     std::size_t refused = 0, accepted = 0;
     for (int round = 0; round < 50'000; ++round) {
         std::vector<std::uint8_t> octets(random() % 120);
-        for (auto& octet : octets)
-            octet = static_cast<std::uint8_t>(random());
+        for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
         // Half of them are sealed as packets of ours with random contents, so that every field sees every bit pattern.
         if (round % 2 == 0 && octets.size() >= tm_overhead_octets) {
             const auto& wanted = dictionary.packets[random() % dictionary.packets.size()];
@@ -183,8 +182,7 @@ TEST_CASE("every packet of the shipped dictionary is decoded, whatever its field
         const auto& packet = dictionary.packets[index];
         for (int round = 0; round < 100; ++round) {
             std::vector<std::uint8_t> octets(packet.octets);
-            for (auto& octet : octets)
-                octet = static_cast<std::uint8_t>(random());
+            for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
             if (packet.event) {
                 octets[tm_data_offset_octets] = static_cast<std::uint8_t>(packet.event->value >> 8);
                 octets[tm_data_offset_octets + 1] = static_cast<std::uint8_t>(packet.event->value & 0xFF);

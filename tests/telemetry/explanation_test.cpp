@@ -39,7 +39,7 @@ std::uint64_t number_of(const dictionary::Dictionary& dictionary, std::string_vi
     return 0;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a decision reads with each condition, its value and its bound", "[explanation][R38]") {
     const Ground ground;
@@ -71,7 +71,7 @@ TEST_CASE("a decision that is held reads by what is missing, then by what is the
 
 TEST_CASE("what does not hold is told by what holds instead", "[explanation][R38]") {
     const Ground ground;
-    const std::array opposites{">=", ">", "!=", "<", "<="}; // of lt, le, eq, ge, gt
+    const std::array opposites{">=", ">", "!=", "<", "<="};  // of lt, le, eq, ge, gt
     for (unsigned comparison = 0; comparison < opposites.size(); ++comparison) {
         auto packet = ground.packet(0, 3, 0, 1);
         packet.raw("condition_1", 2).real("value_1", 1).real("bound_1", 2).raw("comparison_1", comparison);
@@ -118,7 +118,8 @@ TEST_CASE("a sub-constraint that does not hold is told by its two moments and it
     const auto& dictionary = tests::shipped_dictionary();
     const Decommutator decommutator{dictionary};
     const auto row = std::ranges::find_if(dictionary.constraints, [&](const dictionary::ConstraintRow& each) {
-        return each.from.kind == dictionary::Moment::Kind::fired && each.to.kind == dictionary::Moment::Kind::triggered &&
+        return each.from.kind == dictionary::Moment::Kind::fired &&
+               each.to.kind == dictionary::Moment::Kind::triggered &&
                dictionary.timeline[each.from.index].name == "coolant_vent";
     });
     REQUIRE(row != dictionary.constraints.end());
@@ -137,14 +138,14 @@ TEST_CASE("a sub-constraint that does not hold is told by its two moments and it
         .real("bound_1", 20.0)
         .raw("comparison_1", number_of(dictionary, "comparison_1", "ge"));
     REQUIRE_FALSE(decommutator.decode(packet.seal(), decoded));
-    CHECK(explain(dictionary, decoded)->text ==
-          "sub_constraint " + subject + " violated: elapsed 12.500 s < 20.000 s");
+    CHECK(explain(dictionary, decoded)->text == "sub_constraint " + subject + " violated: elapsed 12.500 s < 20.000 s");
 
     auto event = PacketFiller{dictionary, "SUB_CONSTRAINT_VIOLATED"};
     event.raw("constraint", number).real("elapsed_s", 12.5).real("bound_s", 20.0).raw("violations", 1);
     REQUIRE_FALSE(decommutator.decode(event.seal(), decoded));
     CHECK(event_text(dictionary, *event_of(dictionary, decoded), decoded) ==
-          "Sub-constraint " + subject + " does not hold: 12.500 s, bound 20.000 s; 1 so far. Nothing was done about it");
+          "Sub-constraint " + subject +
+              " does not hold: 12.500 s, bound 20.000 s; 1 so far. Nothing was done about it");
 }
 
 TEST_CASE("a count of conditions beyond the slots gives the slots there are", "[explanation]") {

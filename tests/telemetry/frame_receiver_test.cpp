@@ -1,5 +1,5 @@
-#include "telemetry/frame_receiver.hpp"
 #include "common/randomiser.hpp"
+#include "telemetry/frame_receiver.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
@@ -29,7 +29,9 @@ Octets frame_octets(FrameStream::Kind kind, unsigned count, std::mt19937& random
     return octets;
 }
 
-void append(Octets& to, std::span<const std::uint8_t> octets) { to.insert(to.end(), octets.begin(), octets.end()); }
+void append(Octets& to, std::span<const std::uint8_t> octets) {
+    to.insert(to.end(), octets.begin(), octets.end());
+}
 
 std::size_t frames_in(FrameReceiver& receiver, std::span<const std::uint8_t> stream, std::mt19937& random) {
     std::size_t frames = 0;
@@ -43,7 +45,7 @@ std::size_t frames_in(FrameReceiver& receiver, std::span<const std::uint8_t> str
     return frames;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("CADUs are found between any octets, randomised or not, TM or AOS", "[telemetry]") {
     std::mt19937 random{1};

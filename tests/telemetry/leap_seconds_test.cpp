@@ -19,7 +19,7 @@ std::string fault(const std::string& from, const std::string& to) {
     return leaps ? "" : leaps.error().message;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("ephemeris time is UTC as NAIF's lessons and the definition of J2000 have it", "[telemetry][kernel]") {
     const auto leaps = tests::leap_seconds();
@@ -34,7 +34,7 @@ TEST_CASE("ephemeris time is UTC as NAIF's lessons and the definition of J2000 h
 
 TEST_CASE("the second that was put in is called 60, and lasts one second", "[telemetry][kernel]") {
     const auto leaps = tests::leap_seconds();
-    const double tai_s = 536500836.0; // 2017-01-01T00:00:36 TAI, when 37 s began to count
+    const double tai_s = 536500836.0;  // 2017-01-01T00:00:36 TAI, when 37 s began to count
     CHECK(leaps.utc_of_tai(tai_s - 0.5)->text() == "2016-366T23:59:59.500");
     CHECK(leaps.utc_of_tai(tai_s)->text() == "2016-366T23:59:60.000");
     CHECK(leaps.utc_of_tai(tai_s + 0.75)->text() == "2016-366T23:59:60.750");

@@ -1,5 +1,5 @@
-#include "telemetry/packet_extractor.hpp"
 #include "common/space_packet.hpp"
+#include "telemetry/packet_extractor.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
@@ -21,7 +21,7 @@ Octets packet_of(std::size_t data_octets, std::uint16_t count) {
 
 struct Stream {
     std::vector<Octets> packets;
-    std::vector<Octets> zones; ///< what each frame carries
+    std::vector<Octets> zones;  ///< what each frame carries
     std::vector<std::uint16_t> pointers;
 };
 
@@ -62,7 +62,7 @@ std::vector<Octets> all(PacketExtractor& extractor) {
     return found;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("packets come whole out of frames of any length, also much shorter than a packet", "[telemetry]") {
     std::mt19937 random{1};

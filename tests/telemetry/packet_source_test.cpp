@@ -1,6 +1,6 @@
-#include "telemetry/packet_source.hpp"
 #include "common/randomiser.hpp"
 #include "common/space_packet.hpp"
+#include "telemetry/packet_source.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
@@ -13,7 +13,9 @@ namespace {
 
 using Octets = std::vector<std::uint8_t>;
 
-void append(Octets& to, std::span<const std::uint8_t> octets) { to.insert(to.end(), octets.begin(), octets.end()); }
+void append(Octets& to, std::span<const std::uint8_t> octets) {
+    to.insert(to.end(), octets.begin(), octets.end());
+}
 
 std::vector<Octets> some_packets(std::mt19937& random) {
     std::vector<Octets> packets;
@@ -45,7 +47,8 @@ std::vector<Octets> frames_of(const std::vector<Octets>& packets, FrameStream::K
         frame.count = static_cast<std::uint32_t>(frames.size());
         frame.data = std::span{octets}.subspan(at, room);
         const auto next = std::ranges::lower_bound(starts, at);
-        if (next != starts.end() && *next < at + room) frame.first_header_pointer = static_cast<std::uint16_t>(*next - at);
+        if (next != starts.end() && *next < at + room)
+            frame.first_header_pointer = static_cast<std::uint16_t>(*next - at);
         frames.emplace_back(length);
         if (kind == FrameStream::Kind::tm)
             write_tm_frame(frame, static_cast<std::uint8_t>(frames.size()), crc, frames.back());
@@ -71,7 +74,7 @@ std::vector<Octets> all(PacketSource source, std::span<const std::uint8_t> strea
     return packets;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("packets come out of bare packets with a prefix, of frames and of PLTUs the same", "[telemetry]") {
     std::mt19937 random{1};
@@ -95,7 +98,9 @@ TEST_CASE("packets come out of bare packets with a prefix, of frames and of PLTU
     }
 }
 
-TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with check symbols or without, with a CRC or without", "[telemetry]") {
+TEST_CASE("how CADUs are is found by trying: TM or AOS, randomised or not, with check symbols or without, with a CRC "
+          "or without",
+          "[telemetry]") {
     std::mt19937 random{2};
     const auto packets = some_packets(random);
     for (const bool crc : {true, false})

@@ -22,15 +22,14 @@ std::vector<std::uint8_t> three_packets(std::size_t& first_two) {
     return octets;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("packets one after another come out one by one", "[packet_stream]") {
     std::size_t first_two = 0;
     const auto octets = three_packets(first_two);
     PacketStream stream{octets};
     std::size_t sum = 0;
-    while (const auto packet = stream.next())
-        sum += packet->size();
+    while (const auto packet = stream.next()) sum += packet->size();
     CHECK(stream.packets() == 3);
     CHECK(sum == octets.size());
     CHECK(stream.unreadable_octets() == 0);
@@ -50,8 +49,7 @@ TEST_CASE("whatever the octets are, each is in a packet or counted as unreadable
     std::mt19937 random{1971};
     for (int round = 0; round < 20'000; ++round) {
         std::vector<std::uint8_t> octets(random() % 300);
-        for (auto& octet : octets)
-            octet = static_cast<std::uint8_t>(random());
+        for (auto& octet : octets) octet = static_cast<std::uint8_t>(random());
         // Headers that can be read, with short lengths.
         if (octets.size() > 5 && round % 2 == 0) {
             octets[0] &= 0x1F;
@@ -60,8 +58,7 @@ TEST_CASE("whatever the octets are, each is in a packet or counted as unreadable
         }
         PacketStream stream{octets};
         std::size_t sum = 0;
-        while (const auto packet = stream.next())
-            sum += packet->size();
+        while (const auto packet = stream.next()) sum += packet->size();
         REQUIRE(sum + stream.unreadable_octets() == octets.size());
     }
 }

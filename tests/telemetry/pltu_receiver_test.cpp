@@ -34,7 +34,9 @@ std::vector<Octets> received(PltuReceiver& receiver, std::span<const std::uint8_
     return data;
 }
 
-void append(Octets& to, const Octets& octets) { to.insert(to.end(), octets.begin(), octets.end()); }
+void append(Octets& to, const Octets& octets) {
+    to.insert(to.end(), octets.begin(), octets.end());
+}
 
 /// Octets among which no marker stands.
 Octets noise(std::mt19937& random, std::size_t size) {
@@ -43,7 +45,7 @@ Octets noise(std::mt19937& random, std::size_t size) {
     return octets;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("every good frame is found between any octets, however the stream is cut", "[telemetry]") {
     std::mt19937 random{1};
@@ -108,10 +110,10 @@ TEST_CASE("a frame within the data of a frame is data; when the outer one is dam
 TEST_CASE("each spacecraft, channel and service has a frame sequence of its own", "[telemetry]") {
     PltuReceiver receiver;
     for (unsigned i = 0; i < 1000; ++i)
-        for (const ProximityHeader header : {ProximityHeader{.expedited = true, .spacecraft = 76},
-                                             ProximityHeader{.expedited = false, .spacecraft = 76},
-                                             ProximityHeader{.spacecraft = 76, .physical_channel = 1},
-                                             ProximityHeader{.spacecraft = 77}}) {
+        for (const ProximityHeader header :
+             {ProximityHeader{.expedited = true, .spacecraft = 76},
+              ProximityHeader{.expedited = false, .spacecraft = 76},
+              ProximityHeader{.spacecraft = 76, .physical_channel = 1}, ProximityHeader{.spacecraft = 77}}) {
             ProximityHeader now = header;
             now.sequence = static_cast<std::uint8_t>(i + header.spacecraft);
             receiver.receive(pltu_of(now, {1}));

@@ -14,8 +14,7 @@ namespace {
 
 std::vector<std::uint8_t> some_content(std::size_t octets) {
     std::vector<std::uint8_t> content(octets);
-    for (std::size_t i = 0; i < octets; ++i)
-        content[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+    for (std::size_t i = 0; i < octets; ++i) content[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
     return content;
 }
 
@@ -42,7 +41,7 @@ const std::pair<const ProductIdentity, Product>& only(const ProductAssembler& as
     return *assembler.products().begin();
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a product is put together from parts in any order, with repeats", "[products][R30]") {
     const auto content = some_content(1234);
@@ -53,8 +52,7 @@ TEST_CASE("a product is put together from parts in any order, with repeats", "[p
         std::ranges::shuffle(parts, std::mt19937{seed});
         ProductAssembler assembler;
         int again = 0;
-        for (const auto& part : parts)
-            again += assembler.add(part) == PartStanding::again;
+        for (const auto& part : parts) again += assembler.add(part) == PartStanding::again;
         CHECK(again == 5);
         const auto& [identity, product] = only(assembler);
         CHECK(product.content(identity) == content);
@@ -66,8 +64,7 @@ TEST_CASE("a product is put together from parts in any order, with repeats", "[p
 TEST_CASE("what is missing of a product is named, and it has no content until it is whole", "[products][R30]") {
     const auto parts = parts_of(some_content(1234));
     ProductAssembler assembler;
-    for (const std::size_t part : {1U, 2U, 6U, 8U, 13U})
-        CHECK(assembler.add(parts[part - 1]) == PartStanding::taken);
+    for (const std::size_t part : {1U, 2U, 6U, 8U, 13U}) CHECK(assembler.add(parts[part - 1]) == PartStanding::taken);
     const auto& [identity, product] = only(assembler);
     CHECK_FALSE(product.content(identity));
     CHECK(product.gaps() == "3-5, 7, 9-12");
@@ -93,13 +90,10 @@ TEST_CASE("a part that contradicts one before is not taken, and a wrong whole is
 
 TEST_CASE("products of two computers with the same number stay apart", "[products][R30]") {
     ProductAssembler assembler;
-    for (const auto& part : parts_of(some_content(250)))
-        CHECK(assembler.add(part) == PartStanding::taken);
-    for (const auto& part : parts_of(some_content(251)))
-        CHECK(assembler.add(part) == PartStanding::taken);
+    for (const auto& part : parts_of(some_content(250))) CHECK(assembler.add(part) == PartStanding::taken);
+    for (const auto& part : parts_of(some_content(251))) CHECK(assembler.add(part) == PartStanding::taken);
     CHECK(assembler.products().size() == 2);
-    for (const auto& [identity, product] : assembler.products())
-        CHECK(product.content(identity));
+    for (const auto& [identity, product] : assembler.products()) CHECK(product.content(identity));
 }
 
 TEST_CASE("an assembler takes no more than its memory", "[products][R30]") {
@@ -158,7 +152,7 @@ TEST_CASE("the rows of a product are read by the container that it names", "[pro
     const dictionary::Packet& container = *dictionary.packet("TimepointFired");
     const std::size_t row_octets = container.octets - tm_overhead_octets;
     std::vector<std::uint8_t> content(2 * row_octets);
-    content[row_octets + 1] = 7; // timepoint of the second row
+    content[row_octets + 1] = 7;  // timepoint of the second row
     const auto rows = rows_of(dictionary, container.apid, content);
     REQUIRE(rows);
     REQUIRE(rows->size() == 2);

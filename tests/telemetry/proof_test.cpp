@@ -14,17 +14,15 @@ std::vector<std::uint8_t> status(double speed_mps, std::uint16_t count) {
     return PacketFiller{dictionary, "Status"}.real("speed_mps", speed_mps).seal(count);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the proof holds when every real-time unit is in the recording, bit for bit", "[proof][R29]") {
     UnitRegister units;
-    for (std::uint16_t count = 0; count < 3; ++count)
-        units.add(status(1.0, count), Path::realtime);
+    for (std::uint16_t count = 0; count < 3; ++count) units.add(status(1.0, count), Path::realtime);
     CHECK_FALSE(prove(units).holds());
     CHECK(prove(units).realtime_not_recorded == 3);
 
-    for (std::uint16_t count = 0; count < 10; ++count)
-        units.add(status(1.0, count), Path::recorded);
+    for (std::uint16_t count = 0; count < 10; ++count) units.add(status(1.0, count), Path::recorded);
     const Proof proof = prove(units);
     CHECK(proof.holds());
     CHECK(proof.recorded == 10);

@@ -35,7 +35,7 @@ std::vector<Octets> all(ProximityPackets& packets) {
     return found;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("whole packets of a frame come out one by one", "[telemetry]") {
     ProximityPackets packets;

@@ -20,7 +20,7 @@ T number(std::uint64_t field, unsigned bits, Form form, bool octets_reversed = f
     return std::get<T>(value);
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("whole numbers in every coding", "[telemetry]") {
     CHECK(number<std::uint64_t>(~0ULL, 64, Form::unsigned_integer) == ~0ULL);

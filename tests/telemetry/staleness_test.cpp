@@ -23,7 +23,8 @@ struct Ground {
     static dictionary::Dictionary make() {
         auto dictionary = tests::small_dictionary();
         dictionary.packets[status].expected_rate_hz = 1.0;
-        dictionary.telemetry_plan = {{"all", "Status", tests::status_apid, dictionary::TelemetryPriority::high, {2, 4, 4, 0}, "", 2}};
+        dictionary.telemetry_plan = {
+            {"all", "Status", tests::status_apid, dictionary::TelemetryPriority::high, {2, 4, 4, 0}, "", 2}};
         return dictionary;
     }
     Ground() {
@@ -37,7 +38,7 @@ struct Ground {
     }
 };
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a packet is stale when four of its intervals bring nothing, and not before", "[alarms][staleness]") {
     Ground ground;
@@ -48,7 +49,7 @@ TEST_CASE("a packet is stale when four of its intervals bring nothing, and not b
     CHECK(ground.changes[0].stale);
     CHECK(ground.changes[0].silent_s == 8.5);
     CHECK(ground.changes[0].expected_s == 2.0);
-    CHECK(ground.after(30.0) == 1); // said once
+    CHECK(ground.after(30.0) == 1);  // said once
     ground.hear(31.0);
     REQUIRE(ground.changes.size() == 2);
     CHECK_FALSE(ground.changes[1].stale);
@@ -68,7 +69,8 @@ TEST_CASE("silence while the link is down is the link's, and nothing is stale", 
     CHECK(ground.changes[1].reason == "the link is down: Earth set");
 }
 
-TEST_CASE("one of two links is enough to be heard over, and one that brings no packets is none", "[alarms][staleness]") {
+TEST_CASE("one of two links is enough to be heard over, and one that brings no packets is none",
+          "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
     ground.monitor.link("uhf_mro", LinkIs::up, "nominal", at_s(2.0), ground.changes);
@@ -80,31 +82,34 @@ TEST_CASE("one of two links is enough to be heard over, and one that brings no p
     CHECK(ground.after(60.0) == 2);
 }
 
-TEST_CASE("a link that is lost takes no alarm away, and what it does not bring becomes one with its reason", "[alarms][staleness]") {
+TEST_CASE("a link that is lost takes no alarm away, and what it does not bring becomes one with its reason",
+          "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
-    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained: nothing is predicted to silence it now", at_s(3.0), ground.changes);
+    ground.monitor.link("uhf_live", LinkIs::lost, "unexplained: nothing is predicted to silence it now", at_s(3.0),
+                        ground.changes);
     CHECK(ground.after(9.0) == 0);
-    REQUIRE(ground.after(9.5) == 1); // four intervals after it was last heard, not after the link went
+    REQUIRE(ground.after(9.5) == 1);  // four intervals after it was last heard, not after the link went
     CHECK(ground.changes[0].stale);
     CHECK(ground.changes[0].silent_s == 8.5);
     CHECK(ground.changes[0].reason == "the link is lost: unexplained: nothing is predicted to silence it now");
     ground.monitor.link("uhf_live", LinkIs::up, "nominal", at_s(20.0), ground.changes);
-    CHECK(ground.after(21.0) == 1); // until it is heard
+    CHECK(ground.after(21.0) == 1);  // until it is heard
     ground.hear(22.0);
     REQUIRE(ground.after(30.0) == 2);
     CHECK(ground.changes[1].reason == "heard again");
-    REQUIRE(ground.after(30.5) == 3); // while the link is up
+    REQUIRE(ground.after(30.5) == 3);  // while the link is up
     CHECK(ground.changes[2].reason.empty());
     ground.monitor.link("uhf_live", LinkIs::lost, "ground fault: no way to the station", at_s(31.0), ground.changes);
-    CHECK(ground.after(60.0) == 3); // that stands
+    CHECK(ground.after(60.0) == 3);  // that stands
     ground.monitor.link("uhf_live", LinkIs::down, "Earth set", at_s(61.0), ground.changes);
     REQUIRE(ground.after(900.0) == 4);
     CHECK_FALSE(ground.changes[3].stale);
     CHECK(ground.changes[3].reason == "the link is down: Earth set");
 }
 
-TEST_CASE("a silence that is not explained any more is waited for from then, with the usual patience", "[alarms][staleness]") {
+TEST_CASE("a silence that is not explained any more is waited for from then, with the usual patience",
+          "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
     ground.monitor.link("uhf_live", LinkIs::down, "plasma blackout", at_s(3.0), ground.changes);
@@ -162,12 +167,13 @@ TEST_CASE("a mission without a plan is expected at the rates of its dictionary",
     monitor.link("downlink", LinkIs::up, "connected", at_s(0.0), changes);
     monitor.heard(status, at_s(1.0), changes);
     monitor.pass(at_s(6.0), changes);
-    CHECK(changes.empty()); // five seconds at least
+    CHECK(changes.empty());  // five seconds at least
     monitor.pass(at_s(6.5), changes);
     CHECK(changes.size() == 1);
 }
 
-TEST_CASE("a link that loses much explains a longer silence, and one that lost nothing does not", "[alarms][staleness]") {
+TEST_CASE("a link that loses much explains a longer silence, and one that lost nothing does not",
+          "[alarms][staleness]") {
     Ground lossy;
     Ground sound;
     // Every 2 s; of the lossy one each fourth is lost, as near the horizon: 25 %, so that 8.3 in a row are one in 1e5.
@@ -182,17 +188,17 @@ TEST_CASE("a link that loses much explains a longer silence, and one that lost n
     CHECK(sound.after(118.0 + 8.5) == 1);
 }
 
-TEST_CASE("a packet that was stale tells nothing of the link's losses, and old losses are forgotten", "[alarms][staleness]") {
+TEST_CASE("a packet that was stale tells nothing of the link's losses, and old losses are forgotten",
+          "[alarms][staleness]") {
     Ground ground;
     ground.hear(1.0);
     REQUIRE(ground.after(40.0) == 1);
-    ground.hear(41.0); // twenty are missing, because it was not sent
+    ground.hear(41.0);  // twenty are missing, because it was not sent
     REQUIRE(ground.changes.size() == 2);
-    CHECK(ground.after(49.5) == 3); // as soon as ever
+    CHECK(ground.after(49.5) == 3);  // as soon as ever
     ground.hear(50.0);
-    ground.hear(57.0); // 3.5 due, one came
-    for (double s = 59.0; s < 600.0; s += 2.0)
-        ground.hear(s);
+    ground.hear(57.0);  // 3.5 due, one came
+    for (double s = 59.0; s < 600.0; s += 2.0) ground.hear(s);
     const auto before = ground.changes.size();
     CHECK(ground.after(599.0 + 8.5) == before + 1);
 }

@@ -33,7 +33,8 @@ std::vector<DecidedSymbol> decided(const std::vector<Sent>& sent, int hops, doub
             hop.energy = energy;
             hop.total_n0_hz = 100.0;
             for (auto& sum : hop.sums)
-                sum = {static_cast<float>(deviation * random.normal()), static_cast<float>(deviation * random.normal())};
+                sum = {static_cast<float>(deviation * random.normal()),
+                       static_cast<float>(deviation * random.normal())};
             for (const Sent& each : sent)
                 if (h >= each.begin_hop && h < each.begin_hop + symbol_hops)
                     hop.sums[each.tone] += std::polar(static_cast<float>(energy), 0.3F * each.tone);
@@ -52,7 +53,7 @@ void check_all(const std::vector<Sent>& sent, const std::vector<DecidedSymbol>& 
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("symbols are found where they begin: back to back, after pauses, the same tone twice", "[tones][R31]") {
     const std::vector<Sent> sent{{10, 3}, {90, 3}, {170, 255}, {261, 0}, {341, 1}, {421, 77}, {560, 78}, {640, 78}};
@@ -62,8 +63,7 @@ TEST_CASE("symbols are found where they begin: back to back, after pauses, the s
 
 TEST_CASE("a long run of symbols without a pause keeps its beginnings", "[tones]") {
     std::vector<Sent> sent;
-    for (int i = 0; i < 60; ++i)
-        sent.push_back({37 + i * symbol_hops, static_cast<std::uint8_t>(i * 37)});
+    for (int i = 0; i < 60; ++i) sent.push_back({37 + i * symbol_hops, static_cast<std::uint8_t>(i * 37)});
     check_all(sent, decided(sent, 5000, 360.0), 1);
 }
 

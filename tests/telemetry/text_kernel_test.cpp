@@ -8,7 +8,9 @@ using namespace aeolis::telemetry;
 
 namespace {
 
-std::string data(const std::string& lines) { return "KPL/SCLK\nwords of people = not read\n\\begindata\n" + lines + "\n\\begintext\nmore = words\n"; }
+std::string data(const std::string& lines) {
+    return "KPL/SCLK\nwords of people = not read\n\\begindata\n" + lines + "\n\\begintext\nmore = words\n";
+}
 
 std::string fault(const std::string& lines) {
     const auto kernel = TextKernel::parse(data(lines), "k.tsc");
@@ -24,9 +26,10 @@ std::vector<double> values(const std::string& lines) {
     return *numbers;
 }
 
-} // namespace
+}  // namespace
 
-TEST_CASE("numbers are read as FORTRAN writes them, lists with commas or blanks, over several lines", "[telemetry][kernel]") {
+TEST_CASE("numbers are read as FORTRAN writes them, lists with commas or blanks, over several lines",
+          "[telemetry][kernel]") {
     CHECK(values("A = 1.657D-3") == std::vector{1.657e-3});
     CHECK(values("A=( 1,2.5E+1 +3\n -.5d1 )") == std::vector{1.0, 25.0, 3.0, -5.0});
     CHECK(values("A = 1\nA += ( 2 3 )\nB = 9") == std::vector{1.0, 2.0, 3.0});
@@ -37,7 +40,7 @@ TEST_CASE("dates are seconds from noon of 2000-01-01 by the calendar", "[telemet
     CHECK(values("A = @2000-JAN-1") == std::vector{-43200.0});
     CHECK(values("A = @2000-JAN-1/12:00:01.5") == std::vector{1.5});
     CHECK(values("A = @01-JAN-1980-00:00:00.000") == std::vector{-631195200.0});
-    CHECK(values("A = @1972-JAN-1") == std::vector{-883656000.0}); // naif0012 read by NAIF's library
+    CHECK(values("A = @1972-JAN-1") == std::vector{-883656000.0});  // naif0012 read by NAIF's library
     CHECK(values("A = @2012-08-06/05:17:57") == values("A = @2012-219T05:17:57"));
     CHECK(values("A = @1-OCT-2000") == values("A = @2000-10-01"));
 }
@@ -61,13 +64,16 @@ TEST_CASE("what cannot be read is named with file and line", "[telemetry][kernel
     CHECK(fault("A = ()") == "k.tsc:4: 'A' has no value");
     CHECK(fault("A = 1e999").starts_with("k.tsc:4: '1e999'"));
     CHECK(fault("= 1").starts_with("k.tsc:4: a name is wanted"));
-    CHECK(TextKernel::parse("KPL/LSK\nA = 1\n", "k").error().message == "k:1: it has no line \\begindata: it is no text kernel");
+    CHECK(TextKernel::parse("KPL/LSK\nA = 1\n", "k").error().message ==
+          "k:1: it has no line \\begindata: it is no text kernel");
     CHECK(TextKernel::parse(data("A = 1"), "k")->numbers("B", 1).error().message == "k: it says no B");
-    CHECK(TextKernel::parse(data("A = 1"), "k")->numbers("A", 2).error().message == "k:4: A has 1 values where 2 are wanted");
+    CHECK(TextKernel::parse(data("A = 1"), "k")->numbers("A", 2).error().message ==
+          "k:4: A has 1 values where 2 are wanted");
 }
 
 TEST_CASE("any cut and any spoilt octet of a kernel gives a kernel or a fault with its file", "[telemetry][kernel]") {
-    const std::string whole = data("DELTET/DELTA_AT = ( 10, @1972-JAN-1\n 11, @1972-JUL-1 )\nNAME += 'x'\nM = ( 6.2D0 1.9D-7 )");
+    const std::string whole =
+        data("DELTET/DELTA_AT = ( 10, @1972-JAN-1\n 11, @1972-JUL-1 )\nNAME += 'x'\nM = ( 6.2D0 1.9D-7 )");
     std::mt19937 random{7};
     const auto readable = [](const std::string& text) {
         const auto kernel = TextKernel::parse(text, "k");

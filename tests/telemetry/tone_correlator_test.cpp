@@ -20,8 +20,7 @@ TEST_CASE("hops of one tone add up in phase, those of its neighbours to nothing"
             quadrature.push_back(static_cast<float>(std::sin(2.0 * std::numbers::pi * mfsk.tone_hz(17) * t + 0.7)));
         }
         correlator.correlate(quadrature, hop * samples / rate_hz, sums);
-        for (std::size_t tone = 0; tone < total.size(); ++tone)
-            total[tone] += sums[tone];
+        for (std::size_t tone = 0; tone < total.size(); ++tone) total[tone] += sums[tone];
     }
     CHECK(std::abs(total[17]) == Approx(0.5 * 80 * samples).epsilon(1e-3));
     CHECK(std::abs(total[16]) < 0.01 * std::abs(total[17]));
@@ -34,12 +33,10 @@ TEST_CASE("noise of deviation 1 gives each tone as much energy as there are samp
     double energy = 0.0;
     for (int hop = 0; hop < 100; ++hop) {
         std::vector<float> quadrature(512);
-        for (float& sample : quadrature)
-            sample = noise();
+        for (float& sample : quadrature) sample = noise();
         ToneSums sums{};
         correlator.correlate(quadrature, 0.1 * hop, sums);
-        for (const auto& sum : sums)
-            energy += std::norm(sum) / 256.0 / 100.0;
+        for (const auto& sum : sums) energy += std::norm(sum) / 256.0 / 100.0;
     }
     CHECK(energy == Approx(512.0).epsilon(0.03));
 }

@@ -17,11 +17,12 @@ ToneSums drawn(int sent, double energy, simulation::Random& random) {
     const double deviation = std::sqrt(0.5 * energy);
     for (auto& sum : sums)
         sum = {static_cast<float>(deviation * random.normal()), static_cast<float>(deviation * random.normal())};
-    if (sent >= 0) sums[static_cast<std::size_t>(sent)] += std::complex<float>{std::polar(energy, 6.28 * random.uniform())};
+    if (sent >= 0)
+        sums[static_cast<std::size_t>(sent)] += std::complex<float>{std::polar(energy, 6.28 * random.uniform())};
     return sums;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("the likeliest tone is wrong as often as exact theory says", "[tones][R31]") {
     simulation::Random random{11, 0, simulation::Stream::x_band};
@@ -29,8 +30,7 @@ TEST_CASE("the likeliest tone is wrong as often as exact theory says", "[tones][
         const double energy = energy_for_symbol_error(theory, 256);
         constexpr int trials = 4000;
         int wrong = 0;
-        for (int i = 0; i < trials; ++i)
-            wrong += weigh(drawn(i % 256, energy, random), energy).best[0].tone != i % 256;
+        for (int i = 0; i < trials; ++i) wrong += weigh(drawn(i % 256, energy, random), energy).best[0].tone != i % 256;
         const double deviation = std::sqrt(theory * (1.0 - theory) / trials);
         CHECK(wrong / static_cast<double>(trials) == Approx(theory).margin(3.5 * deviation));
     }
@@ -57,6 +57,6 @@ TEST_CASE("a symbol is likelier than none when it is there, and less likely when
     }
     const ToneEvidence strong = weigh(drawn(200, 300.0, random), 300.0);
     CHECK(std::ranges::max_element(strong.spectrum) - strong.spectrum.begin() == 100);
-    CHECK(spectrum_db(strong.spectrum[100]) == Approx(10.0 * std::log10(300.0)).margin(1.5)); // energy over noise
+    CHECK(spectrum_db(strong.spectrum[100]) == Approx(10.0 * std::log10(300.0)).margin(1.5));  // energy over noise
     CHECK(weigh(ToneSums{}, 0.0).log_likelihood_ratio == Approx(0.0).margin(1e-9));
 }

@@ -45,7 +45,7 @@ void check_tones(const std::vector<SentTone>& sent, const std::vector<ToneRecept
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("tones at 22 dB-Hz come out with beginning, level, Doppler, lock and the best five", "[tones][R31]") {
     auto ear = receiver();
@@ -125,16 +125,14 @@ TEST_CASE("pulses a thousand million times louder cost nothing but themselves", 
     auto samples = samples_of(steady(), some_tones(), 80.0);
     std::mt19937 random{4};
     samples[0] = {1e38F, 0.0F};
-    for (int i = 0; i < 500; ++i)
-        samples[random() % samples.size()] = {i % 2 == 0 ? 1e30F : 3e38F, -1e9F};
+    for (int i = 0; i < 500; ++i) samples[random() % samples.size()] = {i % 2 == 0 ? 1e30F : 3e38F, -1e9F};
     auto ear = receiver();
     check_tones(some_tones(), received(ear, samples));
 }
 
 TEST_CASE("a level that rises a million times is followed", "[tones]") {
     auto samples = samples_of(steady(), some_tones(), 80.0);
-    for (std::size_t i = 0; i < samples.size() / 2; ++i)
-        samples[i] *= 1e-3F;
+    for (std::size_t i = 0; i < samples.size() / 2; ++i) samples[i] *= 1e-3F;
     auto ear = receiver();
     const auto heard = received(ear, samples);
     REQUIRE(heard.size() >= 4);
@@ -156,7 +154,8 @@ TEST_CASE("a step of Doppler loses the carrier, and it is found again", "[tones]
     const auto heard = received(ear, samples_of(path, tones, 70.0));
     CHECK(ear.status().acquisitions >= 2);
     for (const SentTone& sent : tones) {
-        const auto found = std::ranges::find_if(heard, [&](const auto& each) { return std::abs(each.start_s - sent.start_s) < 3.0; });
+        const auto found =
+            std::ranges::find_if(heard, [&](const auto& each) { return std::abs(each.start_s - sent.start_s) < 3.0; });
         REQUIRE(found != heard.end());
         CHECK(found->tone == sent.tone);
     }
@@ -185,8 +184,7 @@ TEST_CASE("at Earth set the last whole tone is decoded and after it there is not
     REQUIRE(heard.size() >= 2);
     CHECK(heard[0].tone == 60);
     CHECK(heard[1].tone == 61);
-    for (std::size_t i = 2; i < heard.size(); ++i)
-        CHECK_FALSE(heard[i].tone);
+    for (std::size_t i = 2; i < heard.size(); ++i) CHECK_FALSE(heard[i].tone);
     CHECK(ear.status().lock == CarrierLock::searching);
 }
 

@@ -18,7 +18,7 @@ std::vector<std::uint8_t> status(double speed_mps, std::uint16_t count, double s
     return PacketFiller{dictionary, "Status"}.real("speed_mps", speed_mps).seal(count, Sclk{sclk});
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("a unit is named by APID, SCLK, count and CRC", "[unit_identity]") {
     const auto packet = status(400.0, 16383, 1000.015625);
@@ -83,8 +83,7 @@ TEST_CASE("the counts agree with sets kept by hand", "[unit_identity][property]"
         units.add(status(content, count), is_live ? Path::realtime : Path::recorded);
     }
     std::uint64_t both = 0, differs = 0;
-    for (const auto& [count, contents] : live)
-        both += recorded.contains(count) ? 1 : 0;
+    for (const auto& [count, contents] : live) both += recorded.contains(count) ? 1 : 0;
     for (std::uint16_t count = 0; count < 500; ++count) {
         std::set<int> all = live[count];
         all.merge(recorded[count]);

@@ -29,14 +29,17 @@ void add_number(Octets& to, std::uint32_t number, int octets, bool least_first) 
 /// A capture of one UDP datagram to `port` for each of `payloads`: pcap, raw IPv4.
 Octets capture(const std::vector<Octets>& payloads, std::uint16_t port) {
     Octets file;
-    for (const std::uint32_t number : {0xA1B2C3D4U, 0x00040002U, 0U, 0U, 65535U, 101U}) add_number(file, number, 4, true);
+    for (const std::uint32_t number : {0xA1B2C3D4U, 0x00040002U, 0U, 0U, 65535U, 101U})
+        add_number(file, number, 4, true);
     for (const Octets& payload : payloads) {
         const auto octets = static_cast<std::uint32_t>(payload.size() + 28);
         for (const std::uint32_t number : {1U, 0U, octets, octets}) add_number(file, number, 4, true);
         add_number(file, 0x4500U, 2, false);
         add_number(file, octets, 2, false);
-        for (const std::uint32_t number : {0U, 0x40110000U, 0x7F000001U, 0x7F000001U}) add_number(file, number, 4, false);
-        for (const std::uint32_t number : {40000U, std::uint32_t{port}, octets - 20, 0U}) add_number(file, number, 2, false);
+        for (const std::uint32_t number : {0U, 0x40110000U, 0x7F000001U, 0x7F000001U})
+            add_number(file, number, 4, false);
+        for (const std::uint32_t number : {40000U, std::uint32_t{port}, octets - 20, 0U})
+            add_number(file, number, 2, false);
         file.insert(file.end(), payload.begin(), payload.end());
     }
     return file;
@@ -46,8 +49,13 @@ Octets capture(const std::vector<Octets>& payloads, std::uint16_t port) {
 std::string fields_of(const std::vector<Octets>& packets, const std::string& fields) {
     const auto file = std::filesystem::temp_directory_path() / ("aeolis-" + std::to_string(::getpid()) + ".pcap");
     const auto octets = capture(packets, 50000);
-    std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(octets.data()), static_cast<std::streamsize>(octets.size()));
-    std::FILE* pipe = popen(("tshark -r '" + file.string() + "' -d udp.port==50000,ccsds -T fields -E separator=, -E occurrence=f " + fields + " 2>/dev/null").c_str(), "r");
+    std::ofstream{file, std::ios::binary}.write(reinterpret_cast<const char*>(octets.data()),
+                                                static_cast<std::streamsize>(octets.size()));
+    std::FILE* pipe =
+        popen(("tshark -r '" + file.string() + "' -d udp.port==50000,ccsds -T fields -E separator=, -E occurrence=f " +
+               fields + " 2>/dev/null")
+                  .c_str(),
+              "r");
     REQUIRE(pipe != nullptr);
     std::string read;
     std::array<char, 256> piece{};
@@ -63,7 +71,7 @@ bool tshark_is_here() {
     return here;
 }
 
-} // namespace
+}  // namespace
 
 TEST_CASE("tshark reads the primary headers of our packets as we wrote them", "[telemetry][wire]") {
     if (!tshark_is_here()) return;
@@ -76,7 +84,8 @@ TEST_CASE("tshark reads the primary headers of our packets as we wrote them", "[
         Octets packet(kind->octets);
         const auto count = static_cast<std::uint16_t>(1000 + packets.size());
         seal_tm_packet(packet, kind->apid, count, Sclk{5.0}, ours.id);
-        expected += std::to_string(kind->apid.value) + "," + std::to_string(count) + "," + std::to_string(packet.size() - 7) + "\n";
+        expected += std::to_string(kind->apid.value) + "," + std::to_string(count) + "," +
+                    std::to_string(packet.size() - 7) + "\n";
         packets.push_back(std::move(packet));
     }
     CHECK(fields_of(packets, "-e ccsds.apid -e ccsds.seqnum -e ccsds.length") == expected);
@@ -99,7 +108,7 @@ TEST_CASE("tshark reads the files in which the recording comes down, and what gr
     Octets pltu(pltu_octets_max);
     while (const std::size_t size = rover.next({recording, true}, pltu)) {
         packets.push_back(packet_of(std::span{pltu}.first(size)));
-        if (packets.size() == 3) continue; // lost: octets 900 to 1800
+        if (packets.size() == 3) continue;  // lost: octets 900 to 1800
         ground.receive(std::span{packets.back()}.subspan(primary_header_octets), Ert{0}, [](auto) {});
     }
     const auto answers = ground.take_pltus();
@@ -112,7 +121,7 @@ TEST_CASE("tshark reads the files in which the recording comes down, and what gr
                                  "2045,76,1,1,0,0,4,,2000,,\n"
                                  "2045,76,1,1,0,1,6,,,,\n"
                                  "2045,76,1,1,0,1,8,,,900,1800\n";
-    CHECK(fields_of(packets, "-e ccsds.apid -e cfdp.srcid -e cfdp.transeqnum -e cfdp.dstid -e cfdp.pdu_type -e cfdp.direction -e cfdp.fdtype "
-                           "-e cfdp.offset -e cfdp.file_size -e cfdp.nak_st_scope -e cfdp.nak_sp_scope") ==
-          expected);
+    CHECK(fields_of(packets, "-e ccsds.apid -e cfdp.srcid -e cfdp.transeqnum -e cfdp.dstid -e cfdp.pdu_type -e "
+                             "cfdp.direction -e cfdp.fdtype "
+                             "-e cfdp.offset -e cfdp.file_size -e cfdp.nak_st_scope -e cfdp.nak_sp_scope") == expected);
 }

@@ -8,7 +8,13 @@ import { pipeline } from 'node:stream';
 import { fileURLToPath } from 'node:url';
 
 const here = path.dirname(fileURLToPath(import.meta.url));
-const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.png': 'image/png' };
+const TYPES = {
+  '.html': 'text/html; charset=utf-8',
+  '.js': 'text/javascript',
+  '.css': 'text/css',
+  '.svg': 'image/svg+xml',
+  '.png': 'image/png',
+};
 const PASSED_ON = ['accept', 'accept-encoding', 'authorization', 'cookie', 'if-none-match']; // whoever the page is to Aeolis, with or without accounts
 const HANDSHAKE = ['upgrade', 'connection', 'sec-websocket-key', 'sec-websocket-version', 'sec-websocket-protocol'];
 const ALIVE_MS = 5000; // ours: shorter than a server waits for a sign
@@ -24,9 +30,15 @@ const [TEXT, CLOSE, PONG] = [1, 8, 10];
 /** Answers with the server that listens on loopback, on a free port when `port` is 0. */
 export function serve(aeolis, port = 0) {
   const { hostname, port: theirs } = new URL(aeolis);
-  const mayAsk = ({ host, origin: asking }) => ['127.0.0.1', 'localhost'].some((name) => host === `${name}:${server.address().port}`) && (asking === undefined || asking === `http://${host}`);
-  const passedOn = (headers, names = PASSED_ON) => Object.fromEntries(names.filter((name) => headers[name] !== undefined).map((name) => [name, headers[name]]));
-  const say = (answer, status, words) => (answer.headersSent ? answer.destroy() : answer.writeHead(status, { 'content-type': 'text/plain' }).end(`${words}\n`));
+  const mayAsk = ({ host, origin: asking }) =>
+    ['127.0.0.1', 'localhost'].some((name) => host === `${name}:${server.address().port}`) &&
+    (asking === undefined || asking === `http://${host}`);
+  const passedOn = (headers, names = PASSED_ON) =>
+    Object.fromEntries(names.filter((name) => headers[name] !== undefined).map((name) => [name, headers[name]]));
+  const say = (answer, status, words) =>
+    answer.headersSent
+      ? answer.destroy()
+      : answer.writeHead(status, { 'content-type': 'text/plain' }).end(`${words}\n`);
 
   function question(asked, answer) {
     const onward = request({ hostname, port: theirs, path: asked.url, headers: passedOn(asked.headers) }, (told) => {
@@ -41,24 +53,52 @@ export function serve(aeolis, port = 0) {
   /** What comes live of a run after a place in it: the stream's own messages, and nothing the other way but this one subscription. */
   function live(asked, query, near) {
     const [run, after, channels] = ['run', 'after', 'channels'].map((name) => query.get(name) ?? '');
-    if (![run, after].every((number) => /^\d+$/.test(number)) || !/^\d+(,\d+)*$/.test(channels)) return refuse(near, 400);
-    const onward = request({ hostname, port: theirs, path: '/api/v1/stream', headers: passedOn(asked.headers, [...PASSED_ON, ...HANDSHAKE]) });
-    onward.on('upgrade', (told, far, head) => {
-      near.write(`HTTP/1.1 101 Switching Protocols\r\n${Object.entries(told.headers).map(([name, value]) => `${name}: ${value}\r\n`).join('')}\r\n`);
-      near.write(head);
-      far.write(frame(TEXT, JSON.stringify({ subscribe: { run, after_seq: after, channels: channels.split(',').map(Number) } })));
-      const alive = setInterval(() => far.write(frame(PONG)), ALIVE_MS);
-      far.on('error', () => near.destroy()).on('close', () => near.destroy()).on('close', () => clearInterval(alive)).pipe(near);
-      near.on('data', ([first]) => (first & 15) === CLOSE && near.destroy()).on('close', () => far.destroy());
-    }).on('response', (told) => refuse(near, told.statusCode)).on('error', () => refuse(near, 502)).end();
+    if (![run, after].every((number) => /^\d+$/.test(number)) || !/^\d+(,\d+)*$/.test(channels))
+      return refuse(near, 400);
+    const onward = request({
+      hostname,
+      port: theirs,
+      path: '/api/v1/stream',
+      headers: passedOn(asked.headers, [...PASSED_ON, ...HANDSHAKE]),
+    });
+    onward
+      .on('upgrade', (told, far, head) => {
+        near.write(
+          `HTTP/1.1 101 Switching Protocols\r\n${Object.entries(told.headers)
+            .map(([name, value]) => `${name}: ${value}\r\n`)
+            .join('')}\r\n`,
+        );
+        near.write(head);
+        far.write(
+          frame(
+            TEXT,
+            JSON.stringify({ subscribe: { run, after_seq: after, channels: channels.split(',').map(Number) } }),
+          ),
+        );
+        const alive = setInterval(() => far.write(frame(PONG)), ALIVE_MS);
+        far
+          .on('error', () => near.destroy())
+          .on('close', () => near.destroy())
+          .on('close', () => clearInterval(alive))
+          .pipe(near);
+        near.on('data', ([first]) => (first & 15) === CLOSE && near.destroy()).on('close', () => far.destroy());
+      })
+      .on('response', (told) => refuse(near, told.statusCode))
+      .on('error', () => refuse(near, 502))
+      .end();
     near.on('close', () => onward.destroy());
   }
-  const refuse = (near, status) => near.end(`HTTP/1.1 ${status} ${STATUS_CODES[status]}\r\nconnection: close\r\ncontent-length: 0\r\n\r\n`);
+  const refuse = (near, status) =>
+    near.end(`HTTP/1.1 ${status} ${STATUS_CODES[status]}\r\nconnection: close\r\ncontent-length: 0\r\n\r\n`);
 
   async function page(pathname, answer) {
-    const [root, name] = pathname.startsWith('/openmct/') ? ['node_modules/openmct/dist', pathname.slice('/openmct/'.length)] : ['', pathname === '/' ? 'index.html' : pathname.slice(1)];
+    const [root, name] = pathname.startsWith('/openmct/')
+      ? ['node_modules/openmct/dist', pathname.slice('/openmct/'.length)]
+      : ['', pathname === '/' ? 'index.html' : pathname.slice(1)];
     if (root === '' && !['index.html', 'plugin.js'].includes(name)) return say(answer, 404, 'not found');
-    const octets = await readFile(path.join(here, root, path.normalize(`/${decodeURIComponent(name)}`))).catch(() => undefined);
+    const octets = await readFile(path.join(here, root, path.normalize(`/${decodeURIComponent(name)}`))).catch(
+      () => undefined,
+    );
     if (octets === undefined) return say(answer, 404, 'not found');
     answer.writeHead(200, { 'content-type': TYPES[path.extname(name)] ?? 'application/octet-stream' }).end(octets);
   }
@@ -84,7 +124,9 @@ export function serve(aeolis, port = 0) {
       refuse(near, 400);
     }
   });
-  return new Promise((resolve, reject) => server.once('error', reject).listen(port, '127.0.0.1', () => resolve(server)));
+  return new Promise((resolve, reject) =>
+    server.once('error', reject).listen(port, '127.0.0.1', () => resolve(server)),
+  );
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {

@@ -32,19 +32,53 @@ import { Users } from './users/view';
 import { Verdicts } from './verdicts/view';
 import { WaitingFor } from './waiting/view';
 
-const DATA = { channels: Channels, alarms: Alarms, notes: Notes, users: Users, packets: Packets, verdicts: Verdicts, links: Links, flown: Flown, recorded: Recorded, rehearsal: Rehearsal, campaigns: Campaigns };
+const DATA = {
+  channels: Channels,
+  alarms: Alarms,
+  notes: Notes,
+  users: Users,
+  packets: Packets,
+  verdicts: Verdicts,
+  links: Links,
+  flown: Flown,
+  recorded: Recorded,
+  rehearsal: Rehearsal,
+  campaigns: Campaigns,
+};
 
 function Data() {
   const Shown = DATA[tab.value];
   return (
-    <Panel name="data" title={
-      <span role="tablist" class="tabs">
-        {TABS.filter((each) => each.id !== 'users' || each.id === tab.value || (access.value.state === 'in' && access.value.role === 'administrator')).map((each) => (
-          <button type="button" role="tab" key={each.id} aria-selected={tab.value === each.id} data-testid={`tab-${each.id}`}
-            onClick={() => (tab.value = each.id)}>{each.title} <kbd>{each.key}</kbd></button>
-        ))}
-      </span>
-    } extra={<button type="button" class="quiet" aria-label="keys" onClick={() => (helpShown.value = !helpShown.value)}><span class="keys-word">keys </span><kbd>?</kbd></button>}>
+    <Panel
+      name="data"
+      title={
+        <span role="tablist" class="tabs">
+          {TABS.filter(
+            (each) =>
+              each.id !== 'users' ||
+              each.id === tab.value ||
+              (access.value.state === 'in' && access.value.role === 'administrator'),
+          ).map((each) => (
+            <button
+              type="button"
+              role="tab"
+              key={each.id}
+              aria-selected={tab.value === each.id}
+              data-testid={`tab-${each.id}`}
+              onClick={() => (tab.value = each.id)}
+            >
+              {each.title} <kbd>{each.key}</kbd>
+            </button>
+          ))}
+        </span>
+      }
+      extra={
+        <button type="button" class="quiet" aria-label="keys" onClick={() => (helpShown.value = !helpShown.value)}>
+          <span class="keys-word">keys </span>
+          <kbd>?</kbd>
+        </button>
+      }
+    >
       <Shown />
     </Panel>
   );
@@ -55,7 +89,12 @@ function Notices() {
   return (
     <ul class="notices" role="status" data-testid="notices">
       {notices.value.map((notice) => (
-        <li key={notice.id}>▲ {notice.text} <button type="button" class="quiet" aria-label="dismiss" onClick={() => dismissNotice(notice.id)}>×</button></li>
+        <li key={notice.id}>
+          ▲ {notice.text}{' '}
+          <button type="button" class="quiet" aria-label="dismiss" onClick={() => dismissNotice(notice.id)}>
+            ×
+          </button>
+        </li>
       ))}
     </ul>
   );
@@ -63,11 +102,22 @@ function Notices() {
 
 const inPanel = (name: keyof typeof DATA, title: string) => {
   const Shown = DATA[name];
-  return () => <Panel name={name} title={title}><Shown /></Panel>;
+  return () => (
+    <Panel name={name} title={title}>
+      <Shown />
+    </Panel>
+  );
 };
 
 const ALONE = {
-  timeline: Timeline, tones: Tones, plots: Plots, descent: Descent, events: Events, commands: Commands, data: Data, waiting: WaitingFor,
+  timeline: Timeline,
+  tones: Tones,
+  plots: Plots,
+  descent: Descent,
+  events: Events,
+  commands: Commands,
+  data: Data,
+  waiting: WaitingFor,
   phases: () => null, // the strip stands above every panel that is alone
   ...Object.fromEntries(TABS.map(({ id, title }) => [id, inPanel(id, title)])),
 };
@@ -77,22 +127,47 @@ export function App({ panel }: { panel?: string | undefined }) {
   const run = runNow();
   const Alone = panel === undefined ? undefined : ALONE[panel as keyof typeof ALONE];
   return (
-    <div class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`} data-testid="console" data-mode={mode} onKeyDownCapture={ignoreHeldEnter}>
+    <div
+      class={`console mode-${mode} wants-${guideNow()?.wants ?? 'nothing'} ${stream.value.state === 'lost' ? 'is-lost' : ''} ${Alone ? 'alone' : ''} ${step.value === 'type' ? '' : 'reviewing'}`}
+      data-testid="console"
+      data-mode={mode}
+      onKeyDownCapture={ignoreHeldEnter}
+    >
       <Tape />
       <Header />
-      <section class="strip" aria-label="phase and pace"><Phases /><PaceBar /></section>
+      <section class="strip" aria-label="phase and pace">
+        <Phases />
+        <PaceBar />
+      </section>
       {run && <ExpiredBar />}
       <PastBar />
       <ReplayBar />
       <Notices />
-      {['out', 'choose'].includes(access.value.state) && !run ? <LogIn /> : Alone ? <main class="one"><Alone /></main> : (
+      {['out', 'choose'].includes(access.value.state) && !run ? (
+        <LogIn />
+      ) : Alone ? (
+        <main class="one">
+          <Alone />
+        </main>
+      ) : (
         <main class="grid">
           <div class="left">
             <Timeline />
-            <div class="middle"><Descent /><Plots /></div>
-            <div class="bottom"><Tones /><Data /></div>
+            <div class="middle">
+              <Descent />
+              <Plots />
+            </div>
+            <div class="bottom">
+              <Tones />
+              <Data />
+            </div>
           </div>
-          <div class="right"><WaitingFor /><Guide /><Events /><Commands /></div>
+          <div class="right">
+            <WaitingFor />
+            <Guide />
+            <Events />
+            <Commands />
+          </div>
         </main>
       )}
       <Help />

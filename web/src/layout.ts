@@ -25,25 +25,48 @@ export const LAYOUT = {
    */
   phases: [
     {
-      title: 'Cruise', of: ['pre_edl', 'late_cruise', 'exo_atmospheric'], untilEntry: 'wait_for_guidance', predicted_e_s: undefined, from: undefined,
-      plain: 'The vehicle coasts towards Mars. It drops its cruise stage and turns the heat shield forward. From “do edl” on it follows its own timeline.',
+      title: 'Cruise',
+      of: ['pre_edl', 'late_cruise', 'exo_atmospheric'],
+      untilEntry: 'wait_for_guidance',
+      predicted_e_s: undefined,
+      from: undefined,
+      plain:
+        'The vehicle coasts towards Mars. It drops its cruise stage and turns the heat shield forward. From “do edl” on it follows its own timeline.',
     },
     {
-      title: 'Entry', of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
-      untilEntry: undefined, predicted_e_s: 0, from: 'entry_interface',
-      plain: 'It brakes in the thin air, from 5.8 km/s, and steers by rolling left and right. Around the hottest minute the radio is silent: that is expected, and the timeline names it.',
+      title: 'Entry',
+      of: ['wait_for_guidance', 'range_control', 'heading_alignment', 'straighten_up', 'wait_for_parachute'],
+      untilEntry: undefined,
+      predicted_e_s: 0,
+      from: 'entry_interface',
+      plain:
+        'It brakes in the thin air, from 5.8 km/s, and steers by rolling left and right. Around the hottest minute the radio is silent: that is expected, and the timeline names it.',
     },
     {
-      title: 'Parachute', of: ['parachute_descent'], untilEntry: undefined, predicted_e_s: 255.9, from: 'parachute_deploy',
+      title: 'Parachute',
+      of: ['parachute_descent'],
+      untilEntry: undefined,
+      predicted_e_s: 255.9,
+      from: 'parachute_deploy',
       plain: 'The parachute is open. The heat shield drops away, and the radar looks for the ground.',
     },
     {
-      title: 'Powered descent', of: ['powered_descent', 'sky_crane'], untilEntry: undefined, predicted_e_s: 378.2, from: 'powered_approach',
-      plain: 'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
+      title: 'Powered descent',
+      of: ['powered_descent', 'sky_crane'],
+      untilEntry: undefined,
+      predicted_e_s: 378.2,
+      from: 'powered_approach',
+      plain:
+        'It let go of parachute and shell and brakes with eight engines. Twenty metres up, it lets the rover down on a bridle.',
     },
     {
-      title: 'Landed', of: ['landed', 'flyaway'], untilEntry: undefined, predicted_e_s: 431.5, from: 'touchdown',
-      plain: 'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
+      title: 'Landed',
+      of: ['landed', 'flyaway'],
+      untilEntry: undefined,
+      predicted_e_s: 431.5,
+      from: 'touchdown',
+      plain:
+        'The rover is on the ground, the descent stage has flown away. Now the recording comes down: all that could not be heard live.',
     },
   ],
   /** The mission whose landing the predicted corridor and phases are of. */
@@ -62,7 +85,12 @@ export const LAYOUT = {
   ],
   /** Commands that move timepoints, by their arguments: what they would do is drawn before they are sent. */
   moves: [
-    { command: 'EDL_SET_TIMEPOINT_OFFSET', timepoint: 'timepoint', desired: 'desired_offset_s', minimum: 'minimum_offset_s' },
+    {
+      command: 'EDL_SET_TIMEPOINT_OFFSET',
+      timepoint: 'timepoint',
+      desired: 'desired_offset_s',
+      minimum: 'minimum_offset_s',
+    },
     { command: 'EDL_SET_PARAMETERS', anchor: 'entry', sclk: 'entry_sclk' },
     { command: 'EDL_SET_ANCHOR_OFFSET', anchorNumber: 'anchor', offset: 'offset_s' },
   ],
@@ -72,9 +100,24 @@ export const LAYOUT = {
 
   /** Shown first in the table of channels. */
   channels: [
-    'edl_phase', 'altitude_m', 'speed_mps', 'descent_rate_mps', 'sensed_deceleration_g', 'bank_deg',
-    'bank_command_deg', 'range_to_go_m', 'crossrange_m', 'mach', 'dynamic_pressure_Pa', 'radar_altitude_m',
-    'propellant_kg', 'timepoint_index', 'timepoint_state', 'tone_current', 'uhf_queue_octets', 'nvm_used_octets',
+    'edl_phase',
+    'altitude_m',
+    'speed_mps',
+    'descent_rate_mps',
+    'sensed_deceleration_g',
+    'bank_deg',
+    'bank_command_deg',
+    'range_to_go_m',
+    'crossrange_m',
+    'mach',
+    'dynamic_pressure_Pa',
+    'radar_altitude_m',
+    'propellant_kg',
+    'timepoint_index',
+    'timepoint_state',
+    'tone_current',
+    'uhf_queue_octets',
+    'nvm_used_octets',
   ],
 
   /** What begins a landing, in words for someone who opened the page five minutes ago. `tone` says that it was taken. */
@@ -98,7 +141,8 @@ export const LAYOUT = {
 
   /** What the review of a rehearsal says of its landing: flight's own words, and where the vehicle believed to be. */
   landing: {
-    event: 'TOUCHDOWN', position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
+    event: 'TOUCHDOWN',
+    position: ['nav_position_x_m', 'nav_position_y_m', 'nav_position_z_m'],
     target: { latitude_deg: 'target_latitude_deg', longitude_deg: 'target_longitude_deg', radius_m: 'target_radius_m' },
   },
   /** The timepoint at which the descent picture ends. */
@@ -106,7 +150,19 @@ export const LAYOUT = {
   /** From then on the vehicle is two: these are of the one that flies away. */
   afterLanding: {
     whose: 'descent stage',
-    channels: ['altitude_m', 'speed_mps', 'descent_rate_mps', 'sensed_deceleration_g', 'bank_deg', 'bank_command_deg', 'mach', 'dynamic_pressure_Pa', 'radar_altitude_m', 'range_to_go_m', 'crossrange_m'],
+    channels: [
+      'altitude_m',
+      'speed_mps',
+      'descent_rate_mps',
+      'sensed_deceleration_g',
+      'bank_deg',
+      'bank_command_deg',
+      'mach',
+      'dynamic_pressure_Pa',
+      'radar_altitude_m',
+      'range_to_go_m',
+      'crossrange_m',
+    ],
   },
 
   /** What people call a thing, where its name is jargon; a picture has only the short form in brackets. */
@@ -116,16 +172,39 @@ export const LAYOUT = {
    * `predicted_e_s` is published [od137].
    */
   moments: [
-    { name: 'peak_deceleration', before: 'sufr', predicted_e_s: 79.35, plain: 'The hottest and hardest half minute; flight says so once it has passed.' },
-    { name: 'heading_alignment', before: 'sufr', predicted_e_s: undefined, plain: 'From then on it steers straight at the target.' },
+    {
+      name: 'peak_deceleration',
+      before: 'sufr',
+      predicted_e_s: 79.35,
+      plain: 'The hottest and hardest half minute; flight says so once it has passed.',
+    },
+    {
+      name: 'heading_alignment',
+      before: 'sufr',
+      predicted_e_s: undefined,
+      plain: 'From then on it steers straight at the target.',
+    },
   ],
 
   /** Seconds from entry that the timeline shows when nothing else is chosen. */
   window: { from: -60, to: 470 },
   /** Named moments that get a label in the timeline; the others are marks only. */
   labelled: [
-    'coolant_vent', 'cruise_stage_separation', 'turn_to_entry', 'entry_interface', 'entry_guidance', 'sufr',
-    'parachute_deploy', 'heatshield_separation', 'radar_processing', 'engine_priming', 'backshell_separation',
-    'powered_approach', 'sky_crane', 'rover_separation', 'touchdown', 'engines_off',
+    'coolant_vent',
+    'cruise_stage_separation',
+    'turn_to_entry',
+    'entry_interface',
+    'entry_guidance',
+    'sufr',
+    'parachute_deploy',
+    'heatshield_separation',
+    'radar_processing',
+    'engine_priming',
+    'backshell_separation',
+    'powered_approach',
+    'sky_crane',
+    'rover_separation',
+    'touchdown',
+    'engines_off',
   ],
 } as const;

@@ -19,9 +19,12 @@ startLoop();
 refineWhatIsLookedAt();
 
 /** Once it is known what is shown, or that somebody must log in first. */
-const known = new Promise<void>((resolve) => void effect(() => {
-  if (dictionary.value || access.value.state === 'out' || access.value.state === 'choose') resolve();
-}));
+const known = new Promise<void>(
+  (resolve) =>
+    void effect(() => {
+      if (dictionary.value || access.value.state === 'out' || access.value.state === 'choose') resolve();
+    }),
+);
 
 // Built once, with what it shows, while the first look is on its way: built before, it would be built twice, and the picture would come later.
 const root = document.getElementById('console');

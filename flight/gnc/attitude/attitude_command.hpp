@@ -8,15 +8,15 @@ namespace aeolis::flight::gnc {
 /// What guidance wants of the vehicle's attitude; attitude control makes thrusters and engines do it.
 struct AttitudeCommand {
     enum class Mode : std::uint8_t {
-        idle,          ///< nothing is steered: before GNC starts the vehicle is spin-stabilised
-        detumble,      ///< no rotation relative to inertial space
-        entry_bank,    ///< trim attitude in the wind with the lift vector at `bank_rad`
-        suspended,     ///< under the parachute: hangs as it will, swinging is damped
-        thrust,        ///< z of B opposes `thrust_direction_M`
+        idle,        ///< nothing is steered: before GNC starts the vehicle is spin-stabilised
+        detumble,    ///< no rotation relative to inertial space
+        entry_bank,  ///< trim attitude in the wind with the lift vector at `bank_rad`
+        suspended,   ///< under the parachute: hangs as it will, swinging is damped
+        thrust,      ///< z of B opposes `thrust_direction_M`
     };
     Mode mode = Mode::idle;
-    double bank_rad = 0.0;                      ///< positive: lift to the right of the velocity
-    std::array<double, 3> thrust_direction_M{}; ///< unit, direction in which the engines push the vehicle
+    double bank_rad = 0.0;                       ///< positive: lift to the right of the velocity
+    std::array<double, 3> thrust_direction_M{};  ///< unit, direction in which the engines push the vehicle
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

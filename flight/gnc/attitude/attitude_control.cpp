@@ -8,12 +8,11 @@
 namespace aeolis::flight::gnc {
 namespace {
 
-
-constexpr TurnLimits bank_limits{parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2 * degree,
-                                 parameters.bank_deadband_deg * degree, parameters.bank_gain_per_s};
-constexpr TurnLimits turn_limits{parameters.turn_rate_max_dps * degree, parameters.turn_acceleration_max_dps2 * degree,
-                                 parameters.turn_deadband_deg * degree, parameters.turn_gain_per_s};
-constexpr TurnLimits tilt_limits{parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2 * degree,
+constexpr TurnLimits bank_limits{parameters.bank_rate_max_dps * degree, parameters.bank_acceleration_max_dps2* degree,
+                                 parameters.bank_deadband_deg* degree, parameters.bank_gain_per_s};
+constexpr TurnLimits turn_limits{parameters.turn_rate_max_dps * degree, parameters.turn_acceleration_max_dps2* degree,
+                                 parameters.turn_deadband_deg* degree, parameters.turn_gain_per_s};
+constexpr TurnLimits tilt_limits{parameters.tilt_rate_max_dps * degree, parameters.tilt_acceleration_max_dps2* degree,
                                  0.0, parameters.tilt_gain_per_s};
 
 /// Shortened to a largest length.
@@ -78,13 +77,11 @@ Vector3 bank(const AttitudeCommand& command, const AttitudeState& state) {
 Vector3 acceleration(const AttitudeCommand& command, const AttitudeState& state) {
     using Mode = AttitudeCommand::Mode;
     switch (command.mode) {
-    case Mode::idle:
-        return Vector3::Zero();
+    case Mode::idle: return Vector3::Zero();
     case Mode::detumble:
         return towards(-state.rate_B_rps, parameters.rate_deadband_dps * degree, parameters.rate_response_s,
                        parameters.detumble_acceleration_dps2 * degree);
-    case Mode::entry_bank:
-        return bank(command, state);
+    case Mode::entry_bank: return bank(command, state);
     case Mode::suspended:
         return towards(-state.rate_B_rps, parameters.suspended_deadband_dps * degree, parameters.rate_response_s,
                        bank_limits.acceleration_rps2);
@@ -93,14 +90,15 @@ Vector3 acceleration(const AttitudeCommand& command, const AttitudeState& state)
         const Vector3 axis = Vector3::UnitZ().cross(wanted_B);
         const double sine = axis.norm();
         const double angle_rad = std::atan2(sine, wanted_B.z());
-        const Vector3 rate = sine > 1.0e-9 ? Vector3{axis / sine * rate_to_turn(angle_rad, tilt_limits)} : Vector3::Zero();
+        const Vector3 rate =
+            sine > 1.0e-9 ? Vector3{axis / sine * rate_to_turn(angle_rad, tilt_limits)} : Vector3::Zero();
         return limited((rate - state.rate_B_rps) / parameters.tilt_response_s, tilt_limits.acceleration_rps2);
     }
     }
     return Vector3::Zero();
 }
 
-} // namespace
+}  // namespace
 
 double bank_error(double bank_rad, const AttitudeState& state) {
     const Vector3 forward = state.v_MB_M.normalized();
@@ -116,4 +114,4 @@ Vector3 control_torque(const AttitudeCommand& command, const AttitudeState& stat
     return inertia.times(wanted_rps2) + state.rate_B_rps.cross(inertia.times(state.rate_B_rps));
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -9,9 +9,10 @@
 //   T = I · clamp((ω_wanted − ω) / τ) + ω × Iω,   nothing while |ω_wanted − ω| is within its deadband
 //
 //   detumble     ω_wanted = 0, brought down gently
-//   entry_bank   in vacuum: the rotation to the trim attitude at the wanted bank, about its own axis, by the phase plane;
-//                in the air, which holds the vehicle at its own trim angle: the bank error about the velocity by the phase
-//                plane, and the damping of what turns it across
+//   entry_bank   in vacuum: the rotation to the trim attitude at the wanted bank, about its own axis, by the phase
+//   plane;
+//                in the air, which holds the vehicle at its own trim angle: the bank error about the velocity by the
+//                phase plane, and the damping of what turns it across
 //   suspended    ω_wanted = 0 beyond a wide deadband: only what swings is damped
 //   thrust       the shortest turn that lays −z of B along the wanted thrust, no roll
 //
@@ -24,8 +25,8 @@ struct AttitudeState {
     Vector3 p_MoB_M = Vector3::UnitX();
     Vector3 v_MB_M = Vector3::Zero();
     Quaternion q_MB = Quaternion::Identity();
-    Vector3 rate_B_rps = Vector3::Zero(); ///< relative to inertial space
-    bool in_air = false;                  ///< the air is felt: it holds the vehicle at trim
+    Vector3 rate_B_rps = Vector3::Zero();  ///< relative to inertial space
+    bool in_air = false;                   ///< the air is felt: it holds the vehicle at trim
 };
 
 /// Moments of inertia about x (and y) and z of B. [kg m²]
@@ -41,4 +42,4 @@ Vector3 control_torque(const AttitudeCommand& command, const AttitudeState& stat
 /// By x rather than by the lean of z: it holds when the vehicle flies straight.
 double bank_error(double bank_rad, const AttitudeState& state);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -11,14 +11,15 @@
 // off in proportion, so that a thruster's least impulse does not make it hunt.
 //
 // In       θ [rad] still to turn, signed                    Out   rate [rad/s], towards θ
-// Source   [wie-1998] (switching curve of a double integrator); the reserve of three tenths and the shape at its end are ours
+// Source   [wie-1998] (switching curve of a double integrator); the reserve of three tenths and the shape at its end
+// are ours
 namespace aeolis::flight::gnc {
 
 struct TurnLimits {
     double rate_rps = 0.0;
     double acceleration_rps2 = 0.0;
     double deadband_rad = 0.0;
-    double gain_per_s = 0.0; ///< k
+    double gain_per_s = 0.0;  ///< k
 };
 
 inline double rate_to_turn(double angle_rad, const TurnLimits& limits) {
@@ -28,4 +29,4 @@ inline double rate_to_turn(double angle_rad, const TurnLimits& limits) {
     return std::copysign(std::min({limits.rate_rps, stoppable_rps, limits.gain_per_s * left_rad}), angle_rad);
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

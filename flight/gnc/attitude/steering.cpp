@@ -8,7 +8,8 @@ void Steering::cycle(const AttitudeCommand& wanted, const AttitudeState& state, 
     if (steers == Steers::thrusters)
         thrusters = thruster_selection_.select(torque_B_Nm);
     else
-        torque_allocation_.add(torque_B_Nm, steers == Steers::eight_engines ? 8 : 4, engine_max_thrust_N_, engines.throttle);
+        torque_allocation_.add(torque_B_Nm, steers == Steers::eight_engines ? 8 : 4, engine_max_thrust_N_,
+                               engines.throttle);
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

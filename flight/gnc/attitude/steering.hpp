@@ -28,4 +28,4 @@ class Steering {
     powered_descent::TorqueAllocation torque_allocation_;
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

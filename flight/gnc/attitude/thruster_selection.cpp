@@ -12,15 +12,14 @@ namespace {
 
 constexpr std::size_t mounts = thruster_count / 2;
 
-} // namespace
+}  // namespace
 
 ThrusterSelection::ThrusterSelection() {
     constexpr auto thrusters = entry_thrusters();
     Eigen::Matrix<double, 3, 4> torques;
     for (std::size_t mount = 0; mount < mounts; ++mount) {
         const Effector& even = thrusters[2 * mount];
-        torques.col(static_cast<Eigen::Index>(mount)) =
-            to_vector(even.position_B_m).cross(to_vector(even.direction_B));
+        torques.col(static_cast<Eigen::Index>(mount)) = to_vector(even.position_B_m).cross(to_vector(even.direction_B));
     }
     const Matrix3 square = torques * torques.transpose();
     forces_by_torque_ = torques.transpose() * square.inverse();
@@ -45,4 +44,4 @@ ThrusterCommand ThrusterSelection::select(const Vector3& torque_B_Nm) {
     return command;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

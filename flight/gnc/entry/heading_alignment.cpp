@@ -11,4 +11,4 @@ double heading_alignment_bank_rad(const TargetGeometry& geometry) {
                       heading_alignment_limit_rad);
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -16,4 +16,4 @@ inline constexpr double heading_alignment_limit_rad = parameters.heading_alignme
 
 double heading_alignment_bank_rad(const TargetGeometry& geometry);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -10,7 +10,7 @@ constexpr double deadband_0_m = parameters.crossrange_deadband_m;
 constexpr double deadband_2_s2pm = parameters.crossrange_deadband_s2pm;
 constexpr double reversal_interval_min_s = parameters.reversal_interval_min_s;
 
-} // namespace
+}  // namespace
 
 double crossrange_deadband_m(double velocity_mps, bool saturated) {
     const double deadband_m = deadband_0_m + deadband_2_s2pm * velocity_mps * velocity_mps;
@@ -26,4 +26,4 @@ bool LateralLogic::on(Sclk now, double crossrange_m, double velocity_mps, bool s
     return true;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -11,9 +11,10 @@
 //   and not sooner than a least time after the last reversal
 //
 // In       crossrange of the target, positive to the right; V            Out   sign of bank, number of reversals
-// Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation. Its numbers are ours, read
-//          off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned from there to its times);
-//          the second came only at 10 km, and the least time is what was between the first and it
+// Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation. Its numbers
+// are ours, read
+//          off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned from there to its
+//          times); the second came only at 10 km, and the least time is what was between the first and it
 namespace aeolis::flight::gnc {
 
 /// Half width of the deadband [m] at a velocity.
@@ -25,7 +26,7 @@ class LateralLogic {
     bool on(Sclk now, double crossrange_m, double velocity_mps, bool saturated, bool settled);
 
     void start(int sign) { sign_ = sign; }
-    int sign() const { return sign_; } ///< +1: lift to the right
+    int sign() const { return sign_; }  ///< +1: lift to the right
     std::uint8_t reversals() const { return reversals_; }
 
     template <typename Exchange>
@@ -39,4 +40,4 @@ class LateralLogic {
     std::optional<Sclk> reversed_at_;
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

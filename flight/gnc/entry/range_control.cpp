@@ -14,7 +14,7 @@ double between(double a, double b, double part) {
     return a + part * (b - a);
 }
 
-} // namespace
+}  // namespace
 
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps) {
     if (reference.row_count == 0) return {};
@@ -53,4 +53,4 @@ RangeControlOutput range_control(const EntryReference& reference, const RangeCon
     return out;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

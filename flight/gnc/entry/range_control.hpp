@@ -17,7 +17,7 @@
 // Valid    within the reference's velocities; held at its ends
 namespace aeolis::flight::gnc {
 
-inline constexpr double overcontrol_gain = parameters.guidance_gain; ///< K
+inline constexpr double overcontrol_gain = parameters.guidance_gain;  ///< K
 
 /// The reference at a velocity, linear between its rows, held at its ends. An empty reference gives a row of zeros.
 EntryReferenceRow reference_at(const EntryReference& reference, double velocity_mps);
@@ -32,11 +32,11 @@ struct RangeControlInput {
 
 struct RangeControlOutput {
     double predicted_range_m = 0.0;
-    double vertical_lift_to_drag = 0.0; ///< wanted, before what lift can give
-    double bank_magnitude_rad = 0.0;    ///< 0 … π
-    bool saturated = false;             ///< lift nearly full up or down: nothing left to steer range with
+    double vertical_lift_to_drag = 0.0;  ///< wanted, before what lift can give
+    double bank_magnitude_rad = 0.0;     ///< 0 … π
+    bool saturated = false;              ///< lift nearly full up or down: nothing left to steer range with
 };
 
 RangeControlOutput range_control(const EntryReference& reference, const RangeControlInput& input);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -8,7 +8,7 @@ namespace aeolis::flight::gnc {
 TargetGeometry target_geometry(const Vector3& p_MoB_M, const Vector3& v_MB_M, const Vector3& target_M,
                                double target_radius_m) {
     const Vector3 up = p_MoB_M.normalized();
-    const Vector3 left = up.cross(v_MB_M).normalized(); // of the plane of flight
+    const Vector3 left = up.cross(v_MB_M).normalized();  // of the plane of flight
     const Vector3 ahead = left.cross(up);
     const double above = target_M.dot(up);
     TargetGeometry geometry;
@@ -36,4 +36,4 @@ double angle_of_attack(const Quaternion& q_MB, const Vector3& v_MB_M) {
     return std::atan2(z.cross(v_MB_M).norm(), z.dot(v_MB_M));
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -11,9 +11,9 @@
 namespace aeolis::flight::gnc {
 
 struct TargetGeometry {
-    double range_to_go_m = 0.0; ///< along the great circle to the target, at the target's radius
-    double crossrange_m = 0.0;  ///< of the target from the plane of flight, positive to the right
-    double downrange_m = 0.0;   ///< to the foot of the target on the plane of flight; negative once passed
+    double range_to_go_m = 0.0;  ///< along the great circle to the target, at the target's radius
+    double crossrange_m = 0.0;   ///< of the target from the plane of flight, positive to the right
+    double downrange_m = 0.0;    ///< to the foot of the target on the plane of flight; negative once passed
 };
 
 /// @param target_M  unit, from Mars's centre to the target
@@ -30,4 +30,4 @@ double bank_of(const Quaternion& q_MB, const Vector3& p_MoB_M, const Vector3& v_
 /// Angle between z of B and the velocity [rad], 0 … π.
 double angle_of_attack(const Quaternion& q_MB, const Vector3& v_MB_M);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

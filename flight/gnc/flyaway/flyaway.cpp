@@ -13,4 +13,4 @@ Command command(double since_start_s, const Vector3& p_MoB_M) {
     return {std::cos(pitch) * p_MoB_M.normalized() + std::sin(pitch) * away, since_start_s >= clear_s};
 }
 
-} // namespace aeolis::flight::gnc::flyaway
+}  // namespace aeolis::flight::gnc::flyaway

@@ -20,10 +20,10 @@ inline constexpr double pitch_rad = parameters.flyaway_pitch_deg * degree;
 inline constexpr double azimuth_rad = parameters.flyaway_azimuth_deg * degree;
 
 struct Command {
-    Vector3 direction_M = Vector3::UnitX(); ///< unit, of thrust
-    bool full = false;                      ///< else the stage's weight
+    Vector3 direction_M = Vector3::UnitX();  ///< unit, of thrust
+    bool full = false;                       ///< else the stage's weight
 };
 
 Command command(double since_start_s, const Vector3& p_MoB_M);
 
-} // namespace aeolis::flight::gnc::flyaway
+}  // namespace aeolis::flight::gnc::flyaway

@@ -46,7 +46,7 @@ class ForceFilter {
   private:
     double drag_mps2_ = 0.0;
     double lift_mps2_ = 0.0;
-    double slow_drag_mps2_ = 0.0; ///< as slow as lift, so that their ratio does not lag
+    double slow_drag_mps2_ = 0.0;  ///< as slow as lift, so that their ratio does not lag
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

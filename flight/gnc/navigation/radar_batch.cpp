@@ -7,12 +7,11 @@ namespace aeolis::flight::gnc {
 
 namespace {
 
-
 std::int64_t quarter_of(Sclk time) {
     return static_cast<std::int64_t>(std::floor(time.seconds * radar_bins_per_second));
 }
 
-} // namespace
+}  // namespace
 
 void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M) {
     const std::int64_t quarter = quarter_of(now);
@@ -37,7 +36,7 @@ void RadarBatch::on(Sclk now, std::span<const RadarBeam> beams, const Quaternion
 }
 
 std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
-    const std::int64_t newest = quarter_of(now); // it is not complete yet
+    const std::int64_t newest = quarter_of(now);  // it is not complete yet
     const auto oldest = newest - static_cast<std::int64_t>(bins_.size()) + 1;
     RadarSolution solution;
     Vector3 v_sum = Vector3::Zero();
@@ -66,4 +65,4 @@ std::optional<RadarSolution> RadarBatch::solve(Sclk now) const {
     return solution;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

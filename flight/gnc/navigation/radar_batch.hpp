@@ -26,37 +26,37 @@ namespace aeolis::flight::gnc {
 /// Averages that EdlBg made of the radar's beams over 5 s, sent to the filter at 1 Hz. Made by
 /// navigation/radar_batch.hpp; the filter averages its own past over the same span, so the delay does no harm. R25
 struct RadarSolution {
-    Sclk time;               ///< middle of the measurements averaged
-    double span_s = 0.0;     ///< from the first measurement averaged to the last
-    double altitude_m = 0.0; ///< above the ground below
+    Sclk time;                ///< middle of the measurements averaged
+    double span_s = 0.0;      ///< from the first measurement averaged to the last
+    double altitude_m = 0.0;  ///< above the ground below
     std::array<double, 3> v_MB_M_mps{};
     std::uint16_t beams = 0;
 };
 
-inline constexpr double radar_bins_per_second = 4.0; ///< a quarter of a second: five measurements of each beam
+inline constexpr double radar_bins_per_second = 4.0;  ///< a quarter of a second: five measurements of each beam
 
 class RadarBatch {
   public:
     /// The beams of one cycle, with the navigated attitude of that cycle and the local vertical in M.
     void on(Sclk now, std::span<const RadarBeam> beams, const Quaternion& q_MB, const Vector3& up_M);
 
-    /// The average over the last whole quarters, 4.75 s; a quarter with too few measurements or all in one plane is left
-    /// out. None when all are.
+    /// The average over the last whole quarters, 4.75 s; a quarter with too few measurements or all in one plane is
+    /// left out. None when all are.
     std::optional<RadarSolution> solve(Sclk now) const;
 
     void clear() { bins_ = {}; }
 
   private:
     struct Bin {
-        std::int64_t quarter = -1; ///< SCLK in quarters of a second
+        std::int64_t quarter = -1;  ///< SCLK in quarters of a second
         Sclk first, last;
-        double time_sum_s = 0.0; ///< of the measurements, relative to the bin's start
+        double time_sum_s = 0.0;  ///< of the measurements, relative to the bin's start
         double altitude_sum_m = 0.0;
         Matrix3 normal = Matrix3::Zero();
         Vector3 right = Vector3::Zero();
         std::uint16_t beams = 0;
     };
-    std::array<Bin, static_cast<std::size_t>(parameters.radar_average_s * radar_bins_per_second)> bins_{};
+    std::array<Bin, static_cast<std::size_t>(parameters.radar_average_s* radar_bins_per_second)> bins_{};
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -9,7 +9,7 @@ namespace {
 
 constexpr auto refused_max = static_cast<std::uint32_t>(parameters.radar_refused_max);
 
-} // namespace
+}  // namespace
 
 void RadarFilter::remember(Sclk now, double altitude_m, const Vector3& v_MB_M) {
     if (now.ticks() % 4 != 0) return;
@@ -46,7 +46,8 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     const double residual_h_m = solution.altitude_m - altitude_m;
     const Vector3 residual_v = to_vector(solution.v_MB_M_mps) - v_mean;
 
-    const bool outside = std::abs(residual_h_m) > parameters.radar_altitude_gate_m + parameters.radar_altitude_gate_fraction * solution.altitude_m ||
+    const bool outside = std::abs(residual_h_m) > parameters.radar_altitude_gate_m +
+                                                      parameters.radar_altitude_gate_fraction * solution.altitude_m ||
                          residual_v.norm() > parameters.radar_velocity_gate_mps;
     if (accepted_ > 0 && outside && refused_in_a_row_ < refused_max) {
         ++refused_;
@@ -69,4 +70,4 @@ std::optional<RadarCorrection> RadarFilter::on(const RadarSolution& solution, Sc
     return correction;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -21,8 +21,8 @@
 namespace aeolis::flight::gnc {
 
 struct RadarCorrection {
-    double altitude_m = 0.0;           ///< to add along the local vertical
-    Vector3 v_M_mps = Vector3::Zero(); ///< to add to the velocity
+    double altitude_m = 0.0;            ///< to add along the local vertical
+    Vector3 v_M_mps = Vector3::Zero();  ///< to add to the velocity
 };
 
 class RadarFilter {
@@ -57,4 +57,4 @@ class RadarFilter {
     std::uint32_t refused_in_a_row_ = 0;
 };
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

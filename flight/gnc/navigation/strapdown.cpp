@@ -19,7 +19,7 @@ Quaternion small_rotation(const Vector3& angle) {
     return {1.0 - 0.5 * half_squared, s * angle.x(), s * angle.y(), s * angle.z()};
 }
 
-} // namespace
+}  // namespace
 
 void Strapdown::shift(const NavigationShift& by) {
     correct(to_vector(by.p_MoB_M_m), to_vector(by.v_MB_M_mps));
@@ -64,7 +64,7 @@ void Strapdown::on(const ImuSample& sample, bool force_felt) {
 
 void Strapdown::coast(double dt_s) {
     state_ = propagate(state_, dt_s);
-    counting_ = false; // increments of this time, should they still come, were coasted over
+    counting_ = false;  // increments of this time, should they still come, were coasted over
 }
 
 NavigatedState propagate(const NavigatedState& state, double seconds) {
@@ -85,4 +85,4 @@ NavigatedState propagate(const NavigatedState& state, double seconds) {
     return now;
 }
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -20,12 +20,12 @@
 // Valid    rates below 1 rad/s (Δθ below 5e-3 rad a step: error of the step below 1e-8 rad)
 namespace aeolis::flight::gnc {
 
-inline constexpr double imu_period_s = 1.0 / 200.0; ///< [facts] Vehicle
+inline constexpr double imu_period_s = 1.0 / 200.0;  ///< [facts] Vehicle
 inline constexpr std::uint32_t gap_max = static_cast<std::uint32_t>(parameters.imu_gap_max);
 
 struct NavigatedState {
-    Vector3 p_MoB_M = Vector3::Zero(); ///< [m]
-    Vector3 v_MB_M = Vector3::Zero();  ///< [m/s] relative to rotating Mars
+    Vector3 p_MoB_M = Vector3::Zero();  ///< [m]
+    Vector3 v_MB_M = Vector3::Zero();   ///< [m/s] relative to rotating Mars
     Quaternion q_MB = Quaternion::Identity();
 };
 
@@ -47,8 +47,8 @@ class Strapdown {
     void coast(double dt_s);
 
     const NavigatedState& state() const { return state_; }
-    const Vector3& specific_force_B_mps2() const { return specific_force_B_mps2_; } ///< of the last increment
-    const Vector3& rate_B_rps() const { return rate_B_rps_; }                       ///< relative to inertial space
+    const Vector3& specific_force_B_mps2() const { return specific_force_B_mps2_; }  ///< of the last increment
+    const Vector3& rate_B_rps() const { return rate_B_rps_; }                        ///< relative to inertial space
     const Vector3& bias_B_mps2() const { return bias_B_mps2_; }
     std::uint32_t filled() const { return filled_; }
 
@@ -75,4 +75,4 @@ class Strapdown {
 /// Runge–Kutta 4 at steps of at most 1 s. Error below 1 m over two hours outside the atmosphere.
 NavigatedState propagate(const NavigatedState& state, double seconds);
 
-} // namespace aeolis::flight::gnc
+}  // namespace aeolis::flight::gnc

@@ -12,7 +12,7 @@ namespace {
 constexpr double velocity_gain_per_s = parameters.divert_velocity_gain_per_s;
 constexpr double position_gain_per_s2 = parameters.divert_position_gain_per_s2;
 
-} // namespace
+}  // namespace
 
 void Divert::start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s) {
     duration_s_ = std::max(duration_s, 1.0);
@@ -54,4 +54,4 @@ Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad) {
     return std::cos(azimuth_rad) * north + std::sin(azimuth_rad) * east;
 }
 
-} // namespace aeolis::flight::gnc::powered_descent
+}  // namespace aeolis::flight::gnc::powered_descent

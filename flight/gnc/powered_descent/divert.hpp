@@ -19,9 +19,9 @@ class Divert {
     /// @param v0_M            [m/s] horizontal velocity at the start
     void start(const Vector3& displacement_M, const Vector3& v0_M, double duration_s);
 
-    Vector3 position_M(double t_s) const; ///< from the start
+    Vector3 position_M(double t_s) const;  ///< from the start
     Vector3 velocity_M(double t_s) const;
-    Vector3 acceleration_M(double t_s) const; ///< nil after the end
+    Vector3 acceleration_M(double t_s) const;  ///< nil after the end
 
     /// Horizontal acceleration to command at t, x and v being measured from the start.
     Vector3 command_M(double t_s, const Vector3& x_M, const Vector3& v_M) const;
@@ -41,4 +41,4 @@ class Divert {
 /// Horizontal unit vector of an azimuth (from north to east) at p, in M.
 Vector3 azimuth_direction(const Vector3& p_MoB_M, double azimuth_rad);
 
-} // namespace aeolis::flight::gnc::powered_descent
+}  // namespace aeolis::flight::gnc::powered_descent

@@ -9,7 +9,8 @@
 namespace aeolis::flight::gnc::powered_descent {
 namespace {
 
-/// Thrust changes by torque: the pseudo-inverse of torques and sum of the engines that run, its columns for the torques.
+/// Thrust changes by torque: the pseudo-inverse of torques and sum of the engines that run, its columns for the
+/// torques.
 template <int n>
 Eigen::Matrix<double, n, 3> changes_by_torque() {
     constexpr auto engines = descent_engines();
@@ -23,7 +24,7 @@ Eigen::Matrix<double, n, 3> changes_by_torque() {
     return (effect.transpose() * square.inverse()).template leftCols<3>();
 }
 
-} // namespace
+}  // namespace
 
 TorqueAllocation::TorqueAllocation() : of_eight_(changes_by_torque<8>()), of_four_(changes_by_torque<4>()) {}
 
@@ -31,12 +32,11 @@ void TorqueAllocation::add(const Vector3& torque_B_Nm, int engines, double engin
                            std::array<double, 8>& throttle) const {
     Eigen::Matrix<double, 8, 1> change_N = Eigen::Matrix<double, 8, 1>::Zero();
     if (engines == 4)
-        for (Eigen::Index i = 0; i < 4; ++i)
-            change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
+        for (Eigen::Index i = 0; i < 4; ++i) change_N[2 * i] = of_four_.row(i).dot(torque_B_Nm);
     else
         change_N = of_eight_ * torque_B_Nm;
-    // Attitude comes before thrust: without the one the other pushes the wrong way. Where an engine would leave its range, all
-    // are throttled back or up until the torque has room; only a torque beyond the whole range is cut.
+    // Attitude comes before thrust: without the one the other pushes the wrong way. Where an engine would leave its
+    // range, all are throttled back or up until the torque has room; only a torque beyond the whole range is cut.
     const double most_N = change_N.maxCoeff(), least_N = change_N.minCoeff();
     const double part = std::min(1.0, (engine_used_max_N - engine_used_min_N) / std::max(most_N - least_N, 1.0));
     double each_N = throttle[0] * engine_max_thrust_N;
@@ -51,8 +51,7 @@ std::array<double, 8> throttles_for(double thrust_N, int engines, double engine_
     given_N = each_N * engines;
     std::array<double, 8> throttle{};
     const std::size_t stride = engines == 4 ? 2 : 1;
-    for (std::size_t i = 0; i < throttle.size(); i += stride)
-        throttle[i] = each_N / engine_max_thrust_N;
+    for (std::size_t i = 0; i < throttle.size(); i += stride) throttle[i] = each_N / engine_max_thrust_N;
     return throttle;
 }
 
@@ -73,4 +72,4 @@ Thrust allocate(const Vector3& specific_force_M, const Vector3& up_M, double mas
     return thrust;
 }
 
-} // namespace aeolis::flight::gnc::powered_descent
+}  // namespace aeolis::flight::gnc::powered_descent

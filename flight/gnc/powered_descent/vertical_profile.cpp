@@ -16,7 +16,7 @@ double limited(double deceleration_mps2) {
     return std::clamp(deceleration_mps2, deceleration_min_mps2, deceleration_max_mps2);
 }
 
-} // namespace
+}  // namespace
 
 double altitude_used_until_constant_velocity_m(double descent_rate_mps) {
     const double after_fall_mps = descent_rate_mps + mars_weight_mps2 * free_fall_s;
@@ -76,4 +76,4 @@ double DecelerationProfile::acceleration_mps2(double descent_rate_mps) const {
     return planned_mps2 + 2.0 * rate_gain_per_s * (descent_rate_mps - rate_mps_);
 }
 
-} // namespace aeolis::flight::gnc::powered_descent
+}  // namespace aeolis::flight::gnc::powered_descent

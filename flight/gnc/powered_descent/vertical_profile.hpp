@@ -6,7 +6,8 @@
 //
 //   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left
 //   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error
-//   constant decel.  v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now: constant but
+//   constant decel.  v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now:
+//   constant but
 //                    for what the radar still corrects
 //   command          a_up = a_ref + k (v − v_ref)
 //
@@ -16,8 +17,7 @@
 namespace aeolis::flight::gnc::powered_descent {
 
 /// The bridle, and from its end to the wheels.
-inline constexpr double stage_height_at_touchdown_m =
-    parameters.bridle_length_m + parameters.stage_above_bridle_m;
+inline constexpr double stage_height_at_touchdown_m = parameters.bridle_length_m + parameters.stage_above_bridle_m;
 inline constexpr double constant_velocity_mps = parameters.constant_velocity_mps;
 inline constexpr double sky_crane_mps = parameters.sky_crane_descent_rate_mps;
 inline constexpr double approach_end_altitude_m =
@@ -36,7 +36,7 @@ class ApproachProfile {
   public:
     void start(double altitude_m, double descent_rate_mps);
     double descent_rate_mps(double altitude_m) const;
-    double acceleration_mps2(double altitude_m, double descent_rate_mps) const; ///< up, to command
+    double acceleration_mps2(double altitude_m, double descent_rate_mps) const;  ///< up, to command
     bool done(double altitude_m, double descent_rate_mps) const;
     double deceleration_mps2() const { return deceleration_mps2_; }
 
@@ -60,7 +60,7 @@ class DecelerationProfile {
     void start(double altitude_m, double descent_rate_mps);
     void advance(double altitude_m, double dt_s);
     double descent_rate_mps() const { return rate_mps_; }
-    double acceleration_mps2(double descent_rate_mps) const; ///< up, to command
+    double acceleration_mps2(double descent_rate_mps) const;  ///< up, to command
     double deceleration_mps2() const { return deceleration_mps2_; }
 
     template <typename Exchange>
@@ -75,4 +75,4 @@ class DecelerationProfile {
     double deceleration_mps2_ = constant_deceleration_mps2;
 };
 
-} // namespace aeolis::flight::gnc::powered_descent
+}  // namespace aeolis::flight::gnc::powered_descent

@@ -14,7 +14,7 @@ constexpr double integral_max_mps2 = parameters.sky_crane_integral_max_mps2;
 constexpr double command_max_mps2 = parameters.sky_crane_command_max_mps2;
 constexpr double level_per_s = parameters.sky_crane_level_per_s;
 
-} // namespace
+}  // namespace
 
 Vector3 RateControl::command_M(const Vector3& v_MB_M, const Vector3& up_M, double wanted_descent_rate_mps,
                                double dt_s) {
@@ -27,4 +27,4 @@ Vector3 RateControl::command_M(const Vector3& v_MB_M, const Vector3& up_M, doubl
     return up_mps2 * up_M - level_per_s * (v_MB_M - climb_mps * up_M);
 }
 
-} // namespace aeolis::flight::gnc::sky_crane
+}  // namespace aeolis::flight::gnc::sky_crane

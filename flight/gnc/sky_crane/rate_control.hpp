@@ -27,4 +27,4 @@ class RateControl {
     double integral_mps2_ = 0.0;
 };
 
-} // namespace aeolis::flight::gnc::sky_crane
+}  // namespace aeolis::flight::gnc::sky_crane

@@ -18,4 +18,4 @@ Conditions TouchdownLogic::on(double thrust_command_N, double mass_kg, double ro
     return conditions;
 }
 
-} // namespace aeolis::flight::gnc::sky_crane
+}  // namespace aeolis::flight::gnc::sky_crane

@@ -33,4 +33,4 @@ class TouchdownLogic {
     std::uint32_t settled_cycles_ = 0;
 };
 
-} // namespace aeolis::flight::gnc::sky_crane
+}  // namespace aeolis::flight::gnc::sky_crane

@@ -10,4 +10,4 @@ double bank_rad(double since_start_s, double bank_at_start_rad) {
     return std::copysign(left, bank_at_start_rad);
 }
 
-} // namespace aeolis::flight::gnc::sufr
+}  // namespace aeolis::flight::gnc::sufr

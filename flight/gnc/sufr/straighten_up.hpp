@@ -16,4 +16,4 @@ inline constexpr double roll_rate_rps = parameters.sufr_roll_rate_dps * degree;
 
 double bank_rad(double since_start_s, double bank_at_start_rad);
 
-} // namespace aeolis::flight::gnc::sufr
+}  // namespace aeolis::flight::gnc::sufr

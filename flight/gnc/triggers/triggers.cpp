@@ -26,22 +26,21 @@ Conditions list(const Condition& a, const Condition& b, const Condition& c) {
     return conditions;
 }
 
-constexpr double near_fraction = parameters.held_near_fraction; // of the bound
+constexpr double near_fraction = parameters.held_near_fraction;  // of the bound
 
-} // namespace
+}  // namespace
 
 bool near(const Conditions& conditions) {
     if (conditions.empty()) return false;
     const Condition& first = conditions[0];
-    if (first.quantity == Quantity::time_in_mode_s) return false; // a timer decides nothing
+    if (first.quantity == Quantity::time_in_mode_s) return false;  // a timer decides nothing
     return first.holds || std::abs(first.value - first.bound) <= near_fraction * std::abs(first.bound);
 }
 
 Conditions worth_telling(const Conditions& conditions) {
     Conditions told;
     for (const Condition& condition : conditions)
-        if (condition.quantity != Quantity::cycles_held || condition.value > 0.0)
-            told.push_back(condition);
+        if (condition.quantity != Quantity::cycles_held || condition.value > 0.0) told.push_back(condition);
     return told;
 }
 
@@ -70,8 +69,7 @@ bool parachute_due(const InAir& at, const ParachuteBounds& bounds) {
 Conditions parachute(const InAir& at, const ParachuteBounds& bounds, std::uint32_t cycles_held) {
     const Condition slow = at_most(Quantity::speed_mps, at.speed_mps, bounds.speed_mps);
     const Condition low = at_most(Quantity::altitude_m, at.altitude_m, bounds.altitude_min_m);
-    return list(low.holds && !slow.holds ? low : slow,
-                at_least(Quantity::cycles_held, cycles_held, parachute_cycles));
+    return list(low.holds && !slow.holds ? low : slow, at_least(Quantity::cycles_held, cycles_held, parachute_cycles));
 }
 
 Conditions heatshield(double speed_mps, double heatshield_speed_mps, double since_parachute_s) {
@@ -92,10 +90,9 @@ Conditions engine_priming(double altitude_m, double descent_rate_mps, double bac
 
 Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held) {
-    return list(
-        at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(bounds, descent_rate_mps)),
-        at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
-        at_least(Quantity::cycles_held, cycles_held, backshell_cycles));
+    return list(at_most(Quantity::altitude_m, altitude_m, backshell_altitude_needed_m(bounds, descent_rate_mps)),
+                at_least(Quantity::descent_rate_mps, descent_rate_mps, 1.0),
+                at_least(Quantity::cycles_held, cycles_held, backshell_cycles));
 }
 
-} // namespace aeolis::flight::gnc::triggers
+}  // namespace aeolis::flight::gnc::triggers

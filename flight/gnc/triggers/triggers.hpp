@@ -14,13 +14,13 @@
 namespace aeolis::flight::gnc::triggers {
 
 inline constexpr double guidance_start_drag_mps2 = parameters.guidance_start_drag_mps2;
-inline constexpr double sufr_lead_s = parameters.sufr_lead_s; ///< before the parachute
+inline constexpr double sufr_lead_s = parameters.sufr_lead_s;  ///< before the parachute
 inline constexpr auto parachute_cycles = static_cast<std::uint32_t>(parameters.parachute_cycles);
 inline constexpr auto backshell_cycles = static_cast<std::uint32_t>(parameters.backshell_cycles);
-inline constexpr double heatshield_delay_s = parameters.heatshield_delay_min_s; ///< after the mortar
-inline constexpr double priming_lead_s = parameters.priming_lead_s;             ///< before backshell separation
-inline constexpr double radar_patience_s = parameters.radar_patience_s; ///< after heatshield separation
-inline constexpr double sky_crane_settling_s = parameters.sky_crane_settle_s; ///< to rover separation
+inline constexpr double heatshield_delay_s = parameters.heatshield_delay_min_s;  ///< after the mortar
+inline constexpr double priming_lead_s = parameters.priming_lead_s;              ///< before backshell separation
+inline constexpr double radar_patience_s = parameters.radar_patience_s;          ///< after heatshield separation
+inline constexpr double sky_crane_settling_s = parameters.sky_crane_settle_s;    ///< to rover separation
 
 /// Counts how long a condition has held without a break.
 class Persistence {
@@ -74,8 +74,8 @@ struct BackshellBounds {
     double descent_rate_mps = 0.0;
 };
 
-/// Altitude at which the backshell must go at a descent rate so that the same powered approach fits below: at the rate of
-/// ground's solution its altitude; faster, higher by what free fall and the approach then need more.
+/// Altitude at which the backshell must go at a descent rate so that the same powered approach fits below: at the rate
+/// of ground's solution its altitude; faster, higher by what free fall and the approach then need more.
 double backshell_altitude_needed_m(const BackshellBounds& bounds, double descent_rate_mps);
 
 /// Time is counted to the altitude of ground's solution: by then the descent rate is near its design value.
@@ -83,4 +83,4 @@ Conditions engine_priming(double altitude_m, double descent_rate_mps, double bac
 Conditions backshell(double altitude_m, double descent_rate_mps, const BackshellBounds& bounds,
                      std::uint32_t cycles_held);
 
-} // namespace aeolis::flight::gnc::triggers
+}  // namespace aeolis::flight::gnc::triggers

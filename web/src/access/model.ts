@@ -43,17 +43,22 @@ export async function learnAccess(): Promise<void> {
 
 function turnAway(): void {
   const now = access.peek();
-  access.value = now.state === 'out' ? now : { state: 'out', expired: now.state === 'in', user: now.state === 'in' ? now.user : '' };
+  access.value =
+    now.state === 'out' ? now : { state: 'out', expired: now.state === 'in', user: now.state === 'in' ? now.user : '' };
 }
 
-export const logIn = (user: string, password: string): Promise<void> => enter(() => call('POST', '/session', { user, password }));
+export const logIn = (user: string, password: string): Promise<void> =>
+  enter(() => call('POST', '/session', { user, password }));
 
 /** In place of the one that another gave. */
 export async function choosePassword(given: string, chosen: string, again: string): Promise<void> {
   const now = access.value;
   if (now.state !== 'choose') return;
   if (chosen !== again) problem.value = 'the two are not the same: type them again';
-  else await enter(() => call('PATCH', `/users/${encodeURIComponent(now.user)}`, { current_password: given, password: chosen }));
+  else
+    await enter(() =>
+      call('PATCH', `/users/${encodeURIComponent(now.user)}`, { current_password: given, password: chosen }),
+    );
 }
 
 async function enter(ask: () => Promise<unknown>): Promise<void> {

@@ -37,10 +37,15 @@ describe('access', () => {
     server.routes['GET /session'] = session('ann');
     await logIn('ann', 'y');
     expect(access.value).toEqual({ state: 'in', user: 'ann', role: 'controller', rights: ['command'] });
-    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([{ user: 'ann', password: 'x' }, { user: 'ann', password: 'y' }]);
+    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([
+      { user: 'ann', password: 'x' },
+      { user: 'ann', password: 'y' },
+    ]);
   });
   it('with a password that another gave asks for one of their own before anything else', async () => {
-    server.routes['GET /session'] = { json: { accounts: true, user: 'ann', role: 'director', rights: [], choose_password: true } };
+    server.routes['GET /session'] = {
+      json: { accounts: true, user: 'ann', role: 'director', rights: [], choose_password: true },
+    };
     await learnAccess();
     expect(access.value).toEqual({ state: 'choose', user: 'ann' });
     await choosePassword('given', 'one of my own', 'one of my won');

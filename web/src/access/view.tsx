@@ -13,38 +13,97 @@ function Form({ known }: { known: string }) {
     if (known === '') first.current?.focus();
   }, [known]);
   return (
-    <form data-testid="log-in" aria-label="log in" onSubmit={(event) => {
-      event.preventDefault();
-      const [name, secret] = [user.value || known, password.value];
-      password.value = '';
-      void logIn(name, secret);
-    }}>
-      <label>user <input ref={first} name="username" autocomplete="username" maxLength={64} required value={user.value || known} data-testid="log-in-user" spellcheck={false}
-        onInput={(event) => (user.value = event.currentTarget.value)} /></label>
-      <label>password <input name="password" type="password" autocomplete="current-password" maxLength={1024} required value={password.value} data-testid="log-in-password"
-        onInput={(event) => (password.value = event.currentTarget.value)} /></label>
-      <button type="submit" class="primary" disabled={busy.value}>{busy.value ? 'asking…' : 'log in'}</button>
-      {problem.value && <p role="alert" class="status-alarm" data-testid="log-in-problem">✖ {problem.value}</p>}
+    <form
+      data-testid="log-in"
+      aria-label="log in"
+      onSubmit={(event) => {
+        event.preventDefault();
+        const [name, secret] = [user.value || known, password.value];
+        password.value = '';
+        void logIn(name, secret);
+      }}
+    >
+      <label>
+        user{' '}
+        <input
+          ref={first}
+          name="username"
+          autocomplete="username"
+          maxLength={64}
+          required
+          value={user.value || known}
+          data-testid="log-in-user"
+          spellcheck={false}
+          onInput={(event) => (user.value = event.currentTarget.value)}
+        />
+      </label>
+      <label>
+        password{' '}
+        <input
+          name="password"
+          type="password"
+          autocomplete="current-password"
+          maxLength={1024}
+          required
+          value={password.value}
+          data-testid="log-in-password"
+          onInput={(event) => (password.value = event.currentTarget.value)}
+        />
+      </label>
+      <button type="submit" class="primary" disabled={busy.value}>
+        {busy.value ? 'asking…' : 'log in'}
+      </button>
+      {problem.value && (
+        <p role="alert" class="status-alarm" data-testid="log-in-problem">
+          ✖ {problem.value}
+        </p>
+      )}
     </form>
   );
 }
 
-const CHOICE = [['given', 'the one you were given', 'current-password'], ['chosen', 'your own, 12 letters or more', 'new-password'], ['again', 'once more', 'new-password']] as const;
+const CHOICE = [
+  ['given', 'the one you were given', 'current-password'],
+  ['chosen', 'your own, 12 letters or more', 'new-password'],
+  ['again', 'once more', 'new-password'],
+] as const;
 
 function ChooseForm({ who }: { who: string }) {
   return (
-    <form data-testid="choose-password" aria-label="choose a password" onSubmit={(event) => {
-      event.preventDefault();
-      const form = event.currentTarget;
-      const [given = '', chosen = '', again = ''] = CHOICE.map(([name]) => (form.elements.namedItem(name) as HTMLInputElement).value);
-      void choosePassword(given, chosen, again);
-    }}>
+    <form
+      data-testid="choose-password"
+      aria-label="choose a password"
+      onSubmit={(event) => {
+        event.preventDefault();
+        const form = event.currentTarget;
+        const [given = '', chosen = '', again = ''] = CHOICE.map(
+          ([name]) => (form.elements.namedItem(name) as HTMLInputElement).value,
+        );
+        void choosePassword(given, chosen, again);
+      }}
+    >
       <p>{who}, this password was given to you. Choose one of your own, then everything else opens.</p>
       {CHOICE.map(([name, label, complete]) => (
-        <label key={name}>{label} <input name={name} type="password" autocomplete={complete} required maxLength={128} data-testid={`password-${name}`} /></label>
+        <label key={name}>
+          {label}{' '}
+          <input
+            name={name}
+            type="password"
+            autocomplete={complete}
+            required
+            maxLength={128}
+            data-testid={`password-${name}`}
+          />
+        </label>
       ))}
-      <button type="submit" class="primary" disabled={busy.value}>{busy.value ? 'asking…' : 'choose it'}</button>
-      {problem.value && <p role="alert" class="status-alarm" data-testid="choose-problem">✖ {problem.value}</p>}
+      <button type="submit" class="primary" disabled={busy.value}>
+        {busy.value ? 'asking…' : 'choose it'}
+      </button>
+      {problem.value && (
+        <p role="alert" class="status-alarm" data-testid="choose-problem">
+          ✖ {problem.value}
+        </p>
+      )}
     </form>
   );
 }
@@ -53,7 +112,14 @@ function ChooseForm({ who }: { who: string }) {
 export function LogIn() {
   const now = access.value;
   if (now.state === 'choose')
-    return <main class="log-in-page"><section class="panel log-in"><h2>Choose a password</h2><ChooseForm who={now.user} /></section></main>;
+    return (
+      <main class="log-in-page">
+        <section class="panel log-in">
+          <h2>Choose a password</h2>
+          <ChooseForm who={now.user} />
+        </section>
+      </main>
+    );
   return (
     <main class="log-in-page">
       <section class="panel log-in">
@@ -68,11 +134,19 @@ export function LogIn() {
 /** In the middle of something: what stands on the screen stays, and is old. */
 export function ExpiredBar() {
   const now = access.value;
-  if (now.state === 'choose') return <div class="expired-bar" role="alert"><ChooseForm who={now.user} /></div>;
+  if (now.state === 'choose')
+    return (
+      <div class="expired-bar" role="alert">
+        <ChooseForm who={now.user} />
+      </div>
+    );
   if (now.state !== 'out' || !now.expired) return null;
   return (
     <div class="expired-bar" role="alert" data-testid="expired-bar">
-      <b>✖ Your session has ended. What is shown is old, and what you were doing was not done unless its own line says so. Log in to go on; nothing is sent again by itself.</b>
+      <b>
+        ✖ Your session has ended. What is shown is old, and what you were doing was not done unless its own line says
+        so. Log in to go on; nothing is sent again by itself.
+      </b>
       <Form known={now.user} />
     </div>
   );
@@ -81,12 +155,28 @@ export function ExpiredBar() {
 /** In the header: who, as what. */
 export function Who() {
   const now = access.value;
-  if (now.state === 'open') return <div class="link" data-testid="who"><b>no accounts</b><small>this machine only</small></div>;
+  if (now.state === 'open')
+    return (
+      <div class="link" data-testid="who">
+        <b>no accounts</b>
+        <small>this machine only</small>
+      </div>
+    );
   if (now.state !== 'in') return null;
   return (
-    <div class="link who" data-testid="who" title={now.rights.length > 0 ? `may: ${now.rights.join(', ')}` : 'may look'}>
+    <div
+      class="link who"
+      data-testid="who"
+      title={now.rights.length > 0 ? `may: ${now.rights.join(', ')}` : 'may look'}
+    >
       <b>{now.user}</b>
-      <small>{now.role}{mayAct(now) ? '' : ', only looks'} <button type="button" class="quiet" data-testid="log-out" onClick={() => void logOut()}>log out</button></small>
+      <small>
+        {now.role}
+        {mayAct(now) ? '' : ', only looks'}{' '}
+        <button type="button" class="quiet" data-testid="log-out" onClick={() => void logOut()}>
+          log out
+        </button>
+      </small>
     </div>
   );
 }

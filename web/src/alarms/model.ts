@@ -35,13 +35,17 @@ export const note = signal('');
 export const shelveFor = signal('300');
 export const acting = signal<string | undefined>(undefined);
 
-export const listed = computed(() => (alarms.value && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : []));
+export const listed = computed(() =>
+  alarms.value && alarms.value.run === store.value?.id ? sorted(alarms.value.all) : [],
+);
 export const toAcknowledge = computed(() => listed.value.filter(wantsLook));
 
 /** Of what stands now, acknowledged or not, whatever it is of; until the ground's list of this run is here, of what the stream told of limits. */
 export function severitiesNow(run: RunStore): string[] {
   if (alarms.value?.run !== run.id) return [...run.alarms.values()].map((alarm) => alarm.severity);
-  return listed.value.filter((alarm) => alarm.state !== 'shelved' && alarm.severity !== 'none' && alarm.severity !== '').map((alarm) => alarm.severity);
+  return listed.value
+    .filter((alarm) => alarm.state !== 'shelved' && alarm.severity !== 'none' && alarm.severity !== '')
+    .map((alarm) => alarm.severity);
 }
 
 export function lookOf(alarm: AlarmState): Status {
@@ -51,11 +55,15 @@ export function lookOf(alarm: AlarmState): Status {
   return isWorst(severity) ? 'alarm' : 'caution';
 }
 
-const wantsLook = (alarm: AlarmState) => !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
+const wantsLook = (alarm: AlarmState) =>
+  !alarm.acknowledged && ['unacknowledged', 'returned', 'latched'].includes(alarm.state);
 
 /** What no one has looked at first, the worst of it on top. */
 export function sorted(all: readonly AlarmState[]): AlarmState[] {
-  const rank = (alarm: AlarmState) => [ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state), isWorst(alarm.worst) ? 0 : 1];
+  const rank = (alarm: AlarmState) => [
+    ORDER.indexOf(alarm.state) < 0 ? ORDER.length : ORDER.indexOf(alarm.state),
+    isWorst(alarm.worst) ? 0 : 1,
+  ];
   return [...all].sort((a, b) => {
     const [x, y] = [rank(a), rank(b)];
     return (x[0] as number) - (y[0] as number) || (x[1] as number) - (y[1] as number) || a.name.localeCompare(b.name);
@@ -64,7 +72,11 @@ export function sorted(all: readonly AlarmState[]): AlarmState[] {
 
 export function actionsOn(alarm: AlarmState): Action[] {
   if (alarm.state === 'shelved') return ['unshelve'];
-  return [...(wantsLook(alarm) ? ['acknowledge'] as const : []), 'shelve', ...(alarm.latches && alarm.severity === 'none' ? ['reset'] as const : [])];
+  return [
+    ...(wantsLook(alarm) ? (['acknowledge'] as const) : []),
+    'shelve',
+    ...(alarm.latches && alarm.severity === 'none' ? (['reset'] as const) : []),
+  ];
 }
 
 /** What is new and wants a look, by its worst: for whoever does not look at the screen. */
@@ -102,7 +114,11 @@ export async function act(name: string, action: Action): Promise<void> {
   problem.value = '';
   try {
     await change(`/runs/${run.id}/alarms`, {
-      channel: name, action, note: note.value.trim(), by: uplink.value.controller.trim(), ...(action === 'shelve' && { shelve_s: Number(shelveFor.value) }),
+      channel: name,
+      action,
+      note: note.value.trim(),
+      by: uplink.value.controller.trim(),
+      ...(action === 'shelve' && { shelve_s: Number(shelveFor.value) }),
     });
     note.value = '';
     await refreshAlarms();

@@ -10,13 +10,33 @@ import { useForTest } from '../run/session';
 import { pastRange } from '../run/shown';
 import { aDictionary, aStore, item } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { act, actionsOn, alarms, calls, listed, lookOf, note, problem, refreshAlarms, shelveFor, sorted, toAcknowledge } from './model';
+import {
+  act,
+  actionsOn,
+  alarms,
+  calls,
+  listed,
+  lookOf,
+  note,
+  problem,
+  refreshAlarms,
+  shelveFor,
+  sorted,
+  toAcknowledge,
+} from './model';
 import type { AlarmState } from './model';
 import { Alarms } from './view';
 
 const server = aServer();
 const CURRENT = 'GET /runs/1/alarms?state=current';
-const an = (fields: Partial<AlarmState>): AlarmState => ({ name: 'altitude_m', kind: 'limit', state: 'unacknowledged', severity: 'warning', worst: 'warning', ...fields });
+const an = (fields: Partial<AlarmState>): AlarmState => ({
+  name: 'altitude_m',
+  kind: 'limit',
+  state: 'unacknowledged',
+  severity: 'warning',
+  worst: 'warning',
+  ...fields,
+});
 
 beforeEach(() => {
   alarms.value = undefined;
@@ -29,14 +49,38 @@ beforeEach(() => {
 
 describe('alarms', () => {
   it('stand in the order of what no one has looked at, the worst first', () => {
-    const all = [an({ name: 'c', state: 'shelved' }), an({ name: 'b', state: 'acknowledged', acknowledged: true }), an({ name: 'a' }), an({ name: 'd', worst: 'critical' })];
+    const all = [
+      an({ name: 'c', state: 'shelved' }),
+      an({ name: 'b', state: 'acknowledged', acknowledged: true }),
+      an({ name: 'a' }),
+      an({ name: 'd', worst: 'critical' }),
+    ];
     expect(sorted(all).map((alarm) => alarm.name)).toEqual(['d', 'a', 'b', 'c']);
   });
   it('look by shape as severe as they are now, and quiet once they are shelved', () => {
-    expect([an({ severity: 'critical' }), an({}), an({ severity: 'none', state: 'returned' }), an({ state: 'shelved', severity: 'critical' })].map(lookOf)).toEqual(['alarm', 'caution', 'good', 'quiet']);
+    expect(
+      [
+        an({ severity: 'critical' }),
+        an({}),
+        an({ severity: 'none', state: 'returned' }),
+        an({ state: 'shelved', severity: 'critical' }),
+      ].map(lookOf),
+    ).toEqual(['alarm', 'caution', 'good', 'quiet']);
   });
   it('of a lost link say that it is lost, and why', async () => {
-    server.routes[CURRENT] = { json: { alarms: [an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress', reason: 'unexplained: nothing is predicted to silence it now' })] } };
+    server.routes[CURRENT] = {
+      json: {
+        alarms: [
+          an({
+            name: 'x_band',
+            kind: 'link',
+            severity: 'distress',
+            worst: 'distress',
+            reason: 'unexplained: nothing is predicted to silence it now',
+          }),
+        ],
+      },
+    };
     await refreshAlarms();
     const page = document.createElement('main');
     await settled(() => render(<Alarms />, page));
@@ -46,8 +90,14 @@ describe('alarms', () => {
     expect(listed.value.map(lookOf)).toEqual(['alarm']);
   });
   it('offer what can be done about each', () => {
-    expect([an({}), an({ state: 'acknowledged', acknowledged: true }), an({ state: 'shelved' }), an({ state: 'latched', severity: 'none', latches: true })].map(actionsOn))
-      .toEqual([['acknowledge', 'shelve'], ['shelve'], ['unshelve'], ['acknowledge', 'shelve', 'reset']]);
+    expect(
+      [
+        an({}),
+        an({ state: 'acknowledged', acknowledged: true }),
+        an({ state: 'shelved' }),
+        an({ state: 'latched', severity: 'none', latches: true }),
+      ].map(actionsOn),
+    ).toEqual([['acknowledge', 'shelve'], ['shelve'], ['unshelve'], ['acknowledge', 'shelve', 'reset']]);
   });
   it('call once for what is new or has grown worse, and never again for the same', () => {
     expect(calls([], [an({})])).toBe('caution');
@@ -63,7 +113,9 @@ describe('alarms', () => {
     server.routes[CURRENT] = { json: { alarms: [an({ state: 'shelved' })] } };
     note.value = ' seen ';
     await Promise.all([act('altitude_m', 'shelve'), act('altitude_m', 'shelve')]);
-    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([{ channel: 'altitude_m', action: 'shelve', shelve_s: 300, note: 'seen', by: '' }]);
+    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([
+      { channel: 'altitude_m', action: 'shelve', shelve_s: 300, note: 'seen', by: '' },
+    ]);
     expect([listed.value[0]?.state, toAcknowledge.value.length, note.value]).toEqual(['shelved', 0, '']);
   });
   it('that could not be acted upon say why, and keep the note', async () => {
@@ -81,13 +133,25 @@ describe('alarms', () => {
       settled(() => render(<Header />, page));
       return page.querySelector('[data-testid=alarm-count]')?.textContent?.trim();
     };
-    useForTest(aStore([item({ case: 'alarm', value: create(AlarmSchema, { channel: 3, severity: 'warning' }) })]), aDictionary);
+    useForTest(
+      aStore([item({ case: 'alarm', value: create(AlarmSchema, { channel: 3, severity: 'warning' }) })]),
+      aDictionary,
+    );
     expect(count()).toBe('▲ 1 alarm: warning');
-    const standing = [an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress' }), an({ name: 'Status', kind: 'staleness', severity: 'watch', worst: 'watch' })];
-    const over = [an({ name: 'a', state: 'returned', severity: 'none', acknowledged: true }), an({ name: 'b', state: 'shelved' })];
+    const standing = [
+      an({ name: 'x_band', kind: 'link', severity: 'distress', worst: 'distress' }),
+      an({ name: 'Status', kind: 'staleness', severity: 'watch', worst: 'watch' }),
+    ];
+    const over = [
+      an({ name: 'a', state: 'returned', severity: 'none', acknowledged: true }),
+      an({ name: 'b', state: 'shelved' }),
+    ];
     alarms.value = { run: 1, all: [...standing, ...over] };
     expect(count()).toBe('⬢ 2 alarms: distress, watch2 to acknowledge a');
-    alarms.value = { run: 1, all: [...standing.map((each) => ({ ...each, state: 'acknowledged', acknowledged: true })), ...over] };
+    alarms.value = {
+      run: 1,
+      all: [...standing.map((each) => ({ ...each, state: 'acknowledged', acknowledged: true })), ...over],
+    };
     expect(count()).toBe('⬢ 2 alarms: distress, watch');
     alarms.value = { run: 1, all: over };
     expect(count()).toBeUndefined();

@@ -5,7 +5,20 @@ import { STATUS } from '../design/status';
 import { numberText } from '../run/dictionary';
 import { dictionary, pastRange, runNow } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
-import { act, acting, actionsOn, alarms, listed, lookOf, note, problem, shelveFor, sound, toAcknowledge, toggleSound } from './model';
+import {
+  act,
+  acting,
+  actionsOn,
+  alarms,
+  listed,
+  lookOf,
+  note,
+  problem,
+  shelveFor,
+  sound,
+  toAcknowledge,
+  toggleSound,
+} from './model';
 import type { AlarmState } from './model';
 import './style.css';
 
@@ -16,15 +29,51 @@ function Row({ alarm, entry_sclk }: { alarm: AlarmState; entry_sclk: number }) {
   const unit = dictionary.value?.pick([alarm.name])?.unit ?? '';
   return (
     <tr data-alarm={alarm.name} data-state={alarm.state}>
-      <td class={`status-${look.token}`}><span aria-hidden="true">{look.shape}</span> {alarm.severity === 'none' ? `was ${alarm.worst}` : alarm.severity}</td>
-      <td><b>{alarm.name.split(/(?<=_)/).map((part) => <>{part}<wbr /></>)}</b></td>
-      <td>{mayAct() && actionsOn(alarm).map((action) => (
-        <button type="button" key={action} disabled={acting.value !== undefined} aria-label={`${action} ${alarm.name}`} onClick={() => void act(alarm.name, action)}>
-          {action}{action === 'shelve' && ` ${duration(Number(shelveFor.value)).replace(' 00 s', '').replace('.0', '')}`}
-        </button>
-      ))}</td>
-      <td class="alarm-state">{alarm.state}{alarm.shelved_until && ` until ${alarm.shelved_until}`}{alarm.by && `, ${alarm.by}`}{alarm.note && <small> {alarm.note}</small>}</td>
-      <td class="number">{alarm.kind === 'staleness' ? 'stale' : alarm.kind === 'link' ? (alarm.severity === 'none' ? 'over' : 'lost') : alarm.value === undefined ? '' : `${numberText(alarm.value)} ${unit}`}</td>
+      <td class={`status-${look.token}`}>
+        <span aria-hidden="true">{look.shape}</span> {alarm.severity === 'none' ? `was ${alarm.worst}` : alarm.severity}
+      </td>
+      <td>
+        <b>
+          {alarm.name.split(/(?<=_)/).map((part) => (
+            <>
+              {part}
+              <wbr />
+            </>
+          ))}
+        </b>
+      </td>
+      <td>
+        {mayAct() &&
+          actionsOn(alarm).map((action) => (
+            <button
+              type="button"
+              key={action}
+              disabled={acting.value !== undefined}
+              aria-label={`${action} ${alarm.name}`}
+              onClick={() => void act(alarm.name, action)}
+            >
+              {action}
+              {action === 'shelve' && ` ${duration(Number(shelveFor.value)).replace(' 00 s', '').replace('.0', '')}`}
+            </button>
+          ))}
+      </td>
+      <td class="alarm-state">
+        {alarm.state}
+        {alarm.shelved_until && ` until ${alarm.shelved_until}`}
+        {alarm.by && `, ${alarm.by}`}
+        {alarm.note && <small> {alarm.note}</small>}
+      </td>
+      <td class="number">
+        {alarm.kind === 'staleness'
+          ? 'stale'
+          : alarm.kind === 'link'
+            ? alarm.severity === 'none'
+              ? 'over'
+              : 'lost'
+            : alarm.value === undefined
+              ? ''
+              : `${numberText(alarm.value)} ${unit}`}
+      </td>
       <td class="alarm-limit">{alarm.limit || alarm.reason}</td>
       <td class="number">{alarm.sclk === undefined ? '' : fromEntry(alarm.sclk - entry_sclk)}</td>
     </tr>
@@ -38,21 +87,67 @@ export function Alarms() {
   return (
     <div class="table-box" data-testid="alarms">
       <div class="table-tools">
-        <input data-testid="alarm-note" aria-label="note with the next action" placeholder="note with the next action" maxLength={1000} value={note.value} disabled={!mayAct()}
-          onInput={(event) => (note.value = event.currentTarget.value)} />
-        <label>shelve for <select data-testid="shelve-for" value={shelveFor.value} onChange={(event) => (shelveFor.value = event.currentTarget.value)}>
-          {SHELVES.map((seconds) => <option key={seconds} value={seconds}>{duration(Number(seconds)).replace(' 00 s', '').replace(' 00 m', '')}</option>)}
-        </select></label>
+        <input
+          data-testid="alarm-note"
+          aria-label="note with the next action"
+          placeholder="note with the next action"
+          maxLength={1000}
+          value={note.value}
+          disabled={!mayAct()}
+          onInput={(event) => (note.value = event.currentTarget.value)}
+        />
+        <label>
+          shelve for{' '}
+          <select
+            data-testid="shelve-for"
+            value={shelveFor.value}
+            onChange={(event) => (shelveFor.value = event.currentTarget.value)}
+          >
+            {SHELVES.map((seconds) => (
+              <option key={seconds} value={seconds}>
+                {duration(Number(seconds)).replace(' 00 s', '').replace(' 00 m', '')}
+              </option>
+            ))}
+          </select>
+        </label>
         <Signature />
-        <button type="button" aria-pressed={sound.value} data-testid="alarm-sound" onClick={toggleSound}>{sound.value ? '♪ sound on' : '♪ sound off'}</button>
-        <span role="status" data-testid="alarm-sentence">{alarms.value?.run !== run.id ? '? asking…' : listed.value.length === 0 ? '● no alarm' : toAcknowledge.value.length === 0 ? '✓ all acknowledged' : `▲ ${toAcknowledge.value.length} to acknowledge`}</span>
+        <button type="button" aria-pressed={sound.value} data-testid="alarm-sound" onClick={toggleSound}>
+          {sound.value ? '♪ sound on' : '♪ sound off'}
+        </button>
+        <span role="status" data-testid="alarm-sentence">
+          {alarms.value?.run !== run.id
+            ? '? asking…'
+            : listed.value.length === 0
+              ? '● no alarm'
+              : toAcknowledge.value.length === 0
+                ? '✓ all acknowledged'
+                : `▲ ${toAcknowledge.value.length} to acknowledge`}
+        </span>
       </div>
-      {problem.value && <p role="alert" class="status-alarm" data-testid="alarm-problem">✖ {problem.value}</p>}
+      {problem.value && (
+        <p role="alert" class="status-alarm" data-testid="alarm-problem">
+          ✖ {problem.value}
+        </p>
+      )}
       <div class="table-scroll" tabIndex={0} role="region" aria-label="alarms, those that no one has looked at first">
         {listed.value.length > 0 && (
           <table class="alarm-table" data-testid="alarm-table">
-            <thead><tr><th>severity</th><th>alarm</th><th>do</th><th>state</th><th class="number">value</th><th>limit</th><th class="number">since</th></tr></thead>
-            <tbody>{listed.value.map((alarm) => <Row key={alarm.name} alarm={alarm} entry_sclk={run.entrySclk} />)}</tbody>
+            <thead>
+              <tr>
+                <th>severity</th>
+                <th>alarm</th>
+                <th>do</th>
+                <th>state</th>
+                <th class="number">value</th>
+                <th>limit</th>
+                <th class="number">since</th>
+              </tr>
+            </thead>
+            <tbody>
+              {listed.value.map((alarm) => (
+                <Row key={alarm.name} alarm={alarm} entry_sclk={run.entrySclk} />
+              ))}
+            </tbody>
           </table>
         )}
       </div>

@@ -67,7 +67,8 @@ export const message = signal<{ good: boolean; text: string } | undefined>(undef
 export const busy = signal(false);
 
 /** Also one that is being cancelled: until its cases have ended no other can start. */
-export const flies = (state: CampaignState | undefined): boolean => state !== undefined && ['preparing', 'flying', 'cancelling'].includes(state.state);
+export const flies = (state: CampaignState | undefined): boolean =>
+  state !== undefined && ['preparing', 'flying', 'cancelling'].includes(state.state);
 export const flyingNow = (): CampaignState | undefined => campaigns.value.find(flies);
 const at = (campaign: string) => `/campaigns/${encodeURIComponent(campaign)}`;
 
@@ -121,10 +122,14 @@ async function lookAtChosen(): Promise<void> {
   const found = await call<CampaignReport>('GET', at(campaign));
   // Fewer than were shown: another file has taken its name, or fewer cases are asked for.
   const before = touchdowns.value.length > found.state.kept ? [] : touchdowns.value;
-  const page = await call<{ touchdowns?: Touchdown[] }>('GET', `${at(campaign)}/touchdowns?after=${before.at(-1)?.place ?? 0}`);
+  const page = await call<{ touchdowns?: Touchdown[] }>(
+    'GET',
+    `${at(campaign)}/touchdowns?after=${before.at(-1)?.place ?? 0}`,
+  );
   if (chosen.value !== campaign) return;
   report.value = found;
-  if (before !== touchdowns.value || (page.touchdowns ?? []).length > 0) touchdowns.value = [...before, ...(page.touchdowns ?? [])];
+  if (before !== touchdowns.value || (page.touchdowns ?? []).length > 0)
+    touchdowns.value = [...before, ...(page.touchdowns ?? [])];
 }
 
 async function act(what: () => Promise<string>): Promise<void> {
@@ -142,21 +147,26 @@ async function act(what: () => Promise<string>): Promise<void> {
   }
 }
 
-export const start = (scenario: string, cases: number, seed: string): Promise<void> => act(async () => {
-  const state = await call<CampaignState>('POST', '/campaigns', { scenario, cases, seed });
-  choose(state.campaign);
-  return state.kept > 0 ? `${state.campaign} goes on; ${state.kept} cases had been kept` : `${state.campaign} has begun`;
-});
-export const cancel = (campaign: string): Promise<void> => act(async () => {
-  const state = await call<CampaignState>('POST', `${at(campaign)}/cancel`);
-  campaigns.value = campaigns.value.map((each) => (each.campaign === campaign ? state : each));
-  cancelledHere = campaign;
-  return `${campaign} is being cancelled`;
-});
+export const start = (scenario: string, cases: number, seed: string): Promise<void> =>
+  act(async () => {
+    const state = await call<CampaignState>('POST', '/campaigns', { scenario, cases, seed });
+    choose(state.campaign);
+    return state.kept > 0
+      ? `${state.campaign} goes on; ${state.kept} cases had been kept`
+      : `${state.campaign} has begun`;
+  });
+export const cancel = (campaign: string): Promise<void> =>
+  act(async () => {
+    const state = await call<CampaignState>('POST', `${at(campaign)}/cancel`);
+    campaigns.value = campaigns.value.map((each) => (each.campaign === campaign ? state : each));
+    cancelledHere = campaign;
+    return `${campaign} is being cancelled`;
+  });
 
 /** What is wrong with what was typed; undefined: nothing. */
 export function orderProblem(cases: string, seed: string, cases_max: number): string | undefined {
-  if (!/^\d{1,9}$/.test(cases) || Number(cases) < 1 || Number(cases) > cases_max) return `cases: a whole number from 1 to ${cases_max}`;
+  if (!/^\d{1,9}$/.test(cases) || Number(cases) < 1 || Number(cases) > cases_max)
+    return `cases: a whole number from 1 to ${cases_max}`;
   if (!/^\d{1,18}$/.test(seed)) return 'a seed is a whole number';
   return undefined;
 }
@@ -218,7 +228,9 @@ export function spreadRows(of: CampaignReport): SpreadRow[] {
   return SPREADS.flatMap(([name, unit, field, factor, digits]) => {
     const spread = of[field];
     if (!spread || spread.count === 0) return [];
-    const numbers = [spread.min, spread.p1, spread.p50, spread.p99, spread.max, spread.mean, spread.sigma].map((value) => (value * factor).toFixed(digits));
+    const numbers = [spread.min, spread.p1, spread.p50, spread.p99, spread.max, spread.mean, spread.sigma].map(
+      (value) => (value * factor).toFixed(digits),
+    );
     return [{ name, unit, numbers, count: spread.count }];
   });
 }
@@ -238,7 +250,8 @@ export function reach_km(points: readonly Touchdown[], ellipse: Ellipse | undefi
   }
   if (ellipse) {
     const azimuth = (ellipse.azimuth_deg * Math.PI) / 180;
-    const half = (along: number, across: number) => Math.hypot((ellipse.major_m / 2) * along, (ellipse.minor_m / 2) * across);
+    const half = (along: number, across: number) =>
+      Math.hypot((ellipse.major_m / 2) * along, (ellipse.minor_m / 2) * across);
     east = Math.max(east, Math.abs(ellipse.east_m) + half(Math.sin(azimuth), Math.cos(azimuth)));
     north = Math.max(north, Math.abs(ellipse.north_m) + half(Math.cos(azimuth), Math.sin(azimuth)));
   }

@@ -77,8 +77,15 @@ export function drawTouchdowns({ context: c, width, height, colours }: Surface):
     c.strokeStyle = colours.text;
     c.lineWidth = 1.5;
     c.beginPath();
-    c.ellipse(x(ellipse.east_m / 1000), y(ellipse.north_m / 1000), (ellipse.major_m / 2000) * km_px, (ellipse.minor_m / 2000) * km_px,
-      ((ellipse.azimuth_deg - 90) * Math.PI) / 180, 0, 7);
+    c.ellipse(
+      x(ellipse.east_m / 1000),
+      y(ellipse.north_m / 1000),
+      (ellipse.major_m / 2000) * km_px,
+      (ellipse.minor_m / 2000) * km_px,
+      ((ellipse.azimuth_deg - 90) * Math.PI) / 180,
+      0,
+      7,
+    );
     c.stroke();
   }
 

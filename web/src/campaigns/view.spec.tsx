@@ -4,24 +4,70 @@ import { act } from 'preact/test-utils';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { access } from '../access/model';
 import { aServer } from '../testing/server';
-import { campaigns, cancel, choose, chosen, ellipseWords, endWords, flies, lengthWords, look, message, orderProblem, reach_km, report, spreadRows, start, stateWords, touchdowns } from './model';
+import {
+  campaigns,
+  cancel,
+  choose,
+  chosen,
+  ellipseWords,
+  endWords,
+  flies,
+  lengthWords,
+  look,
+  message,
+  orderProblem,
+  reach_km,
+  report,
+  spreadRows,
+  start,
+  stateWords,
+  touchdowns,
+} from './model';
 import type { CampaignReport, CampaignState, Touchdown } from './model';
 import { Campaigns } from './view';
 
 const server = aServer();
-const state = (fields: Partial<CampaignState> = {}): CampaignState =>
-  ({ campaign: 'campaign-1', scenario: 'campaign', seed: '1', cases: 10, kept: 2, state: 'flying', jobs: 1, rate_per_s: 0.5, remaining_s: 16, fault: '', ...fields });
+const state = (fields: Partial<CampaignState> = {}): CampaignState => ({
+  campaign: 'campaign-1',
+  scenario: 'campaign',
+  seed: '1',
+  cases: 10,
+  kept: 2,
+  state: 'flying',
+  jobs: 1,
+  rate_per_s: 0.5,
+  remaining_s: 16,
+  fault: '',
+  ...fields,
+});
 const spread = { count: 2, min: 100, p1: 101, p50: 1500, p99: 2900, max: 3000, mean: 1500, sigma: 1400 };
 const aReport = (fields: Partial<CampaignReport> = {}): CampaignReport => ({
-  state: state(), outcomes: [{ outcome: 'touchdown', count: 1 }, { outcome: 'lost', count: 1 }], recontacts: 0, failed: 1, miss_m: spread,
-  peak_deceleration_mps2: { ...spread, min: 98.0665 }, failures: [{ case: 2, outcome: 'lost', reason: '<b>no</b> lift' }], ...fields,
+  state: state(),
+  outcomes: [
+    { outcome: 'touchdown', count: 1 },
+    { outcome: 'lost', count: 1 },
+  ],
+  recontacts: 0,
+  failed: 1,
+  miss_m: spread,
+  peak_deceleration_mps2: { ...spread, min: 98.0665 },
+  failures: [{ case: 2, outcome: 'lost', reason: '<b>no</b> lift' }],
+  ...fields,
 });
-const landed = (place: number, fields: Partial<Touchdown> = {}): Touchdown => ({ place, case: 10 - place, outcome: 'touchdown', east_m: 1000, north_m: -500, ...fields });
+const landed = (place: number, fields: Partial<Touchdown> = {}): Touchdown => ({
+  place,
+  case: 10 - place,
+  outcome: 'touchdown',
+  east_m: 1000,
+  north_m: -500,
+  ...fields,
+});
 
 function serves(of: CampaignState[], then: CampaignReport, pages: Record<number, Touchdown[]>): void {
   server.routes['GET /campaigns'] = { json: { campaigns: of, cases_max: 100, jobs_max: 2 } };
   server.routes['GET /campaigns/campaign-1'] = { json: then };
-  for (const [after, found] of Object.entries(pages)) server.routes[`GET /campaigns/campaign-1/touchdowns?after=${after}`] = { json: { touchdowns: found } };
+  for (const [after, found] of Object.entries(pages))
+    server.routes[`GET /campaigns/campaign-1/touchdowns?after=${after}`] = { json: { touchdowns: found } };
 }
 
 beforeEach(() => {
@@ -55,9 +101,14 @@ describe('a campaign', () => {
     serves([state()], aReport(), { 0: [] });
     server.routes['POST /campaigns'] = { json: state({ kept: 0 }) };
     await start('campaign', 10, '1');
-    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([{ method: 'POST', path: '/campaigns', body: { scenario: 'campaign', cases: 10, seed: '1' } }]);
+    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([
+      { method: 'POST', path: '/campaigns', body: { scenario: 'campaign', cases: 10, seed: '1' } },
+    ]);
     expect(message.value).toEqual({ good: true, text: 'campaign-1 has begun' });
-    server.routes['POST /campaigns/campaign-1/cancel'] = { status: 409, json: { error: 'the campaign campaign-1 does not fly' } };
+    server.routes['POST /campaigns/campaign-1/cancel'] = {
+      status: 409,
+      json: { error: 'the campaign campaign-1 does not fly' },
+    };
     await cancel('campaign-1');
     expect(message.value).toEqual({ good: false, text: 'the campaign campaign-1 does not fly' });
   });
@@ -67,18 +118,28 @@ describe('a campaign', () => {
     server.routes['POST /campaigns/campaign-1/cancel'] = { status: 202, json: of };
     await cancel('campaign-1');
     expect(message.value).toEqual({ good: true, text: 'campaign-1 is being cancelled' });
-    expect([stateWords(of), flies(of)]).toEqual(['◌ cancelling, 3 of 10 cases so far; it is over once those that fly now have ended', true]);
+    expect([stateWords(of), flies(of)]).toEqual([
+      '◌ cancelling, 3 of 10 cases so far; it is over once those that fly now have ended',
+      true,
+    ]);
     const over = state({ state: 'incomplete', kept: 4 });
     serves([over], aReport({ state: over }), {});
     await look();
-    expect(message.value).toEqual({ good: true, text: 'cancelled: 4 cases of campaign-1 are kept; starting it again goes on with them' });
+    expect(message.value).toEqual({
+      good: true,
+      text: 'cancelled: 4 cases of campaign-1 are kept; starting it again goes on with them',
+    });
     message.value = undefined;
     await look();
     expect(message.value).toBeUndefined(); // said once
   });
   it('that ended otherwise than it was cancelled says how', () => {
-    expect(endWords(state({ state: 'complete', kept: 10 }))).toBe('too late to cancel: all 10 cases of campaign-1 had been flown, and are kept');
-    expect(endWords(state({ state: 'incomplete', fault: 'disk full' }))).toBe('campaign-1 ended: disk full; 2 of its cases are kept');
+    expect(endWords(state({ state: 'complete', kept: 10 }))).toBe(
+      'too late to cancel: all 10 cases of campaign-1 had been flown, and are kept',
+    );
+    expect(endWords(state({ state: 'incomplete', fault: 'disk full' }))).toBe(
+      'campaign-1 ended: disk full; 2 of its cases are kept',
+    );
   });
   it('is refused before it is sent where no server would take it', () => {
     expect(orderProblem('0', '1', 100)).toContain('1 to 100');
@@ -98,14 +159,24 @@ describe('a campaign', () => {
 
 describe('its numbers', () => {
   it('have their units, and what no case has is left out', () => {
-    expect(spreadRows(aReport()).map((row) => [row.name, row.unit, row.numbers[0], row.count])).toEqual([['miss distance', 'km', '0.10', 2], ['peak deceleration', 'g', '10.00', 2]]);
+    expect(spreadRows(aReport()).map((row) => [row.name, row.unit, row.numbers[0], row.count])).toEqual([
+      ['miss distance', 'km', '0.10', 2],
+      ['peak deceleration', 'g', '10.00', 2],
+    ]);
   });
   it('make a picture into which points and ellipse fit, that grows in steps', () => {
     expect(reach_km([], undefined)).toEqual({ east: 2, north: 2 });
-    expect(reach_km([landed(1, { east_m: -5000 }), landed(2, { east_m: 0, north_m: 2500 }), { place: 3, case: 3, outcome: 'lost' }], undefined)).toEqual({ east: 6, north: 4 });
+    expect(
+      reach_km(
+        [landed(1, { east_m: -5000 }), landed(2, { east_m: 0, north_m: 2500 }), { place: 3, case: 3, outcome: 'lost' }],
+        undefined,
+      ),
+    ).toEqual({ east: 6, north: 4 });
     const ellipse = { east_m: 1000, north_m: 0, major_m: 20000, minor_m: 6000, azimuth_deg: 90 };
     expect(reach_km([], ellipse)).toEqual({ east: 12, north: 4 });
-    expect(ellipseWords(ellipse)).toBe('20.00 × 6.00 km, major axis at azimuth 90°, its centre 1.00 km east and 0.00 km north of the target');
+    expect(ellipseWords(ellipse)).toBe(
+      '20.00 × 6.00 km, major axis at azimuth 90°, its centre 1.00 km east and 0.00 km north of the target',
+    );
   });
 });
 

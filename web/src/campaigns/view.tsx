@@ -6,7 +6,22 @@ import { STATUS } from '../design/status';
 import { Canvas } from '../draw/canvas';
 import { scenarios } from '../run/shown';
 import {
-  busy, campaigns, cancel, choose, chosen, ellipseWords, flyingNow, limits, look, message, orderProblem, report, spreadRows, start, stateWords, touchdowns,
+  busy,
+  campaigns,
+  cancel,
+  choose,
+  chosen,
+  ellipseWords,
+  flyingNow,
+  limits,
+  look,
+  message,
+  orderProblem,
+  report,
+  spreadRows,
+  start,
+  stateWords,
+  touchdowns,
 } from './model';
 import type { CampaignReport, CampaignState } from './model';
 import { drawTouchdowns } from './picture';
@@ -26,20 +41,71 @@ function Order() {
   const names = scenarios.value.length > 0 ? scenarios.value.map((each) => each.name) : ['campaign'];
   const known = campaigns.value.find((each) => each.campaign === `${scenario.value}-${seed.value}`);
   const goesOn = known !== undefined && known.kept > 0;
-  const hint = !allowed ? `${STATUS.missing.shape} ${whyNotRehearse('starting and cancelling')}` : problem ? `✖ ${problem}` : goesOn && !flying ? `${known.kept} cases of it are kept` : '';
+  const hint = !allowed
+    ? `${STATUS.missing.shape} ${whyNotRehearse('starting and cancelling')}`
+    : problem
+      ? `✖ ${problem}`
+      : goesOn && !flying
+        ? `${known.kept} cases of it are kept`
+        : '';
   return (
-    <form class="table-tools campaign-form" onSubmit={(event) => {
-      event.preventDefault();
-      if (!problem && !flying && allowed && !busy.value) void start(scenario.value, Number(cases.value), seed.value);
-    }}>
-      <label>scenario <select value={scenario.value} data-testid="campaign-scenario" onChange={(event) => (scenario.value = event.currentTarget.value)}>
-        {names.map((name) => <option key={name} value={name}>{name}</option>)}
-      </select></label>
-      <label>cases <input class="count" value={cases.value} inputMode="numeric" aria-invalid={problem?.startsWith('cases') === true} data-testid="campaign-cases" onInput={(event) => (cases.value = event.currentTarget.value)} /></label>
-      <label>seed <input class="count" value={seed.value} inputMode="numeric" aria-invalid={problem !== undefined && !problem.startsWith('cases')} data-testid="campaign-seed" onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
-      <button type="submit" disabled={problem !== undefined || flying !== undefined || !allowed || busy.value} data-testid="campaign-start">{goesOn ? 'go on' : 'start'}</button>
+    <form
+      class="table-tools campaign-form"
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (!problem && !flying && allowed && !busy.value) void start(scenario.value, Number(cases.value), seed.value);
+      }}
+    >
+      <label>
+        scenario{' '}
+        <select
+          value={scenario.value}
+          data-testid="campaign-scenario"
+          onChange={(event) => (scenario.value = event.currentTarget.value)}
+        >
+          {names.map((name) => (
+            <option key={name} value={name}>
+              {name}
+            </option>
+          ))}
+        </select>
+      </label>
+      <label>
+        cases{' '}
+        <input
+          class="count"
+          value={cases.value}
+          inputMode="numeric"
+          aria-invalid={problem?.startsWith('cases') === true}
+          data-testid="campaign-cases"
+          onInput={(event) => (cases.value = event.currentTarget.value)}
+        />
+      </label>
+      <label>
+        seed{' '}
+        <input
+          class="count"
+          value={seed.value}
+          inputMode="numeric"
+          aria-invalid={problem !== undefined && !problem.startsWith('cases')}
+          data-testid="campaign-seed"
+          onInput={(event) => (seed.value = event.currentTarget.value)}
+        />
+      </label>
+      <button
+        type="submit"
+        disabled={problem !== undefined || flying !== undefined || !allowed || busy.value}
+        data-testid="campaign-start"
+      >
+        {goesOn ? 'go on' : 'start'}
+      </button>
       {flying && (
-        <button type="button" disabled={!allowed || busy.value || flying.state === 'cancelling'} data-testid="campaign-cancel" onClick={() => void cancel(flying.campaign)}>
+        <button
+          type="button"
+          disabled={!allowed || busy.value || flying.state === 'cancelling'}
+          data-testid="campaign-cancel"
+          onClick={() => void cancel(flying.campaign)}
+        >
           {flying.state === 'cancelling' ? 'cancelling' : 'cancel'} {flying.campaign}
         </button>
       )}
@@ -52,8 +118,14 @@ function Standing({ state }: { state: CampaignState }) {
   return (
     <p class="campaign-state">
       <b>{state.campaign}</b>
-      <progress max={Math.max(1, state.cases)} value={state.kept} aria-label={`cases of ${state.campaign} that are kept`} />
-      <output data-testid="campaign-state" data-state={state.state} class={state.fault !== '' ? 'status-alarm' : ''}>{stateWords(state)}</output>
+      <progress
+        max={Math.max(1, state.cases)}
+        value={state.kept}
+        aria-label={`cases of ${state.campaign} that are kept`}
+      />
+      <output data-testid="campaign-state" data-state={state.state} class={state.fault !== '' ? 'status-alarm' : ''}>
+        {stateWords(state)}
+      </output>
     </p>
   );
 }
@@ -64,11 +136,22 @@ function Picture({ of }: { of: CampaignReport }) {
   return (
     <figure class="campaign-picture">
       <div>
-        <Canvas draw={drawTouchdowns} testId="campaign-picture" keyOf={() => `${chosen.value} ${touchdowns.value.length} ${report.value?.state.kept}`}
-          label={`${landed} touchdowns about the target${of.ellipse ? `; the 99 % ellipse is ${ellipseWords(of.ellipse)}` : ''}`} />
+        <Canvas
+          draw={drawTouchdowns}
+          testId="campaign-picture"
+          keyOf={() => `${chosen.value} ${touchdowns.value.length} ${report.value?.state.kept}`}
+          label={`${landed} touchdowns about the target${of.ellipse ? `; the 99 % ellipse is ${ellipseWords(of.ellipse)}` : ''}`}
+        />
       </div>
       <figcaption>
-        <span class="rehearsed">●</span> touchdown ({landed}) {of.failed > 0 && <span class="status-alarm">✖ no landing ({of.failed}{nowhere > 0 && `, ${nowhere} of them without a place`}) </span>}◯ 99 % ellipse
+        <span class="rehearsed">●</span> touchdown ({landed}){' '}
+        {of.failed > 0 && (
+          <span class="status-alarm">
+            ✖ no landing ({of.failed}
+            {nowhere > 0 && `, ${nowhere} of them without a place`}){' '}
+          </span>
+        )}
+        ◯ 99 % ellipse
       </figcaption>
     </figure>
   );
@@ -78,30 +161,86 @@ function Numbers({ of }: { of: CampaignReport }) {
   const least = of.least_margin;
   return (
     <>
-      <p class="campaign-matter" data-testid="campaign-ellipse">99 % ellipse: {of.ellipse ? ellipseWords(of.ellipse) : 'two touchdowns make one'}.</p>
+      <p class="campaign-matter" data-testid="campaign-ellipse">
+        99 % ellipse: {of.ellipse ? ellipseWords(of.ellipse) : 'two touchdowns make one'}.
+      </p>
       <table data-testid="campaign-outcomes">
-        <thead><tr><th>outcome</th><th class="number">cases</th><th class="number">share</th></tr></thead>
+        <thead>
+          <tr>
+            <th>outcome</th>
+            <th class="number">cases</th>
+            <th class="number">share</th>
+          </tr>
+        </thead>
         <tbody>
           {of.outcomes.map(({ outcome, count }) => (
-            <tr key={outcome}><td class={outcome === 'touchdown' ? 'status-good' : 'status-alarm'}>{outcome === 'touchdown' ? '✓' : '✖'} {outcome.replace('_', ' ')}</td>
-              <td class="number">{count}</td><td class="number">{((100 * count) / Math.max(1, of.state.kept)).toFixed(2)} %</td></tr>
+            <tr key={outcome}>
+              <td class={outcome === 'touchdown' ? 'status-good' : 'status-alarm'}>
+                {outcome === 'touchdown' ? '✓' : '✖'} {outcome.replace('_', ' ')}
+              </td>
+              <td class="number">{count}</td>
+              <td class="number">{((100 * count) / Math.max(1, of.state.kept)).toFixed(2)} %</td>
+            </tr>
           ))}
         </tbody>
       </table>
       <table data-testid="campaign-spreads">
-        <thead><tr><th>over the cases</th><th>unit</th><th class="number">least</th><th class="number">1 %</th><th class="number">50 %</th><th class="number">99 %</th><th class="number">largest</th><th class="number">mean</th><th class="number">σ</th><th class="number">cases</th></tr></thead>
+        <thead>
+          <tr>
+            <th>over the cases</th>
+            <th>unit</th>
+            <th class="number">least</th>
+            <th class="number">1 %</th>
+            <th class="number">50 %</th>
+            <th class="number">99 %</th>
+            <th class="number">largest</th>
+            <th class="number">mean</th>
+            <th class="number">σ</th>
+            <th class="number">cases</th>
+          </tr>
+        </thead>
         <tbody>
           {spreadRows(of).map((row) => (
-            <tr key={row.name}><td>{row.name}</td><td>{row.unit}</td>{row.numbers.map((number, i) => <td key={i} class="number">{number}</td>)}<td class="number">{row.count}</td></tr>
+            <tr key={row.name}>
+              <td>{row.name}</td>
+              <td>{row.unit}</td>
+              {row.numbers.map((number, i) => (
+                <td key={i} class="number">
+                  {number}
+                </td>
+              ))}
+              <td class="number">{row.count}</td>
+            </tr>
           ))}
         </tbody>
       </table>
-      {least && <p data-testid="campaign-margin">Least timeline margin {least.margin_s.toFixed(3)} s, of {least.timepoint} in case {least.case}: so much later than its minimum offset it was triggered; 0 is one that the timeline held up.</p>}
-      {of.recontacts > 0 && <p class="status-alarm">✖ cases in which the vehicle was struck by what it had let go: {of.recontacts}</p>}
+      {least && (
+        <p data-testid="campaign-margin">
+          Least timeline margin {least.margin_s.toFixed(3)} s, of {least.timepoint} in case {least.case}: so much later
+          than its minimum offset it was triggered; 0 is one that the timeline held up.
+        </p>
+      )}
+      {of.recontacts > 0 && (
+        <p class="status-alarm">✖ cases in which the vehicle was struck by what it had let go: {of.recontacts}</p>
+      )}
       {of.failures.length > 0 && (
         <table data-testid="campaign-failures">
-          <thead><tr><th class="number">case</th><th>outcome</th><th>reason</th></tr></thead>
-          <tbody>{of.failures.map((each) => <tr key={each.case}><td class="number">{each.case}</td><td class="status-alarm">✖ {each.outcome.replace('_', ' ')}</td><td class="campaign-reason">{each.reason}</td></tr>)}</tbody>
+          <thead>
+            <tr>
+              <th class="number">case</th>
+              <th>outcome</th>
+              <th>reason</th>
+            </tr>
+          </thead>
+          <tbody>
+            {of.failures.map((each) => (
+              <tr key={each.case}>
+                <td class="number">{each.case}</td>
+                <td class="status-alarm">✖ {each.outcome.replace('_', ' ')}</td>
+                <td class="campaign-reason">{each.reason}</td>
+              </tr>
+            ))}
+          </tbody>
         </table>
       )}
       {of.failed > of.failures.length && <p>and {of.failed - of.failures.length} more</p>}
@@ -112,17 +251,43 @@ function Numbers({ of }: { of: CampaignReport }) {
 function Former() {
   return (
     <table data-testid="campaign-list">
-      <thead><tr><th>campaign</th><th class="number">kept</th><th class="number">asked for</th><th>state</th><th>show</th></tr></thead>
+      <thead>
+        <tr>
+          <th>campaign</th>
+          <th class="number">kept</th>
+          <th class="number">asked for</th>
+          <th>state</th>
+          <th>show</th>
+        </tr>
+      </thead>
       <tbody>
         {campaigns.value.map((each) => (
           <tr key={each.campaign} data-campaign={each.campaign} class={each.campaign === chosen.value ? 'shown' : ''}>
-            <td>{each.campaign}</td><td class="number">{each.state === 'unreadable' ? '' : each.kept}</td><td class="number">{each.state === 'unreadable' ? '' : each.cases}</td>
-            <td title={each.fault}>{each.fault !== '' ? '✖ ' : ''}{each.state}</td>
-            <td>{each.campaign === chosen.value ? '◀ shown' : each.state === 'unreadable' ? '' : (
-              <button type="button" aria-label={`show ${each.campaign}`} onClick={() => {
-                choose(each.campaign);
-                void look();
-              }}>show</button>)}</td>
+            <td>{each.campaign}</td>
+            <td class="number">{each.state === 'unreadable' ? '' : each.kept}</td>
+            <td class="number">{each.state === 'unreadable' ? '' : each.cases}</td>
+            <td title={each.fault}>
+              {each.fault !== '' ? '✖ ' : ''}
+              {each.state}
+            </td>
+            <td>
+              {each.campaign === chosen.value ? (
+                '◀ shown'
+              ) : each.state === 'unreadable' ? (
+                ''
+              ) : (
+                <button
+                  type="button"
+                  aria-label={`show ${each.campaign}`}
+                  onClick={() => {
+                    choose(each.campaign);
+                    void look();
+                  }}
+                >
+                  show
+                </button>
+              )}
+            </td>
           </tr>
         ))}
       </tbody>
@@ -144,14 +309,27 @@ export function Campaigns() {
   return (
     <div class="table-box campaigns" data-testid="campaigns">
       <Order />
-      {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="campaign-message">{message.value.good ? '✓' : '✖'} {message.value.text}</p>}
+      {message.value && (
+        <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="campaign-message">
+          {message.value.good ? '✓' : '✖'} {message.value.text}
+        </p>
+      )}
       {state && <Standing state={state} />}
       <div class="campaign-body">
         {of && <Picture of={of} />}
         <div class="table-scroll" tabIndex={0} role="region" aria-label="what the cases come to">
-          <p class="campaign-nature">◪ Statistics of rehearsals, each flown from its own errors. Nothing here is of the vehicle.</p>
+          <p class="campaign-nature">
+            ◪ Statistics of rehearsals, each flown from its own errors. Nothing here is of the vehicle.
+          </p>
           {of && of.state.kept > 0 && <Numbers of={of} />}
-          {campaigns.value.length > 0 ? <Former /> : <p class="none">No campaign lies beside this archive yet. A campaign flies the same landing many times, each with errors drawn anew, in threads that give way to everything else.</p>}
+          {campaigns.value.length > 0 ? (
+            <Former />
+          ) : (
+            <p class="none">
+              No campaign lies beside this archive yet. A campaign flies the same landing many times, each with errors
+              drawn anew, in threads that give way to everything else.
+            </p>
+          )}
         </div>
       </div>
     </div>

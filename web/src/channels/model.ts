@@ -34,8 +34,14 @@ const STALE_LEAST_S = 3;
 const ROWS_SHOWN = 300;
 
 /** Those that match every word of `filter`, the picks of the layout first, as many as are shown. `total` counts all that match. */
-export function channelsShown(dictionary: Dictionary, filter: string): { channels: DictionaryChannel[]; total: number } {
-  const words = filter.toLowerCase().split(/\s+/).filter((word) => word !== '');
+export function channelsShown(
+  dictionary: Dictionary,
+  filter: string,
+): { channels: DictionaryChannel[]; total: number } {
+  const words = filter
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== '');
   const matching = dictionary.channels.filter((channel) => {
     const all = `${channel.name} ${channel.alias} ${channel.packet} ${channel.unit}`.toLowerCase();
     return words.every((word) => all.includes(word));
@@ -46,20 +52,40 @@ export function channelsShown(dictionary: Dictionary, filter: string): { channel
 }
 
 /** `context`: the state of EDL at `cutoff`. `lost`: nothing comes, whatever age the clocks say that stand still with it. */
-export function channelRow(store: RunStore | undefined, channel: DictionaryChannel, context: string | undefined, cutoff: number, lost = false): ChannelRow {
+export function channelRow(
+  store: RunStore | undefined,
+  channel: DictionaryChannel,
+  context: string | undefined,
+  cutoff: number,
+  lost = false,
+): ChannelRow {
   const sample = store?.latest(channel.id, cutoff);
   const age = sample && store ? ageOf(store, sample.sclk, cutoff) : undefined;
   const limits = limitsIn(channel, context);
   return {
-    id: channel.id, name: channel.name, alias: channel.alias, text: channel.text, unit: channel.unit, whose: whoseAt(store, channel.name, sample?.sclk ?? -Infinity),
-    value: valueText(channel, sample?.value), age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
-    look: lookOf(store, channel, limits, sample?.value, age, cutoff, lost), limits: limitsText(limits), allLimits: allLimitsText(channel),
+    id: channel.id,
+    name: channel.name,
+    alias: channel.alias,
+    text: channel.text,
+    unit: channel.unit,
+    whose: whoseAt(store, channel.name, sample?.sclk ?? -Infinity),
+    value: valueText(channel, sample?.value),
+    age: age === undefined ? '' : age < 0.05 ? 'now' : duration(age),
+    look: lookOf(store, channel, limits, sample?.value, age, cutoff, lost),
+    limits: limitsText(limits),
+    allLimits: allLimitsText(channel),
     recorded: sample?.recorded ?? false,
   };
 }
 
 function lookOf(
-  store: RunStore | undefined, channel: DictionaryChannel, limits: readonly AlarmLimit[], value: number | undefined, age: number | undefined, cutoff: number, lost: boolean,
+  store: RunStore | undefined,
+  channel: DictionaryChannel,
+  limits: readonly AlarmLimit[],
+  value: number | undefined,
+  age: number | undefined,
+  cutoff: number,
+  lost: boolean,
 ): ChannelLook {
   if (value === undefined || age === undefined) return store && !store.askedFor.has(channel.name) ? 'unasked' : 'never';
   // In a past view the alarms of now do not apply: the limits of then are asked again.
@@ -68,20 +94,34 @@ function lookOf(
   return isStale(store, channel, age, cutoff, lost) ? 'stale' : 'good';
 }
 
-const ageOf = (store: RunStore, sclk: number, cutoff: number): number => Math.max(0, Math.min(store.seenSclk, cutoff) - sclk);
+const ageOf = (store: RunStore, sclk: number, cutoff: number): number =>
+  Math.max(0, Math.min(store.seenSclk, cutoff) - sclk);
 
-function isStale(store: RunStore | undefined, channel: DictionaryChannel, age: number, cutoff: number, lost: boolean): boolean {
+function isStale(
+  store: RunStore | undefined,
+  channel: DictionaryChannel,
+  age: number,
+  cutoff: number,
+  lost: boolean,
+): boolean {
   if (lost && cutoff === Infinity) return true;
   const period = channel.expectedRateHz > 0 ? 1 / channel.expectedRateHz : 1;
   // What is held of the past is thinned: between two samples of it nothing can be said.
-  const held_s = cutoff === Infinity ? 0 : store?.spacing(channel.id) ?? 0;
+  const held_s = cutoff === Infinity ? 0 : (store?.spacing(channel.id) ?? 0);
   return age > Math.max(STALE_LEAST_S, STALE_PERIODS * Math.max(period, held_s));
 }
 
 /** "◌ 41 s": how old what a channel said last is, where it does not say what is now. For every figure, by the rule of the table. */
-export function staleWords(store: RunStore | undefined, channel: DictionaryChannel | undefined, cutoff: number, lost: boolean): string | undefined {
+export function staleWords(
+  store: RunStore | undefined,
+  channel: DictionaryChannel | undefined,
+  cutoff: number,
+  lost: boolean,
+): string | undefined {
   const sample = channel && store?.latest(channel.id, cutoff);
   if (!sample || !store) return undefined;
   const age = ageOf(store, sample.sclk, cutoff);
-  return isStale(store, channel, age, cutoff, lost) ? `${STATUS.stale.shape} ${age < 60 ? `${age.toFixed(0)} s` : duration(age)}` : undefined;
+  return isStale(store, channel, age, cutoff, lost)
+    ? `${STATUS.stale.shape} ${age < 60 ? `${age.toFixed(0)} s` : duration(age)}`
+    : undefined;
 }

@@ -17,23 +17,38 @@ describe('channels', () => {
     expect(row(aStore([samples(880, { 3: 1, 4: 1 })]), 'altitude_m')?.look).toBe('stale');
   });
   it('are stale at the instant that is shown, after the run as well, and all of them while nothing comes', () => {
-    const [old, going] = [[samples(500, { 3: 1, 4: 1 }), samples(501, { 3: 1, 4: 1 })], aStore([samples(899, { 3: 1, 4: 1 })])];
-    expect([row(aStore(old), 'altitude_m', 502)?.look, row(aStore(old), 'altitude_m', 520)?.look]).toEqual(['good', 'stale']);
+    const [old, going] = [
+      [samples(500, { 3: 1, 4: 1 }), samples(501, { 3: 1, 4: 1 })],
+      aStore([samples(899, { 3: 1, 4: 1 })]),
+    ];
+    expect([row(aStore(old), 'altitude_m', 502)?.look, row(aStore(old), 'altitude_m', 520)?.look]).toEqual([
+      'good',
+      'stale',
+    ]);
     expect(row(aStore(old, aRun({ state: 'finished' })), 'altitude_m')?.look).toBe('stale');
     expect([false, true].map((lost) => row(going, 'altitude_m', Infinity, lost)?.look)).toEqual(['good', 'stale']);
   });
   it('give every figure the same judgement, with its age in words', () => {
-    const words = (store: ReturnType<typeof aStore>, cutoff = Infinity, lost = false) => staleWords(store, aDictionary.pick(['altitude_m']), cutoff, lost);
+    const words = (store: ReturnType<typeof aStore>, cutoff = Infinity, lost = false) =>
+      staleWords(store, aDictionary.pick(['altitude_m']), cutoff, lost);
     expect([896, 898].map((sclk) => words(aStore([samples(sclk, { 3: 1 })])))).toEqual(['◌ 4 s', undefined]);
     const old = aStore([samples(500, { 3: 1 }), samples(501, { 3: 1 })]);
-    expect([words(old), words(old, 502), words(old, 520), words(old, 502, true)]).toEqual(['◌ 6 m 39 s', undefined, '◌ 19 s', undefined]);
+    expect([words(old), words(old, 502), words(old, 520), words(old, 502, true)]).toEqual([
+      '◌ 6 m 39 s',
+      undefined,
+      '◌ 19 s',
+      undefined,
+    ]);
     expect([words(aStore([samples(900, { 3: 1 })]), Infinity, true), words(aStore())]).toEqual(['◌ 0 s', undefined]);
   });
   it('say that nothing came once they were asked for, and that a value is undefined', () => {
     const store = aStore();
     expect(row(store, 'altitude_m')).toMatchObject({ value: '—', look: 'unasked' });
     store.addHistory([], ['altitude_m']);
-    expect([row(store, 'altitude_m'), row(store, 'speed_mps')]).toMatchObject([{ value: '—', look: 'never' }, { look: 'unasked' }]);
+    expect([row(store, 'altitude_m'), row(store, 'speed_mps')]).toMatchObject([
+      { value: '—', look: 'never' },
+      { look: 'unasked' },
+    ]);
     expect(row(aStore([samples(900, { 3: 1 })]), 'speed_mps')?.value).toBe('undefined');
   });
   it('judge the limits anew in a past view', () => {
@@ -43,8 +58,12 @@ describe('channels', () => {
   });
   it('judge a past view by the limits of its state of EDL', () => {
     const store = aStore([samples(800, { 1: 4, 4: 100 }), samples(850, { 1: 9, 4: 100 })]);
-    expect([800, 850].map((cutoff) => [row(store, 'speed_mps', cutoff)?.look, row(store, 'speed_mps', cutoff)?.limits]))
-      .toEqual([['caution', 'watch > 90; distress > 120'], ['good', 'watch > 6000']]);
+    expect(
+      [800, 850].map((cutoff) => [row(store, 'speed_mps', cutoff)?.look, row(store, 'speed_mps', cutoff)?.limits]),
+    ).toEqual([
+      ['caution', 'watch > 90; distress > 120'],
+      ['good', 'watch > 6000'],
+    ]);
   });
   it('are found by any of their words', () => {
     expect(channelsShown(aDictionary, 'gnc speed')).toMatchObject({ total: 1, channels: [{ name: 'speed_mps' }] });

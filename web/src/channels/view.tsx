@@ -10,7 +10,9 @@ import { channelRow, channelsShown } from './model';
 import './style.css';
 
 const filter = signal('');
-const shown = computed(() => (dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 }));
+const shown = computed(() =>
+  dictionary.value ? channelsShown(dictionary.value, filter.value) : { channels: [], total: 0 },
+);
 const context = computed(() => contextAt(runNow(), dictionary.value, cutoff.value));
 
 function Row({ channel, place }: { channel: DictionaryChannel; place: number }) {
@@ -18,12 +20,26 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
   const row = channelRow(shownRun(), channel, context.peek(), cutoff.value, isLost.value);
   return (
     <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`}>
-      <td title={STATUS[row.look].word}><span class="shape" aria-label={STATUS[row.look].word}>{STATUS[row.look].shape}</span></td>
-      <td title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}><span class="alias">{row.alias}</span> {row.name}{row.whose && <span class="alias">, {row.whose}</span>}</td>
-      <td class="number value" title={row.value}>{row.value}</td>
+      <td title={STATUS[row.look].word}>
+        <span class="shape" aria-label={STATUS[row.look].word}>
+          {STATUS[row.look].shape}
+        </span>
+      </td>
+      <td title={[`${row.name}: ${row.text}`, row.allLimits].filter(Boolean).join('\n')}>
+        <span class="alias">{row.alias}</span> {row.name}
+        {row.whose && <span class="alias">, {row.whose}</span>}
+      </td>
+      <td class="number value" title={row.value}>
+        {row.value}
+      </td>
       <td>{row.unit}</td>
-      <td class="number">{row.look === 'stale' ? `stale, ${row.age}` : row.age}{row.recorded ? ` ${SOURCES.recording.shape}` : ''}</td>
-      <td class="limits" title={row.allLimits}>{row.limits}</td>
+      <td class="number">
+        {row.look === 'stale' ? `stale, ${row.age}` : row.age}
+        {row.recorded ? ` ${SOURCES.recording.shape}` : ''}
+      </td>
+      <td class="limits" title={row.allLimits}>
+        {row.limits}
+      </td>
     </tr>
   );
 }
@@ -38,14 +54,36 @@ export function Channels() {
   return (
     <div class="table-box">
       <div class="table-tools">
-        <input type="search" placeholder="filter channels" aria-label="filter channels" value={filter.value}
-          data-testid="channel-filter" onInput={(event) => (filter.value = event.currentTarget.value)} />
-        <span>{channels.length} of {dictionary.value.channels.length} shown{total > channels.length ? `, ${total} match` : ''}</span>
+        <input
+          type="search"
+          placeholder="filter channels"
+          aria-label="filter channels"
+          value={filter.value}
+          data-testid="channel-filter"
+          onInput={(event) => (filter.value = event.currentTarget.value)}
+        />
+        <span>
+          {channels.length} of {dictionary.value.channels.length} shown
+          {total > channels.length ? `, ${total} match` : ''}
+        </span>
       </div>
       <div class="table-scroll channels-scroll" ref={box} tabIndex={0} aria-label="channels">
         <table class="channels" data-testid="channel-table">
-          <thead><tr><th>state</th><th>channel</th><th class="number">value</th><th>unit</th><th class="number">age</th><th>limits</th></tr></thead>
-          <tbody ref={rows}>{channels.map((channel, place) => <Row key={channel.id} channel={channel} place={place} />)}</tbody>
+          <thead>
+            <tr>
+              <th>state</th>
+              <th>channel</th>
+              <th class="number">value</th>
+              <th>unit</th>
+              <th class="number">age</th>
+              <th>limits</th>
+            </tr>
+          </thead>
+          <tbody ref={rows}>
+            {channels.map((channel, place) => (
+              <Row key={channel.id} channel={channel} place={place} />
+            ))}
+          </tbody>
         </table>
       </div>
     </div>

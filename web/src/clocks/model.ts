@@ -41,9 +41,16 @@ export function latestSend(store: RunStore): LatestSend | undefined {
   const { clocks } = store;
   if (!clocks?.ert) return undefined;
   const latest_s = secondsOfDayOfYear(clocks.latestUseful);
-  return { next: clocks.usefulBefore === '' ? undefined : {
-    name: clocks.usefulBefore, at: fromEntry(latest_s - store.ertOf(store.entrySclk)), left_s: latest_s - secondsOfDayOfYear(clocks.ert),
-  } };
+  return {
+    next:
+      clocks.usefulBefore === ''
+        ? undefined
+        : {
+            name: clocks.usefulBefore,
+            at: fromEntry(latest_s - store.ertOf(store.entrySclk)),
+            left_s: latest_s - secondsOfDayOfYear(clocks.ert),
+          },
+  };
 }
 
 export interface LinkLine {
@@ -55,7 +62,8 @@ export interface LinkLine {
 /** Without a connection nothing is known of what a link does now: only of a past view it still is. */
 export function linksOf(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   return [...store.links].map(([link, changes]) => {
-    if (lost && cutoff === Infinity && store.going) return { name: linkTitle(link), look: 'unknown', detail: 'no connection' };
+    if (lost && cutoff === Infinity && store.going)
+      return { name: linkTitle(link), look: 'unknown', detail: 'no connection' };
     const until = changes.filter((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff));
     const last = until[until.length - 1]?.fact;
     return {
@@ -71,7 +79,10 @@ const FEW = 3;
 /** For the header: what does not arrive, or does not stay. Beyond a few, the orbiters' links are one entry that says how many are up. */
 export function headerLinks(store: RunStore, cutoff: number, lost = false): LinkLine[] {
   const fault = store.run.archiveFault;
-  return [...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []), ...radioLinks(store, cutoff, lost)];
+  return [
+    ...(fault ? [{ name: 'NOT STORED', look: 'lost', detail: fault } as const] : []),
+    ...radioLinks(store, cutoff, lost),
+  ];
 }
 
 function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] {
@@ -80,15 +91,24 @@ function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] 
   const names = [...store.links.keys()];
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
   all.forEach((line, i) => (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line));
-  const [missed, up, down] = (['lost', 'up', 'down'] as const).map((look) => others.filter((line) => line.look === look)) as [LinkLine[], LinkLine[], LinkLine[]];
+  const [missed, up, down] = (['lost', 'up', 'down'] as const).map((look) =>
+    others.filter((line) => line.look === look),
+  ) as [LinkLine[], LinkLine[], LinkLine[]];
   const name = `${others.length} relay links`;
-  if (missed.length > 0) return [...own, { name, look: 'lost', detail: missed.map((line) => `${line.name}: ${line.detail}`).join('; ') }];
+  if (missed.length > 0)
+    return [...own, { name, look: 'lost', detail: missed.map((line) => `${line.name}: ${line.detail}`).join('; ') }];
   if (up.length > 0) return [...own, { name, look: 'up', detail: `up: ${up.map((line) => line.name).join(', ')}` }];
-  return [...own, { name, look: down.length > 0 ? 'down' : 'unknown', detail: (down.at(-1) ?? others.at(-1))?.detail ?? 'not yet' }];
+  return [
+    ...own,
+    { name, look: down.length > 0 ? 'down' : 'unknown', detail: (down.at(-1) ?? others.at(-1))?.detail ?? 'not yet' },
+  ];
 }
 
 const STREAM_WORDS: Record<StreamState, string> = {
-  connecting: 'connecting', catching_up: 'catching up', live: 'connected', lost: 'NO CONNECTION',
+  connecting: 'connecting',
+  catching_up: 'catching up',
+  live: 'connected',
+  lost: 'NO CONNECTION',
 };
 
 export function streamLine(state: StreamState, attempt: number, gaps: number): LinkLine {
@@ -105,27 +125,48 @@ export interface Badge {
 }
 
 /** What cannot be mistaken: which run this is, where it happens, and whether it is happening. */
-export function badgeOf(store: RunStore | undefined, past: { from: number; to: number } | undefined, replayed = false): Badge {
+export function badgeOf(
+  store: RunStore | undefined,
+  past: { from: number; to: number } | undefined,
+  replayed = false,
+): Badge {
   if (!store) return { title: MODES.none.badge, detail: 'start a rehearsal' };
   const run = store.run;
   const mode = modeOf(store, past !== undefined, replayed);
   const name = `${run.scenario} · run ${store.id}`;
   const where = isReal(run) ? 'real venue' : 'rehearsal';
-  if (past) return { title: MODES[mode].badge, detail: `${where}, ${name}${replayed ? '' : ` · ${fromEntry(past.from)} … ${fromEntry(past.to)}`}` };
-  if (!store.going) return { title: run.state === 'interrupted' ? 'INTERRUPTED RUN' : MODES.ended.badge, detail: `${where}, ${name} · ${outcomeWords(run.outcome, run.state)}` };
+  if (past)
+    return {
+      title: MODES[mode].badge,
+      detail: `${where}, ${name}${replayed ? '' : ` · ${fromEntry(past.from)} … ${fromEntry(past.to)}`}`,
+    };
+  if (!store.going)
+    return {
+      title: run.state === 'interrupted' ? 'INTERRUPTED RUN' : MODES.ended.badge,
+      detail: `${where}, ${name} · ${outcomeWords(run.outcome, run.state)}`,
+    };
   const pace = run.pace === 0 ? 'as fast as it goes' : `${run.pace}×`;
-  return { title: MODES[mode].badge, detail: `${name} · ${run.state === 'paused' ? 'paused' : mode === 'live' ? 'now' : pace}` };
+  return {
+    title: MODES[mode].badge,
+    detail: `${name} · ${run.state === 'paused' ? 'paused' : mode === 'live' ? 'now' : pace}`,
+  };
 }
 
 export function outcomeWords(outcome: string, state: string): string {
   if (state === 'interrupted') return 'the server stopped in mid-run; all that was published is here';
   switch (outcome) {
-    case 'touchdown': return 'touchdown';
-    case 'impact': return 'hit the ground too fast';
-    case 'lost': return 'lost';
-    case 'not_commanded': return 'no command came in time';
-    case 'timeout': return 'ended by its time limit';
-    default: return inProgress(state);
+    case 'touchdown':
+      return 'touchdown';
+    case 'impact':
+      return 'hit the ground too fast';
+    case 'lost':
+      return 'lost';
+    case 'not_commanded':
+      return 'no command came in time';
+    case 'timeout':
+      return 'ended by its time limit';
+    default:
+      return inProgress(state);
   }
 }
 

@@ -10,15 +10,29 @@ describe('the header', () => {
     const { entry, others } = clocksOf(aStore([], run), undefined);
     const of = (id: string) => others.find((clock) => clock.id === id)?.value;
     expect(entry).toBe('E−00:03:20');
-    expect([of('ert'), of('scet'), of('sclk'), of('mars-now')]).toEqual(['2012-219T05:00:00.0', '2012-219T04:58:20.0', '800.000', 'E−01:40']);
+    expect([of('ert'), of('scet'), of('sclk'), of('mars-now')]).toEqual([
+      '2012-219T05:00:00.0',
+      '2012-219T04:58:20.0',
+      '800.000',
+      'E−01:40',
+    ]);
   });
   it('counts down to the latest time to send, as the ground has it', () => {
     const run = aRun({ lightTimeS: 10 });
-    if (run.clocks) run.clocks = { ...run.clocks, lightTimeS: 10, eS: -90, latestUseful: '2012-219T05:02:44.000', usefulBefore: 'coolant_vent' };
+    if (run.clocks)
+      run.clocks = {
+        ...run.clocks,
+        lightTimeS: 10,
+        eS: -90,
+        latestUseful: '2012-219T05:02:44.000',
+        usefulBefore: 'coolant_vent',
+      };
     const store = aStore([], run);
     const send = latestSend(store);
     expect(send).toEqual({ next: { name: 'coolant_vent', at: 'E+01:04', left_s: 164 } });
-    expect(readReleaseAt(send?.next?.at ?? '', store), 'as it is typed for a command that waits').toMatch(/^2012-219T05:02:44/);
+    expect(readReleaseAt(send?.next?.at ?? '', store), 'as it is typed for a command that waits').toMatch(
+      /^2012-219T05:02:44/,
+    );
   });
   it('says that nothing useful can arrive, and nothing where the run has no clocks', () => {
     expect(latestSend(aStore())).toEqual({ next: undefined });
@@ -38,12 +52,18 @@ describe('the header', () => {
   });
   it('knows nothing of a link while nothing comes, but of the past what it was', () => {
     const store = aStore([link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:00.0' })]);
-    expect([linksOf(store, Infinity, true)[0], linksOf(store, 890, true)[0]?.look]).toEqual([{ name: 'UHF live', look: 'unknown', detail: 'no connection' }, 'up']);
+    expect([linksOf(store, Infinity, true)[0], linksOf(store, 890, true)[0]?.look]).toEqual([
+      { name: 'UHF live', look: 'unknown', detail: 'no connection' },
+      'up',
+    ]);
   });
   it('cannot be taken for another mode', () => {
     const titles = [
-      badgeOf(undefined, undefined), badgeOf(aStore(), undefined), badgeOf(aStore(), { from: 0, to: 10 }),
-      badgeOf(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })), undefined), badgeOf(aStore([], aRun({ state: 'interrupted' })), undefined),
+      badgeOf(undefined, undefined),
+      badgeOf(aStore(), undefined),
+      badgeOf(aStore(), { from: 0, to: 10 }),
+      badgeOf(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })), undefined),
+      badgeOf(aStore([], aRun({ state: 'interrupted' })), undefined),
     ].map((badge) => badge.title);
     expect(titles).toEqual(['NO RUN', 'REHEARSAL', 'PAST, NOT LIVE', 'ENDED RUN', 'INTERRUPTED RUN']);
   });
@@ -54,26 +74,59 @@ describe('the header', () => {
   });
   it('has room for the links of a pass: those of orbiters are one entry that names what is up', () => {
     const ert = '2012-219T04:59:00.0';
-    const store = aStore(['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) => link({ link: name, up: name !== 'relay' && name !== 'uhf_mex', reason: name === 'relay' ? 'below the horizon' : '', ert })));
+    const store = aStore(
+      ['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) =>
+        link({
+          link: name,
+          up: name !== 'relay' && name !== 'uhf_mex',
+          reason: name === 'relay' ? 'below the horizon' : '',
+          ert,
+        }),
+      ),
+    );
     expect(headerLinks(store, Infinity).map((line) => [line.name, line.look, line.detail])).toEqual([
-      ['UHF live', 'up', 'receiving'], ['X-band', 'up', 'receiving'], ['3 relay links', 'up', 'up: UHF MRO'],
+      ['UHF live', 'up', 'receiving'],
+      ['X-band', 'up', 'receiving'],
+      ['3 relay links', 'up', 'up: UHF MRO'],
     ]);
-    const failed = aStore(['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) => link({ link: name, up: name === 'uhf_mex', reason: name === 'relay' ? 'ground fault: the station is silent' : '', ert })));
-    expect(headerLinks(failed, Infinity)[2], 'one that is missed comes before those that are up').toEqual({ name: '3 relay links', look: 'lost', detail: 'Relay: ground fault: the station is silent' });
+    const failed = aStore(
+      ['uhf_live', 'x_band', 'relay', 'uhf_mro', 'uhf_mex'].map((name) =>
+        link({
+          link: name,
+          up: name === 'uhf_mex',
+          reason: name === 'relay' ? 'ground fault: the station is silent' : '',
+          ert,
+        }),
+      ),
+    );
+    expect(headerLinks(failed, Infinity)[2], 'one that is missed comes before those that are up').toEqual({
+      name: '3 relay links',
+      look: 'lost',
+      detail: 'Relay: ground fault: the station is silent',
+    });
   });
   it('says first that nothing is stored, in the words of the disk', () => {
-    expect(headerLinks(aStore([], aRun({ archiveFault: 'a.db: the disk is full' })), Infinity)).toEqual([{ name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full' }]);
+    expect(headerLinks(aStore([], aRun({ archiveFault: 'a.db: the disk is full' })), Infinity)).toEqual([
+      { name: 'NOT STORED', look: 'lost', detail: 'a.db: the disk is full' },
+    ]);
   });
   it('of a run of the day before, which has no clocks any more, go by what it holds', () => {
     const run = aRun({ state: 'finished', lightTimeS: 100 });
     delete (run as { clocks?: unknown }).clocks;
-    const store = aStore([
-      tone({ sclk: 900, tone: 7, ertStart: '2012-219T05:00:00.0' }), event({ id: 1, name: 'TOUCHDOWN', sclk: 1431, ert: '2012-219T05:08:52.0' }),
-      link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T05:02:30.0' }),
-    ], run);
+    const store = aStore(
+      [
+        tone({ sclk: 900, tone: 7, ertStart: '2012-219T05:00:00.0' }),
+        event({ id: 1, name: 'TOUCHDOWN', sclk: 1431, ert: '2012-219T05:08:52.0' }),
+        link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T05:02:30.0' }),
+      ],
+      run,
+    );
     const { entry, others } = clocksOf(store, undefined);
-    expect([entry, others.find((clock) => clock.id === 'ert')?.value, others.find((clock) => clock.id === 'scet')?.value])
-      .toEqual(['E+00:07:11', '2012-219T05:08:51.0', '2012-219T05:07:11.0']);
+    expect([
+      entry,
+      others.find((clock) => clock.id === 'ert')?.value,
+      others.find((clock) => clock.id === 'scet')?.value,
+    ]).toEqual(['E+00:07:11', '2012-219T05:08:51.0', '2012-219T05:07:11.0']);
     expect(linksOf(store, 1000)[0]?.look).toBe('unknown');
     expect(linksOf(store, 1050)[0]?.look).toBe('down');
   });

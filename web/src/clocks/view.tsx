@@ -16,7 +16,9 @@ import './style.css';
 function Link({ line, testId }: { line: LinkLine; testId: string }) {
   return (
     <div class={`link link-radio link-${line.look}`} data-testid={testId}>
-      <b><span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}</b>
+      <b>
+        <span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}
+      </b>
       <small title={line.detail}>{line.detail}</small>
     </div>
   );
@@ -26,9 +28,15 @@ function Link({ line, testId }: { line: LinkLine; testId: string }) {
 function Stream({ line, through }: { line: LinkLine; through: number | undefined }) {
   return (
     <div class={`link link-stream link-${line.look}`} data-testid="stream-state">
-      <b><span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}</b>
+      <b>
+        <span aria-hidden="true">{STATUS[LINK_STATUS[line.look]].shape}</span> {line.name}
+      </b>
       <small>
-        {through !== undefined && <span data-testid="complete-through">complete through {through.toLocaleString('en').replaceAll(',', ' ')}</span>}
+        {through !== undefined && (
+          <span data-testid="complete-through">
+            complete through {through.toLocaleString('en').replaceAll(',', ' ')}
+          </span>
+        )}
         {line.detail !== '' && `${through === undefined ? '' : ', '}${line.detail}`}
       </small>
     </div>
@@ -40,8 +48,19 @@ function AlarmCount({ severities, waiting, worst }: { severities: string[]; wait
   if (severities.length === 0 && waiting === 0) return null;
   return (
     <div class={`link link-${worst ? 'lost' : 'alarm'}`} data-testid="alarm-count">
-      <b><span aria-hidden="true">{STATUS[worst ? 'alarm' : 'caution'].shape}</span> {severities.length === 0 ? 'no alarm now' : `${severities.length} ${severities.length === 1 ? 'alarm' : 'alarms'}: ${[...new Set(severities)].join(', ')}`}</b>
-      {waiting > 0 && <small data-testid="alarms-waiting"><button type="button" class="quiet" onClick={() => focusPanel('alarms')}>{waiting} to acknowledge <kbd>a</kbd></button></small>}
+      <b>
+        <span aria-hidden="true">{STATUS[worst ? 'alarm' : 'caution'].shape}</span>{' '}
+        {severities.length === 0
+          ? 'no alarm now'
+          : `${severities.length} ${severities.length === 1 ? 'alarm' : 'alarms'}: ${[...new Set(severities)].join(', ')}`}
+      </b>
+      {waiting > 0 && (
+        <small data-testid="alarms-waiting">
+          <button type="button" class="quiet" onClick={() => focusPanel('alarms')}>
+            {waiting} to acknowledge <kbd>a</kbd>
+          </button>
+        </small>
+      )}
     </div>
   );
 }
@@ -69,22 +88,37 @@ export function Header() {
       {clocks && (
         <dl class="clocks">
           {clocks.others.map((clock) => (
-            <div key={clock.id}><dt>{clock.label}</dt><dd><output data-testid={`clock-${clock.id}`}>{clock.value}</output></dd></div>
+            <div key={clock.id}>
+              <dt>{clock.label}</dt>
+              <dd>
+                <output data-testid={`clock-${clock.id}`}>{clock.value}</output>
+              </dd>
+            </div>
           ))}
         </dl>
       )}
       {send && (
         <div class={`clock ${send.next && send.next.left_s < 60 ? 'late' : ''}`} data-testid="latest-send">
           <small>{send.next ? `latest to send before ${inWords(send.next.name)}` : 'latest to send'}</small>
-          <output>{send.next ? `${send.next.at}, in ${duration(send.next.left_s)}` : 'nothing useful can arrive'}</output>
+          <output>
+            {send.next ? `${send.next.at}, in ${duration(send.next.left_s)}` : 'nothing useful can arrive'}
+          </output>
         </div>
       )}
       <div class="links">
-        <AlarmCount severities={severities} waiting={waiting} worst={[...severities, ...(past ? [] : toAcknowledge.value.map((alarm) => alarm.worst))].some(isWorst)} />
-        {run && headerLinks(run, cutoff.value, stream.value.state === 'lost').map((line) => (
-          <Link key={line.name} line={line} testId={`link-${line.name}`} />
-        ))}
-        <Stream line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)} through={run?.completeThrough} />
+        <AlarmCount
+          severities={severities}
+          waiting={waiting}
+          worst={[...severities, ...(past ? [] : toAcknowledge.value.map((alarm) => alarm.worst))].some(isWorst)}
+        />
+        {run &&
+          headerLinks(run, cutoff.value, stream.value.state === 'lost').map((line) => (
+            <Link key={line.name} line={line} testId={`link-${line.name}`} />
+          ))}
+        <Stream
+          line={streamLine(stream.value.state, stream.value.attempt, stream.value.gaps)}
+          through={run?.completeThrough}
+        />
         <Who />
       </div>
     </header>

@@ -35,12 +35,17 @@ export function read(typed: string): void {
 
 const ANSWER_WITHIN_MS = 60_000; // ours: up to a hundred commands are encoded and checked one by one, after whatever else the gateway has to do
 
-const isAnswer = (answer: unknown): answer is SequenceAnswer => Array.isArray((answer as SequenceAnswer | null | undefined)?.commands);
+const isAnswer = (answer: unknown): answer is SequenceAnswer =>
+  Array.isArray((answer as SequenceAnswer | null | undefined)?.commands);
 
 /** An answer that says no is an answer, too. */
 async function ask(run: RunStore, dryRun: boolean): Promise<SequenceAnswer> {
   try {
-    const answer = await change<unknown>(`/runs/${run.id}/sequences`, sequenceOf(commands.value, hazardous.value, uplink.value.controller.trim(), dryRun), ANSWER_WITHIN_MS);
+    const answer = await change<unknown>(
+      `/runs/${run.id}/sequences`,
+      sequenceOf(commands.value, hazardous.value, uplink.value.controller.trim(), dryRun),
+      ANSWER_WITHIN_MS,
+    );
     if (isAnswer(answer)) return answer;
     throw new Refused(0, 'the answer cannot be read: whether it was taken is not known');
   } catch (error) {
@@ -61,7 +66,10 @@ export async function tryFile(): Promise<void> {
   try {
     found = { answer: await ask(run, true) };
   } catch (error) {
-    found = { problem: error instanceof Refused && error.status > 0 ? wordsFor(error) : 'the ground does not answer the dry run' };
+    found = {
+      problem:
+        error instanceof Refused && error.status > 0 ? wordsFor(error) : 'the ground does not answer the dry run',
+    };
   } finally {
     trying = false;
   }
@@ -85,15 +93,29 @@ export async function forwardFile(): Promise<void> {
     const answer = await ask(run, false);
     const numbers = answer.commands.map((each) => each.command).filter((number) => number !== '0');
     outcome.value = answer.accepted
-      ? { good: !answer.reason, text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}${answer.reason && `; ${answer.reason}`}` }
-      : { good: false, text: `refused: ${answer.reason}; ${numbers.length > 0 ? `taken was ${numbers.map((number) => `#${number}`).join(', ')}` : 'nothing was sent'}` };
+      ? {
+          good: !answer.reason,
+          text: `all ${numbers.length} taken: #${numbers[0]}${numbers.length > 1 ? ` to #${numbers.at(-1)}` : ''}${answer.reason && `; ${answer.reason}`}`,
+        }
+      : {
+          good: false,
+          text: `refused: ${answer.reason}; ${numbers.length > 0 ? `taken was ${numbers.map((number) => `#${number}`).join(', ')}` : 'nothing was sent'}`,
+        };
     if (numbers.length > 0) text.value = ''; // the next Enter must not send them a second time
     if (!answer.accepted) void learnAccess().catch(() => undefined); // as of one command: rights may have been taken away in the middle
   } catch (error) {
     const said = wordsFor(error);
     const open = isOpen(error);
-    outcome.value = { good: false, text: !open ? (said.endsWith('nothing was sent') ? said : `refused: ${said}; nothing was sent`) : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say` };
-    if (open) text.value = ''; // the next Enter must not be a second one
+    outcome.value = {
+      good: false,
+      text: !open
+        ? said.endsWith('nothing was sent')
+          ? said
+          : `refused: ${said}; nothing was sent`
+        : `${said}${error instanceof Refused && error.status === 0 ? '' : ': whether it was taken is not known'}; the history below will say`,
+    };
+    if (open)
+      text.value = ''; // the next Enter must not be a second one
     else void learnAccess().catch(() => undefined);
   }
   stage.value = 'review';

@@ -40,13 +40,22 @@ export function readFile(text: string): { commands: FileCommand[] } | { problem:
   } catch (error) {
     return { problem: `this is no JSON: ${error instanceof Error ? error.message : String(error)}` };
   }
-  if (typeof file !== 'object' || file === null || !Array.isArray((file as { commands?: unknown }).commands)) return { problem: 'a file is {"commands": […]}, as POST /runs/{run}/sequences takes it' };
+  if (typeof file !== 'object' || file === null || !Array.isArray((file as { commands?: unknown }).commands))
+    return { problem: 'a file is {"commands": […]}, as POST /runs/{run}/sequences takes it' };
   const stray = Object.keys(file).find((key) => key !== 'commands');
-  if (stray !== undefined) return { problem: stray === 'dry_run' ? 'dry_run: take it out; here nothing is sent before you say so' : `${stray}: a file has commands, and nothing else` };
+  if (stray !== undefined)
+    return {
+      problem:
+        stray === 'dry_run'
+          ? 'dry_run: take it out; here nothing is sent before you say so'
+          : `${stray}: a file has commands, and nothing else`,
+    };
   const commands = (file as { commands: unknown[] }).commands;
   if (commands.length === 0) return { problem: 'it has no commands' };
   if (commands.length > COMMANDS_MAX) return { problem: TOO_LONG };
-  const bad = commands.findIndex((each) => typeof each !== 'object' || each === null || typeof (each as { command?: unknown }).command !== 'string');
+  const bad = commands.findIndex(
+    (each) => typeof each !== 'object' || each === null || typeof (each as { command?: unknown }).command !== 'string',
+  );
   if (bad >= 0) return { problem: `commands[${bad}]: {"command": NAME, …} is wanted` };
   return { commands: commands as FileCommand[] };
 }
@@ -69,11 +78,17 @@ export function confirms(typed: string, hazardous: readonly string[]): boolean {
  * What is asked for. Arming and typed names are the controller's here and now, never the file's own; who asks is filled in where the
  * file does not say it. `confirmed`: those that were armed and typed, or for a dry run would be.
  */
-export function sequenceOf(commands: readonly FileCommand[], confirmed: readonly string[], controller: string, dryRun: boolean): object {
+export function sequenceOf(
+  commands: readonly FileCommand[],
+  confirmed: readonly string[],
+  controller: string,
+  dryRun: boolean,
+): object {
   return {
     dry_run: dryRun,
     commands: commands.map(({ armed: _armed, confirmation: _confirmation, ...each }) => ({
-      ...(controller !== '' && { controller }), ...each,
+      ...(controller !== '' && { controller }),
+      ...each,
       ...(confirmed.includes(each.command) && { armed: true, confirmation: each.command }),
     })),
   };

@@ -20,13 +20,16 @@ export const uplink = signal<UplinkText>(AT_ONCE);
 
 export const typed = computed(() => readLine(line.value));
 /** Set once the line names a command and goes on with its arguments. */
-export const inArguments = computed(() => (dictionary.value ? argumentOffers(dictionary.value, line.value) : undefined));
+export const inArguments = computed(() =>
+  dictionary.value ? argumentOffers(dictionary.value, line.value) : undefined,
+);
 export const offered = computed(() => {
   if (inArguments.value) return [inArguments.value.command];
   return dictionary.value ? candidates(dictionary.value, typed.value.words) : [];
 });
 export const chosen = computed(() =>
-  chosenName.value === undefined ? undefined : dictionary.value?.command(chosenName.value));
+  chosenName.value === undefined ? undefined : dictionary.value?.command(chosenName.value),
+);
 export const fields = computed(() => {
   void tick.value;
   return chosen.value
@@ -44,7 +47,9 @@ const intent = computed<CommandIntent | { problem: string } | undefined>(() => {
   if (unknown !== undefined) return { problem: `${command.name} has no argument ${unknown}` };
   return intentOf(command, fields.value, uplink.value, store.value);
 });
-export const problemNow = computed(() => (intent.value && 'problem' in intent.value ? intent.value.problem : undefined));
+export const problemNow = computed(() =>
+  intent.value && 'problem' in intent.value ? intent.value.problem : undefined,
+);
 /** Changes when what would be sent does, or where to. */
 export const intentKey = computed(() => JSON.stringify([store.value?.id, pastRange.value !== undefined, intent.value]));
 
@@ -59,7 +64,12 @@ export async function tryOut(): Promise<CommandReply | undefined> {
   const [wanted, of, command] = [intent.value, intentKey.value, chosen.value];
   if (!wanted || 'problem' in wanted || !command) return undefined;
   if (asked?.of === of) return asked.answer;
-  const one = { of, answer: sendCommand({ ...wanted, dryRun: true, armed: isHazardous(command), confirmation: command.name }).catch(() => undefined) };
+  const one = {
+    of,
+    answer: sendCommand({ ...wanted, dryRun: true, armed: isHazardous(command), confirmation: command.name }).catch(
+      () => undefined,
+    ),
+  };
   asked = one;
   const reply = await one.answer;
   if (asked === one) asked = undefined;
@@ -107,7 +117,10 @@ export function complete(): boolean {
     return line.value !== before;
   }
   const command = offered.value[choiceIndex.value];
-  if (command) line.value = [command.name.toLowerCase(), ...[...typed.value.given].map(([name, value]) => `${name}=${value}`)].join(' ') + (command.arguments.length > 0 ? ' ' : '');
+  if (command)
+    line.value =
+      [command.name.toLowerCase(), ...[...typed.value.given].map(([name, value]) => `${name}=${value}`)].join(' ') +
+      (command.arguments.length > 0 ? ' ' : '');
   choiceIndex.value = 0;
   return line.value !== before;
 }
@@ -145,7 +158,10 @@ export async function forward(): Promise<void> {
   try {
     const reply = await sendCommand({ ...wanted, armed: wasArmed, confirmation: wasArmed ? command.name : '' });
     message.value = reply.accepted
-      ? { good: !reply.reason, text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}${reply.reason && `; ${reply.reason}`}` }
+      ? {
+          good: !reply.reason,
+          text: `${command.name} is #${reply.command}, ${reply.octets.length / 2} octets${uplink.value.hold ? ', held' : uplink.value.releaseAt ? ', waits for its time' : ''}${reply.reason && `; ${reply.reason}`}`,
+        }
       : { good: false, text: `${command.name} refused: ${reply.reason}; nothing was sent` };
     if (reply.accepted) done();
     else void learnAccess().catch(() => undefined); // rights may have been taken away in the middle
@@ -156,11 +172,14 @@ export async function forward(): Promise<void> {
   step.value = 'type';
   chosenName.value = undefined;
   confirmation.value = '';
-  if (document.activeElement === document.body || document.activeElement?.closest('[data-testid="panel-commands"]')) openCommandLine(); // who went on elsewhere is left there
+  if (document.activeElement === document.body || document.activeElement?.closest('[data-testid="panel-commands"]'))
+    openCommandLine(); // who went on elsewhere is left there
 }
 
 /** What leaves has been shown as it leaves: only on the ground's answer to exactly this is Enter a yes. */
-const notReviewed = () => whyNotSent() ?? 'the ground has not answered yet what would become of it: nothing was sent; read it, then press Enter';
+const notReviewed = () =>
+  whyNotSent() ??
+  'the ground has not answered yet what would become of it: nothing was sent; read it, then press Enter';
 
 /** Not while it is known that it would be refused, nor while nothing is known: an armed command is one that can be sent. */
 async function arm(): Promise<void> {
@@ -184,10 +203,15 @@ export async function act(number: number, action: QueueAction): Promise<void> {
   const done = { release: 'released', hold: 'held', cancel: 'cancelled', approve: 'approved' }[action];
   try {
     const reply = await sendCommand({ action, number: BigInt(number), controller: uplink.value.controller });
-    message.value = reply.accepted ? { good: !reply.reason, text: `#${number} ${done}${reply.reason && `; ${reply.reason}`}` } : { good: false, text: reply.reason };
+    message.value = reply.accepted
+      ? { good: !reply.reason, text: `#${number} ${done}${reply.reason && `; ${reply.reason}`}` }
+      : { good: false, text: reply.reason };
   } catch (error) {
     const said = error instanceof Error ? error.message : String(error);
-    message.value = { good: false, text: error instanceof OutcomeUnknown ? `#${number}, ${action}: ${said}` : `#${number} was not ${done}: ${said}` };
+    message.value = {
+      good: false,
+      text: error instanceof OutcomeUnknown ? `#${number}, ${action}: ${said}` : `#${number} was not ${done}: ${said}`,
+    };
   }
 }
 
@@ -211,5 +235,6 @@ export function disarm(another: boolean): void {
   preview.value = undefined;
   if (step.value === 'armed' || (step.value === 'review' && another)) back(another);
   else if (another) message.value = undefined; // its number is of the other run
-  if (armed !== undefined) message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
+  if (armed !== undefined)
+    message.value = { good: undefined, text: `${armed} is not armed any more: nothing was sent` };
 }

@@ -51,7 +51,8 @@ export function candidates(dictionary: Dictionary, words: readonly string[]): Di
  * the one that is being given. `stem` is the part of the last token that stays.
  */
 export function argumentOffers(
-  dictionary: Dictionary, text: string,
+  dictionary: Dictionary,
+  text: string,
 ): { command: DictionaryCommand; stem: string; offers: string[]; strays: string[] } | undefined {
   const tokens = text.trimStart().split(/\s+/);
   const command = dictionary.command((tokens[0] ?? '').toUpperCase());
@@ -64,9 +65,16 @@ export function argumentOffers(
     const argument = command.arguments.find((each) => each.name === last.slice(0, at));
     const labels = argument?.labels.map((each) => each.label) ?? [];
     const begun = last.slice(at + 1).toLowerCase();
-    return { command, stem: last.slice(0, at + 1), offers: labels.filter((label) => label.toLowerCase().startsWith(begun)), strays };
+    return {
+      command,
+      stem: last.slice(0, at + 1),
+      offers: labels.filter((label) => label.toLowerCase().startsWith(begun)),
+      strays,
+    };
   }
-  const free = command.arguments.map((each) => each.name).filter((name) => name.startsWith(last.toLowerCase()) && (name === last || !given.has(name)));
+  const free = command.arguments
+    .map((each) => each.name)
+    .filter((name) => name.startsWith(last.toLowerCase()) && (name === last || !given.has(name)));
   return { command, stem: '', offers: free.map((name) => `${name}=`), strays };
 }
 
@@ -83,16 +91,21 @@ export interface Field {
 }
 
 export function fieldsOf(
-  command: DictionaryCommand, given: ReadonlyMap<string, string>, solution: readonly CommandArgument[],
+  command: DictionaryCommand,
+  given: ReadonlyMap<string, string>,
+  solution: readonly CommandArgument[],
 ): Field[] {
   const known = new Map(solution.map((entry) => [entry.name, entry.value]));
   // The solution belongs to a command that it can fill, not to any that shares a name with it.
-  const fits = command.arguments.length > 0 && command.arguments.filter((argument) => known.has(argument.name)).length * 2 > command.arguments.length;
+  const fits =
+    command.arguments.length > 0 &&
+    command.arguments.filter((argument) => known.has(argument.name)).length * 2 > command.arguments.length;
   return command.arguments.map((argument) => {
     const text = given.get(argument.name)?.trim() ?? '';
     if (text !== '') return typedField(argument, text);
     const solved = fits ? known.get(argument.name) : undefined;
-    if (solved !== undefined) return { argument, text, value: solved, from: 'solution', problem: problemOf(argument, solved) };
+    if (solved !== undefined)
+      return { argument, text, value: solved, from: 'solution', problem: problemOf(argument, solved) };
     if (argument.defaultValue !== undefined) {
       return { argument, text, value: argument.defaultValue, from: 'default', problem: undefined };
     }
@@ -111,7 +124,8 @@ function problemOf(argument: DictionaryArgument, value: number): string | undefi
   if (argument.integer && !Number.isInteger(value)) return 'must be a whole number';
   if (argument.min !== undefined && value < argument.min) return `must be at least ${argument.min}`;
   if (argument.max !== undefined && value > argument.max) return `must be at most ${argument.max}`;
-  if (argument.labels.length > 0 && !argument.labels.some((label) => Number(label.value) === value)) return 'is none of its values';
+  if (argument.labels.length > 0 && !argument.labels.some((label) => Number(label.value) === value))
+    return 'is none of its values';
   return undefined;
 }
 
@@ -136,14 +150,20 @@ export interface Precondition {
 }
 
 /** Preconditions as the page sees them, for who waits for one; before sending the server is asked, and flight decides by itself. */
-export function preconditionsOf(command: DictionaryCommand, dictionary: Dictionary, store: RunStore | undefined, cutoff = Infinity): Precondition[] {
+export function preconditionsOf(
+  command: DictionaryCommand,
+  dictionary: Dictionary,
+  store: RunStore | undefined,
+  cutoff = Infinity,
+): Precondition[] {
   return command.preconditions.map((words, index) => {
     const condition = command.conditions[index];
     const channel = condition && dictionary.channel(condition.channel);
     const sample = channel && store?.latest(channel.id, cutoff);
     if (!channel || !sample || Number.isNaN(sample.value)) return { words, holds: undefined, value: 'not known' };
     return {
-      words, holds: compare(sample.value, condition.comparison, condition.value),
+      words,
+      holds: compare(sample.value, condition.comparison, condition.value),
       value: `${channel.name} is ${dictionary.label(channel, sample.value) ?? numberText(sample.value)}`,
     };
   });
@@ -151,12 +171,18 @@ export function preconditionsOf(command: DictionaryCommand, dictionary: Dictiona
 
 export function compare(value: number, relation: string, bound: number): boolean {
   switch (relation) {
-    case '==': return value === bound;
-    case '!=': return value !== bound;
-    case '<': return value < bound;
-    case '<=': return value <= bound;
-    case '>': return value > bound;
-    default: return value >= bound;
+    case '==':
+      return value === bound;
+    case '!=':
+      return value !== bound;
+    case '<':
+      return value < bound;
+    case '<=':
+      return value <= bound;
+    case '>':
+      return value > bound;
+    default:
+      return value >= bound;
   }
 }
 
@@ -171,17 +197,30 @@ export interface UplinkText {
 export const AT_ONCE: UplinkText = { service: '', releaseAt: '', hold: false, priority: '', controller: '' };
 
 /** What is asked of the uplink: exactly this, dry run or not. */
-export function intentOf(command: DictionaryCommand, fields: readonly Field[], uplink: UplinkText, store: RunStore | undefined): CommandIntent | { problem: string } {
+export function intentOf(
+  command: DictionaryCommand,
+  fields: readonly Field[],
+  uplink: UplinkText,
+  store: RunStore | undefined,
+): CommandIntent | { problem: string } {
   const bad = fields.find((field) => field.problem !== undefined);
   if (bad) return { problem: `${bad.argument.name} ${bad.problem}${bad.text ? `: ${bad.text}` : ''}` };
   const releaseAt = readReleaseAt(uplink.releaseAt, store);
-  if (releaseAt === undefined) return { problem: `“${uplink.releaseAt}” is no time to leave: write it as 2012-219T05:00:00 or as E-15:00` };
-  if (!/^\d{0,6}$/.test(uplink.priority.trim())) return { problem: `“${uplink.priority}” is no priority: a whole number` };
+  if (releaseAt === undefined)
+    return { problem: `“${uplink.releaseAt}” is no time to leave: write it as 2012-219T05:00:00 or as E-15:00` };
+  if (!/^\d{0,6}$/.test(uplink.priority.trim()))
+    return { problem: `“${uplink.priority}” is no priority: a whole number` };
   return {
     command: command.name,
-    arguments: fields.filter((field) => field.from === 'typed').map((field) => ({ name: field.argument.name, value: field.value as number })),
+    arguments: fields
+      .filter((field) => field.from === 'typed')
+      .map((field) => ({ name: field.argument.name, value: field.value as number })),
     fromSolution: fields.some((field) => field.from === 'solution'),
-    service: uplink.service, releaseAt, hold: uplink.hold, priority: Number(uplink.priority), controller: uplink.controller.trim(),
+    service: uplink.service,
+    releaseAt,
+    hold: uplink.hold,
+    priority: Number(uplink.priority),
+    controller: uplink.controller.trim(),
   };
 }
 
@@ -204,7 +243,10 @@ export interface Arrival {
 }
 
 /** What the ground says of the times of a command, by the clock from entry. */
-export function arrivalOf(reply: Pick<CommandReply, 'arrives' | 'leaves' | 'latestUseful' | 'usefulBefore' | 'tooLateFor'>, store: RunStore): Arrival {
+export function arrivalOf(
+  reply: Pick<CommandReply, 'arrives' | 'leaves' | 'latestUseful' | 'usefulBefore' | 'tooLateFor'>,
+  store: RunStore,
+): Arrival {
   const name = reply.usefulBefore;
   const slack_s = secondsOfDayOfYear(reply.latestUseful) - secondsOfDayOfYear(reply.leaves);
   const misses = name !== '' && slack_s <= 0 && !reply.tooLateFor.includes(name);
@@ -221,7 +263,16 @@ export function conditionWords(text: string): { words: string; value: string } {
   return at < 0 ? { words: text, value: '' } : { words: text.slice(0, at), value: text.slice(at + 2) };
 }
 
-const STAGES = ['queued', 'authorised', 'released', 'radiated', 'received', 'accepted', 'executed', 'verified'] as const;
+const STAGES = [
+  'queued',
+  'authorised',
+  'released',
+  'radiated',
+  'received',
+  'accepted',
+  'executed',
+  'verified',
+] as const;
 
 export interface StageCell {
   stage: string;
@@ -232,7 +283,10 @@ export interface StageCell {
 
 /** Every stage says what is known of it, in a past view what was known then; one never heard of is not green. */
 export function stageCells(row: CommandRow, known: (at: string) => boolean = () => true): StageCell[] {
-  const names = [...STAGES, ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage))];
+  const names = [
+    ...STAGES,
+    ...[...row.stages.keys()].filter((stage) => !(STAGES as readonly string[]).includes(stage)),
+  ];
   return names.map((name) => {
     const stage = row.stages.get(name)?.findLast((word) => known(word.at));
     const look = (['ok', 'failed', 'unknown', 'pending'] as const).find((each) => each === stage?.status);
@@ -244,17 +298,29 @@ export function stageCells(row: CommandRow, known: (at: string) => boolean = () 
 export function newestEvidence(cells: readonly StageCell[]): string {
   const failed = cells.find((cell) => cell.look === 'failed');
   const waits = cells.find((cell) => cell.stage === 'released' && cell.look === 'pending');
-  const newest = failed ?? waits ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
+  const newest =
+    failed ?? waits ?? cells.findLast((cell) => cell.look === 'ok') ?? cells.findLast((cell) => cell.look !== 'none');
   return newest ? `${newest.stage}${newest.look === 'ok' ? '' : ` ${newest.look}`}: ${newest.evidence}` : '';
 }
 
 /** Those that may be sent and have not left, in the order of their numbers; `asker`: another than this one must approve it. */
-export function waitingCommands(store: RunStore): { row: CommandRow; evidence: string; held: boolean; asker: string | undefined }[] {
-  return [...store.commands.values()].flatMap((row) => {
-    const released = row.stages.get('released')?.at(-1);
-    if (released?.status !== 'pending') return [];
-    return [{ row, evidence: released.evidence, held: released.held, asker: released.needsApproval ? released.askedBy : undefined }];
-  }).sort((a, b) => a.row.command - b.row.command);
+export function waitingCommands(
+  store: RunStore,
+): { row: CommandRow; evidence: string; held: boolean; asker: string | undefined }[] {
+  return [...store.commands.values()]
+    .flatMap((row) => {
+      const released = row.stages.get('released')?.at(-1);
+      if (released?.status !== 'pending') return [];
+      return [
+        {
+          row,
+          evidence: released.evidence,
+          held: released.held,
+          asker: released.needsApproval ? released.askedBy : undefined,
+        },
+      ];
+    })
+    .sort((a, b) => a.row.command - b.row.command);
 }
 
 export interface ReadBackLine {
@@ -268,7 +334,12 @@ export interface ReadBackLine {
  * What was sent beside what the vehicle reports that it holds, argument by argument, where channels of one packet bear all of the
  * arguments' names; undefined where none does. `sclk`: of the report; one from before the command came on board says nothing of it.
  */
-export function readBackOf(row: CommandRow, dictionary: Dictionary, store: RunStore, cutoff = Infinity): { lines: ReadBackLine[]; sclk: number | undefined } | undefined {
+export function readBackOf(
+  row: CommandRow,
+  dictionary: Dictionary,
+  store: RunStore,
+  cutoff = Infinity,
+): { lines: ReadBackLine[]; sclk: number | undefined } | undefined {
   const sent = row.arguments.split(' ').flatMap((part) => {
     const at = part.indexOf('=');
     return at > 0 ? [{ name: part.slice(0, at), value: part.slice(at + 1) }] : [];

@@ -6,7 +6,19 @@ import { inWords } from '../run/dictionary';
 import { runNow, store } from '../run/shown';
 import { duration, fromEntry } from '../run/time';
 import { moved } from '../timeline/now';
-import { confirmation, fields, formText, intentKey, openCommandLine, previewNow, problemNow, step, tryOut, typed, uplink } from './line';
+import {
+  confirmation,
+  fields,
+  formText,
+  intentKey,
+  openCommandLine,
+  previewNow,
+  problemNow,
+  step,
+  tryOut,
+  typed,
+  uplink,
+} from './line';
 import { arrivalOf, conditionWords, isHazardous, rangeText, unitText } from './model';
 import type { UplinkText } from './model';
 
@@ -23,16 +35,28 @@ function Fields({ onKey }: Pick<Properties, 'onKey'>) {
   if (fields.value.length === 0) return null;
   return (
     <>
-      {filled > 0 && <p>{filled} of {fields.value.length} filled from ground’s navigation solution; type to change one.</p>}
+      {filled > 0 && (
+        <p>
+          {filled} of {fields.value.length} filled from ground’s navigation solution; type to change one.
+        </p>
+      )}
       <div class="fields">
         {fields.value.map((field) => (
           <label key={field.argument.name} class={field.problem !== undefined ? 'bad' : ''} title={field.argument.text}>
             <span>{field.argument.name}</span>
-            <input value={field.text} placeholder={field.value === undefined ? 'needed' : String(field.value)}
-              aria-invalid={field.problem !== undefined} disabled={typed.value.given.has(field.argument.name) || step.value !== 'review'}
+            <input
+              value={field.text}
+              placeholder={field.value === undefined ? 'needed' : String(field.value)}
+              aria-invalid={field.problem !== undefined}
+              disabled={typed.value.given.has(field.argument.name) || step.value !== 'review'}
               onKeyDown={onKey}
-              onInput={(event) => (formText.value = new Map([...formText.value, [field.argument.name, event.currentTarget.value]]))} />
-            <small>{unitText(field.argument)} {field.problem ?? rangeText(field.argument)}</small>
+              onInput={(event) =>
+                (formText.value = new Map([...formText.value, [field.argument.name, event.currentTarget.value]]))
+              }
+            />
+            <small>
+              {unitText(field.argument)} {field.problem ?? rangeText(field.argument)}
+            </small>
           </label>
         ))}
       </div>
@@ -46,18 +70,74 @@ function Uplink({ onKey }: Pick<Properties, 'onKey'>) {
   const set = (change: Partial<UplinkText>) => (uplink.value = { ...uplink.value, ...change });
   return (
     <div class="uplink" role="group" aria-label="how it leaves">
-      <label>leaves <input data-testid="release-at" placeholder="at once" title="ERT as 2012-219T05:00:00, or E-15:00 by the clock on top" spellcheck={false}
-        value={now.releaseAt} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ releaseAt: event.currentTarget.value })} /></label>
-      <label>priority <input class="narrow" data-testid="priority" inputMode="numeric" placeholder="0" title="of those that are due the largest leaves first"
-        value={now.priority} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ priority: event.currentTarget.value })} /></label>
-      <label>service <select data-testid="service" value={now.service} disabled={fixed} onKeyDown={onKey}
-        title="AD: repeated until the vehicle reports its frame. BD: sent once, taken by a vehicle that is not heard."
-        onChange={(event) => set({ service: event.currentTarget.value as UplinkText['service'] })}>
-        <option value="">what suits</option><option value="AD">AD</option><option value="BD">BD</option>
-      </select></label>
-      <label>by <input class="name" data-testid="controller" placeholder="your name" maxLength={64} title="who asks; needed where a second person must approve" spellcheck={false}
-        value={now.controller} disabled={fixed} onKeyDown={onKey} onInput={(event) => set({ controller: event.currentTarget.value })} /></label>
-      <label><input type="checkbox" data-testid="hold" checked={now.hold} disabled={fixed} onKeyDown={onKey} onChange={(event) => set({ hold: event.currentTarget.checked })} /> hold</label>
+      <label>
+        leaves{' '}
+        <input
+          data-testid="release-at"
+          placeholder="at once"
+          title="ERT as 2012-219T05:00:00, or E-15:00 by the clock on top"
+          spellcheck={false}
+          value={now.releaseAt}
+          disabled={fixed}
+          onKeyDown={onKey}
+          onInput={(event) => set({ releaseAt: event.currentTarget.value })}
+        />
+      </label>
+      <label>
+        priority{' '}
+        <input
+          class="narrow"
+          data-testid="priority"
+          inputMode="numeric"
+          placeholder="0"
+          title="of those that are due the largest leaves first"
+          value={now.priority}
+          disabled={fixed}
+          onKeyDown={onKey}
+          onInput={(event) => set({ priority: event.currentTarget.value })}
+        />
+      </label>
+      <label>
+        service{' '}
+        <select
+          data-testid="service"
+          value={now.service}
+          disabled={fixed}
+          onKeyDown={onKey}
+          title="AD: repeated until the vehicle reports its frame. BD: sent once, taken by a vehicle that is not heard."
+          onChange={(event) => set({ service: event.currentTarget.value as UplinkText['service'] })}
+        >
+          <option value="">what suits</option>
+          <option value="AD">AD</option>
+          <option value="BD">BD</option>
+        </select>
+      </label>
+      <label>
+        by{' '}
+        <input
+          class="name"
+          data-testid="controller"
+          placeholder="your name"
+          maxLength={64}
+          title="who asks; needed where a second person must approve"
+          spellcheck={false}
+          value={now.controller}
+          disabled={fixed}
+          onKeyDown={onKey}
+          onInput={(event) => set({ controller: event.currentTarget.value })}
+        />
+      </label>
+      <label>
+        <input
+          type="checkbox"
+          data-testid="hold"
+          checked={now.hold}
+          disabled={fixed}
+          onKeyDown={onKey}
+          onChange={(event) => set({ hold: event.currentTarget.checked })}
+        />{' '}
+        hold
+      </label>
     </div>
   );
 }
@@ -76,7 +156,15 @@ function Told({ reply }: { reply: CommandReply }) {
           {reply.preconditions.map((condition) => {
             const look = CONDITION[condition.state as keyof typeof CONDITION] ?? CONDITION.unknown;
             const { words, value } = conditionWords(condition.text);
-            return <li key={words} class={look}>{STATUS[look].shape} {words} <output>{value}{look === 'unknown' && '; flight decides'}</output></li>;
+            return (
+              <li key={words} class={look}>
+                {STATUS[look].shape} {words}{' '}
+                <output>
+                  {value}
+                  {look === 'unknown' && '; flight decides'}
+                </output>
+              </li>
+            );
           })}
         </ul>
       )}
@@ -84,16 +172,70 @@ function Told({ reply }: { reply: CommandReply }) {
         <dl class="told">
           <dt>at the latest</dt>
           <dd data-testid="send-by">
-            {arrival.before && arrival.before.slack_s > 0 ? <>leave by <output>{arrival.before.leave_ert}</output> ERT to be there before {inWords(arrival.before.name)}: <output>{duration(arrival.before.slack_s)}</output> to spare</>
-              : arrival.before ? <>too late: to be there before {inWords(arrival.before.name)} it had to leave by <output>{arrival.before.leave_ert}</output> ERT</>
-              : 'nothing comes after it whose time is planned or predicted'}
+            {arrival.before && arrival.before.slack_s > 0 ? (
+              <>
+                leave by <output>{arrival.before.leave_ert}</output> ERT to be there before{' '}
+                {inWords(arrival.before.name)}: <output>{duration(arrival.before.slack_s)}</output> to spare
+              </>
+            ) : arrival.before ? (
+              <>
+                too late: to be there before {inWords(arrival.before.name)} it had to leave by{' '}
+                <output>{arrival.before.leave_ert}</output> ERT
+              </>
+            ) : (
+              'nothing comes after it whose time is planned or predicted'
+            )}
           </dd>
-          <dt>leaves</dt><dd>{uplink.value.hold ? 'held until you release it' : uplink.value.releaseAt ? <><output>{reply.leaves}</output> ERT</> : 'at once'}, by {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}{reply.station && <>, <span data-testid="station">from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT</span></>}</dd>
-          <dt>at Mars</dt><dd data-testid="arrives"><output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>{uplink.value.hold && ' or later'}</dd>
-          <dt>effect seen</dt><dd data-testid="effect-seen">from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it leaves</dd>
-          {reply.timeline && <><dt>timeline</dt><dd data-testid="analysed">✓ {reply.timeline}</dd></>}
-          {reply.arguments && <><dt>as encoded</dt><dd class="encoded" tabIndex={0} aria-label="arguments as encoded">{reply.arguments}</dd></>}
-          <dt>{octets} octets</dt><dd class="encoded" tabIndex={0} aria-label="octets">{reply.octets.replace(/../g, '$& ')}</dd>
+          <dt>leaves</dt>
+          <dd>
+            {uplink.value.hold ? (
+              'held until you release it'
+            ) : uplink.value.releaseAt ? (
+              <>
+                <output>{reply.leaves}</output> ERT
+              </>
+            ) : (
+              'at once'
+            )}
+            , by{' '}
+            {reply.service === 'AD' ? 'AD: repeated until the vehicle reports its frame' : 'BD: once, unacknowledged'}
+            {reply.station && (
+              <>
+                ,{' '}
+                <span data-testid="station">
+                  from {reply.station}, whose pass ends <output>{reply.stationUntil}</output> ERT
+                </span>
+              </>
+            )}
+          </dd>
+          <dt>at Mars</dt>
+          <dd data-testid="arrives">
+            <output>{reply.arrives}</output> SCET, <output>{fromEntry(arrival.arrives_e_s)}</output>
+            {uplink.value.hold && ' or later'}
+          </dd>
+          <dt>effect seen</dt>
+          <dd data-testid="effect-seen">
+            from <output>{reply.effectSeen}</output> ERT, <output>{duration(2 * run.run.lightTimeS)}</output> after it
+            leaves
+          </dd>
+          {reply.timeline && (
+            <>
+              <dt>timeline</dt>
+              <dd data-testid="analysed">✓ {reply.timeline}</dd>
+            </>
+          )}
+          {reply.arguments && (
+            <>
+              <dt>as encoded</dt>
+              <dd class="encoded" tabIndex={0} aria-label="arguments as encoded">
+                {reply.arguments}
+              </dd>
+            </>
+          )}
+          <dt>{octets} octets</dt>
+          <dd class="encoded" tabIndex={0} aria-label="octets">
+            {reply.octets.replace(/../g, '$& ')}
+          </dd>
         </dl>
       )}
     </>
@@ -108,12 +250,32 @@ function Verdict({ command }: { command: DictionaryCommand }) {
   const tooLateFor = run && reply?.arrives && problem === undefined ? arrivalOf(reply, run).tooLateFor : [];
   return (
     <>
-      {problem !== undefined ? <p class="verdict unknown">{STATUS.missing.shape} {problem}</p>
-        : !reply ? <p class="verdict unknown">? the ground has not answered the dry run yet</p>
-          : reply.accepted && reply.needsApproval ? <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
-          : reply.accepted ? <p class="verdict holds">✓ {step.value === 'armed' ? 'It is sent once its name is typed.' : isHazardous(command) ? 'It would be sent once it is armed and its name is typed.' : 'It would be sent as it stands here.'}</p>
-            : <p class="verdict missing">✖ It would be refused: {reply.reason}</p>}
-      {tooLateFor.length > 0 && <p class="verdict caution" data-testid="too-late">▲ Too late for {tooLateFor.slice(0, 3).map(inWords).join(', ')}{tooLateFor.length > 3 && ` and ${tooLateFor.length - 3} more`}.</p>}
+      {problem !== undefined ? (
+        <p class="verdict unknown">
+          {STATUS.missing.shape} {problem}
+        </p>
+      ) : !reply ? (
+        <p class="verdict unknown">? the ground has not answered the dry run yet</p>
+      ) : reply.accepted && reply.needsApproval ? (
+        <p class="verdict holds">✓ It would wait for the approval of a second controller; its own checks hold.</p>
+      ) : reply.accepted ? (
+        <p class="verdict holds">
+          ✓{' '}
+          {step.value === 'armed'
+            ? 'It is sent once its name is typed.'
+            : isHazardous(command)
+              ? 'It would be sent once it is armed and its name is typed.'
+              : 'It would be sent as it stands here.'}
+        </p>
+      ) : (
+        <p class="verdict missing">✖ It would be refused: {reply.reason}</p>
+      )}
+      {tooLateFor.length > 0 && (
+        <p class="verdict caution" data-testid="too-late">
+          ▲ Too late for {tooLateFor.slice(0, 3).map(inWords).join(', ')}
+          {tooLateFor.length > 3 && ` and ${tooLateFor.length - 3} more`}.
+        </p>
+      )}
     </>
   );
 }
@@ -132,9 +294,21 @@ function DryRun({ command, onKey }: Properties) {
   const reply = previewNow.value;
   return (
     <div class="dry-run" data-testid="dry-run">
-      <div aria-live="polite"><Verdict command={command} /></div>
+      <div aria-live="polite">
+        <Verdict command={command} />
+      </div>
       {step.value === 'review' && (
-        <p class="next"><kbd>Enter</kbd> {isHazardous(command) ? 'arms it; nothing is sent yet' : uplink.value.hold ? 'puts it into the queue, held' : reply?.needsApproval ? 'asks a second controller for it' : 'sends it'} · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back</p>
+        <p class="next">
+          <kbd>Enter</kbd>{' '}
+          {isHazardous(command)
+            ? 'arms it; nothing is sent yet'
+            : uplink.value.hold
+              ? 'puts it into the queue, held'
+              : reply?.needsApproval
+                ? 'asks a second controller for it'
+                : 'sends it'}{' '}
+          · <kbd>Tab</kbd> to change · <kbd>Esc</kbd> goes back
+        </p>
       )}
       <Effect onKey={onKey} />
       {reply && <Told reply={reply} />}
@@ -149,14 +323,32 @@ function Effect({ onKey }: Pick<Properties, 'onKey'>) {
   const all = moved.value;
   if (!all) return null;
   const most = all.reduce((largest, each) => Math.max(largest, Math.abs(each.to_e_s - each.from_e_s)), 0);
-  if (all.length === 0) return <p class="effect" data-testid="effect">◌ As predicted now, it moves no timepoint.</p>;
-  const [what, atMost] = [`◌ It would move ${all.length} ${all.length === 1 ? 'timepoint' : 'timepoints'}`, `, by at most ${duration(most)}`];
+  if (all.length === 0)
+    return (
+      <p class="effect" data-testid="effect">
+        ◌ As predicted now, it moves no timepoint.
+      </p>
+    );
+  const [what, atMost] = [
+    `◌ It would move ${all.length} ${all.length === 1 ? 'timepoint' : 'timepoints'}`,
+    `, by at most ${duration(most)}`,
+  ];
   return (
     <details class="effect" data-testid="effect">
-      <summary title={what + atMost} onKeyDown={(event) => event.key === 'Escape' && onKey(event)}><b>{what}</b>{atMost}</summary>
+      <summary title={what + atMost} onKeyDown={(event) => event.key === 'Escape' && onKey(event)}>
+        <b>{what}</b>
+        {atMost}
+      </summary>
       <ul>
         {all.slice(0, MOVED_SHOWN).map((each) => (
-          <li key={each.id}>{inWords(each.name)} <output>{fromEntry(each.from_e_s, { tenths: true })} → {fromEntry(each.to_e_s, { tenths: true })}, {each.to_e_s > each.from_e_s ? '+' : '−'}{duration(Math.abs(each.to_e_s - each.from_e_s))}</output></li>
+          <li key={each.id}>
+            {inWords(each.name)}{' '}
+            <output>
+              {fromEntry(each.from_e_s, { tenths: true })} → {fromEntry(each.to_e_s, { tenths: true })},{' '}
+              {each.to_e_s > each.from_e_s ? '+' : '−'}
+              {duration(Math.abs(each.to_e_s - each.from_e_s))}
+            </output>
+          </li>
         ))}
         {all.length > MOVED_SHOWN && <li>and {all.length - MOVED_SHOWN} more, dashed on the timeline</li>}
       </ul>
@@ -167,7 +359,9 @@ function Effect({ onKey }: Pick<Properties, 'onKey'>) {
 export function Review({ command, onKey }: Properties) {
   return (
     <div class="review" data-testid="command-review">
-      <p><b>{command.name}</b> {command.text}</p>
+      <p>
+        <b>{command.name}</b> {command.text}
+      </p>
       {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
       <DryRun command={command} onKey={onKey} />
       <Fields onKey={onKey} />
@@ -188,14 +382,23 @@ export function Armed({ command, onKey }: { command: DictionaryCommand; onKey: (
       {command.reasonForWarning && <p class="caution">▲ {command.reasonForWarning}</p>}
       <Verdict command={command} />
       <label>
-        <span> Type <b>{command.name}</b> and press Enter to send. Esc disarms.</span>
-        <input ref={input} data-testid="command-confirmation" autocomplete="off" spellcheck={false} value={confirmation.value}
+        <span>
+          {' '}
+          Type <b>{command.name}</b> and press Enter to send. Esc disarms.
+        </span>
+        <input
+          ref={input}
+          data-testid="command-confirmation"
+          autocomplete="off"
+          spellcheck={false}
+          value={confirmation.value}
           onInput={(event) => (confirmation.value = event.currentTarget.value)}
           onKeyDown={(event) => {
             const escaped = event.key === 'Escape';
             onKey(event);
             if (escaped) openCommandLine();
-          }} />
+          }}
+        />
       </label>
     </div>
   );

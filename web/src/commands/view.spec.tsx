@@ -9,10 +9,36 @@ import { CommandReplySchema, DictionaryArgumentSchema } from '../gen/aeolis/v1/r
 import type { ToWorker } from '../stream/messages';
 import { aDictionary, aRun, aStore, samples, stage } from '../testing/fixtures';
 import { aServer } from '../testing/server';
-import { act as actOn, back, chosen, complete, confirmation, forward, line, message, previewNow, step, tryOut, type } from './line';
 import {
-  AT_ONCE, argumentOffers, arrivalOf, candidates, conditionWords, fieldsOf, intentOf, isHazardous, preconditionsOf, readBackOf, readLine, readReleaseAt,
-  stageCells, unitText, waitingCommands,
+  act as actOn,
+  back,
+  chosen,
+  complete,
+  confirmation,
+  forward,
+  line,
+  message,
+  previewNow,
+  step,
+  tryOut,
+  type,
+} from './line';
+import {
+  AT_ONCE,
+  argumentOffers,
+  arrivalOf,
+  candidates,
+  conditionWords,
+  fieldsOf,
+  intentOf,
+  isHazardous,
+  preconditionsOf,
+  readBackOf,
+  readLine,
+  readReleaseAt,
+  stageCells,
+  unitText,
+  waitingCommands,
 } from './model';
 import { Commands } from './view';
 
@@ -33,8 +59,14 @@ describe('what is typed', () => {
   });
   it('once it is a whole command offers its arguments, and what is no argument is called by its name', () => {
     expect(argumentOffers(aDictionary, 'edl_set_par')).toBeUndefined();
-    expect(argumentOffers(aDictionary, 'edl_set_parameters ')?.offers).toEqual(['solution_id=', 'parachute_speed_mps=']);
-    expect(argumentOffers(aDictionary, 'edl_set_parameters solution_id=3 para')).toMatchObject({ offers: ['parachute_speed_mps='], strays: ['para'] });
+    expect(argumentOffers(aDictionary, 'edl_set_parameters ')?.offers).toEqual([
+      'solution_id=',
+      'parachute_speed_mps=',
+    ]);
+    expect(argumentOffers(aDictionary, 'edl_set_parameters solution_id=3 para')).toMatchObject({
+      offers: ['parachute_speed_mps='],
+      strays: ['para'],
+    });
     expect(argumentOffers(aDictionary, 'edl_set_parameters solution_id=3 ')?.offers).toEqual(['parachute_speed_mps=']);
   });
   it('refuses what is out of range, no number, or missing', () => {
@@ -46,8 +78,14 @@ describe('what is typed', () => {
     expect(problems('x solution_id=0x10')).toEqual(['is not a number', undefined]);
   });
   it('fills from the navigation solution only the command that it fits', () => {
-    const solution = [{ $typeName: 'aeolis.v1.CommandArgument' as const, name: 'solution_id', value: 9 }, { $typeName: 'aeolis.v1.CommandArgument' as const, name: 'parachute_speed_mps', value: 405 }];
-    expect(fieldsOf(set, new Map(), solution).map((field) => [field.from, field.value])).toEqual([['solution', 9], ['solution', 405]]);
+    const solution = [
+      { $typeName: 'aeolis.v1.CommandArgument' as const, name: 'solution_id', value: 9 },
+      { $typeName: 'aeolis.v1.CommandArgument' as const, name: 'parachute_speed_mps', value: 405 },
+    ];
+    expect(fieldsOf(set, new Map(), solution).map((field) => [field.from, field.value])).toEqual([
+      ['solution', 9],
+      ['solution', 405],
+    ]);
   });
   it('shows preconditions with their live value, and unknown ones as unknown', () => {
     expect(preconditionsOf(doEdl, aDictionary, aStore())[0]?.holds).toBeUndefined();
@@ -63,7 +101,10 @@ it('a number without a unit has none beside its range, where the dictionary’s 
 
 describe('stages', () => {
   it('shows nothing green that was not heard of', () => {
-    const row = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok' }), stage({ command: 1n, stage: 'received', status: 'unknown' })]).commands.get(1);
+    const row = aStore([
+      stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok' }),
+      stage({ command: 1n, stage: 'received', status: 'unknown' }),
+    ]).commands.get(1);
     const looks = Object.fromEntries((row ? stageCells(row) : []).map((cell) => [cell.stage, cell.look]));
     expect(looks).toMatchObject({ queued: 'ok', received: 'unknown', accepted: 'none', verified: 'none' });
   });
@@ -72,15 +113,34 @@ describe('stages', () => {
 describe('what is asked of the uplink', () => {
   const whole = fieldsOf(set, readLine('x solution_id=3').given, []);
   it('is the command with its time, hold and priority, and only what was typed of its arguments', () => {
-    expect(intentOf(set, whole, { service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: '7', controller: ' Ann ' }, aStore())).toEqual({
-      command: 'EDL_SET_PARAMETERS', arguments: [{ name: 'solution_id', value: 3 }], fromSolution: false,
-      service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: 7, controller: 'Ann',
+    expect(
+      intentOf(
+        set,
+        whole,
+        { service: 'BD', releaseAt: '2012-219T05:10:00', hold: true, priority: '7', controller: ' Ann ' },
+        aStore(),
+      ),
+    ).toEqual({
+      command: 'EDL_SET_PARAMETERS',
+      arguments: [{ name: 'solution_id', value: 3 }],
+      fromSolution: false,
+      service: 'BD',
+      releaseAt: '2012-219T05:10:00',
+      hold: true,
+      priority: 7,
+      controller: 'Ann',
     });
   });
   it('names what cannot be read, and then there is nothing to send', () => {
-    expect(intentOf(set, whole, { ...AT_ONCE, releaseAt: 'noon' }, aStore())).toEqual({ problem: expect.stringContaining('“noon” is no time') });
-    expect(intentOf(set, whole, { ...AT_ONCE, priority: '-1' }, aStore())).toEqual({ problem: expect.stringContaining('no priority') });
-    expect(intentOf(set, fieldsOf(set, new Map(), []), AT_ONCE, aStore())).toEqual({ problem: 'solution_id is needed' });
+    expect(intentOf(set, whole, { ...AT_ONCE, releaseAt: 'noon' }, aStore())).toEqual({
+      problem: expect.stringContaining('“noon” is no time'),
+    });
+    expect(intentOf(set, whole, { ...AT_ONCE, priority: '-1' }, aStore())).toEqual({
+      problem: expect.stringContaining('no priority'),
+    });
+    expect(intentOf(set, fieldsOf(set, new Map(), []), AT_ONCE, aStore())).toEqual({
+      problem: 'solution_id is needed',
+    });
   });
   it('takes a time to leave as ERT or by the clock on top', () => {
     expect(readReleaseAt('', aStore())).toBe('');
@@ -92,34 +152,63 @@ describe('what is asked of the uplink', () => {
     const run = aRun({ lightTimeS: 60 });
     if (run.clocks) run.clocks = { ...run.clocks, sclk: 160, eS: -840, seenSclk: 100 };
     // Received now, at 05:00:00: SCLK 100, which was SCET 04:59:00. What leaves now comes at SCLK 220, which is E-780.
-    const told = { leaves: '2012-219T05:00:00.000', arrives: '2012-219T05:01:00.000', latestUseful: '2012-219T05:13:00.000', usefulBefore: 'entry_interface', tooLateFor: ['coolant_vent'] };
+    const told = {
+      leaves: '2012-219T05:00:00.000',
+      arrives: '2012-219T05:01:00.000',
+      latestUseful: '2012-219T05:13:00.000',
+      usefulBefore: 'entry_interface',
+      tooLateFor: ['coolant_vent'],
+    };
     expect(arrivalOf(told, aStore([], run))).toEqual({
-      arrives_e_s: -780, tooLateFor: ['coolant_vent'],
+      arrives_e_s: -780,
+      tooLateFor: ['coolant_vent'],
       before: { name: 'entry_interface', leave_ert: '2012-219T05:13:00.000', slack_s: 780 },
     });
     // A change of an offset that comes after what it moves.
-    const late = arrivalOf({ ...told, latestUseful: '2012-219T04:50:00.000', usefulBefore: 'uhf_start' }, aStore([], run));
+    const late = arrivalOf(
+      { ...told, latestUseful: '2012-219T04:50:00.000', usefulBefore: 'uhf_start' },
+      aStore([], run),
+    );
     expect([late.before?.slack_s, late.tooLateFor]).toEqual([-600, ['coolant_vent', 'uhf_start']]);
     expect(arrivalOf({ ...told, latestUseful: '', usefulBefore: '' }, aStore([], run)).before).toBeUndefined();
   });
   it('shows the ground’s word on a precondition with its value apart', () => {
-    expect(conditionWords('parameters_received == 1: is 0')).toEqual({ words: 'parameters_received == 1', value: 'is 0' });
+    expect(conditionWords('parameters_received == 1: is 0')).toEqual({
+      words: 'parameters_received == 1',
+      value: 'is 0',
+    });
   });
 });
 
 describe('the queue', () => {
-  const waits = (of: object = {}) => stage({ command: 4n, name: 'NO_OP', stage: 'released', status: 'pending', evidence: 'leaves at 2012-219T05:10:00', ...of });
+  const waits = (of: object = {}) =>
+    stage({
+      command: 4n,
+      name: 'NO_OP',
+      stage: 'released',
+      status: 'pending',
+      evidence: 'leaves at 2012-219T05:10:00',
+      ...of,
+    });
   it('has what has not left, held or waiting for its time, and nothing that left or was cancelled', () => {
     expect(waitingCommands(aStore([waits({ held: true })]))).toMatchObject([{ held: true, row: { command: 4 } }]);
     expect(waitingCommands(aStore([waits()]))).toMatchObject([{ held: false, asker: undefined }]);
-    expect(waitingCommands(aStore([waits({ held: true, needsApproval: true, askedBy: 'Ann' })]))).toMatchObject([{ held: true, asker: 'Ann' }]);
+    expect(waitingCommands(aStore([waits({ held: true, needsApproval: true, askedBy: 'Ann' })]))).toMatchObject([
+      { held: true, asker: 'Ann' },
+    ]);
     expect(waitingCommands(aStore([waits(), stage({ command: 4n, stage: 'released', status: 'ok' })]))).toEqual([]);
     expect(waitingCommands(aStore([waits(), stage({ command: 4n, stage: 'released', status: 'failed' })]))).toEqual([]);
   });
 });
 
 describe('what the vehicle holds', () => {
-  const sent = stage({ command: 1n, name: 'SET', stage: 'queued', status: 'ok', arguments: 'altitude_m=125.5 speed_mps=0.1' });
+  const sent = stage({
+    command: 1n,
+    name: 'SET',
+    stage: 'queued',
+    status: 'ok',
+    arguments: 'altitude_m=125.5 speed_mps=0.1',
+  });
   const radiated = stage({ command: 1n, stage: 'radiated', status: 'ok', at: '2012-219T05:00:00.0' });
   const compared = (...held: ReturnType<typeof samples>[]) => {
     const store = aStore([sent, radiated, ...held]);
@@ -127,14 +216,24 @@ describe('what the vehicle holds', () => {
     return row && readBackOf(row, aDictionary, store);
   };
   it('is compared argument by argument with what was sent', () => {
-    expect(compared(samples(901, { 3: 125.5, 4: 0.2 }))).toEqual({ sclk: 901, lines: [
-      { name: 'altitude_m', sent: '125.5', held: 125.5, equal: true }, { name: 'speed_mps', sent: '0.1', held: 0.2, equal: false }] });
+    expect(compared(samples(901, { 3: 125.5, 4: 0.2 }))).toEqual({
+      sclk: 901,
+      lines: [
+        { name: 'altitude_m', sent: '125.5', held: 125.5, equal: true },
+        { name: 'speed_mps', sent: '0.1', held: 0.2, equal: false },
+      ],
+    });
   });
   it('is not known before a report that is younger than the command', () => {
-    expect(compared(samples(899, { 3: 125.5, 4: 0.1 }))).toMatchObject({ sclk: undefined, lines: [{ equal: undefined }, { equal: undefined }] });
+    expect(compared(samples(899, { 3: 125.5, 4: 0.1 }))).toMatchObject({
+      sclk: undefined,
+      lines: [{ equal: undefined }, { equal: undefined }],
+    });
   });
   it('has no word where no packet bears the names', () => {
-    const store = aStore([stage({ command: 1n, name: 'SET', stage: 'queued', status: 'ok', arguments: 'timepoint=3' })]);
+    const store = aStore([
+      stage({ command: 1n, name: 'SET', stage: 'queued', status: 'ok', arguments: 'timepoint=3' }),
+    ]);
     const row = store.commands.get(1);
     expect(row && readBackOf(row, aDictionary, store)).toBeUndefined();
   });
@@ -167,7 +266,11 @@ function connected(): void {
   });
   onMessage({ type: 'stream', state: 'live', attempt: 0, gaps: 0, serverVersion: '' });
 }
-const reply = (fields: object = {}, to = heard.at(-1)) => onMessage({ type: 'reply', reply: create(CommandReplySchema, { request: BigInt(to?.request ?? 0), accepted: true, command: 7n, ...fields }) });
+const reply = (fields: object = {}, to = heard.at(-1)) =>
+  onMessage({
+    type: 'reply',
+    reply: create(CommandReplySchema, { request: BigInt(to?.request ?? 0), accepted: true, command: 7n, ...fields }),
+  });
 /** The ground says yes to what was asked last. */
 async function answered(step: Promise<unknown>): Promise<void> {
   await Promise.resolve();
@@ -194,7 +297,10 @@ describe('an answer', () => {
     const sent = forward();
     onMessage({ type: 'refusal', reason: 'the archive could not be read' });
     onMessage({ type: 'trouble', words: 'history: 503' });
-    expect([step.value, notices.value.map((each) => each.text)]).toEqual(['sending', ['the archive could not be read', 'history: 503']]);
+    expect([step.value, notices.value.map((each) => each.text)]).toEqual([
+      'sending',
+      ['the archive could not be read', 'history: 503'],
+    ]);
     await answered(sent);
     expect(message.value).toMatchObject({ good: true, text: expect.stringContaining('NO_OP is #7') });
   });
@@ -210,7 +316,11 @@ describe('an answer', () => {
     type('no op');
     await forward();
     await forward();
-    expect([heard.length, step.value, message.value?.text]).toEqual([0, 'review', expect.stringContaining('nothing was sent')]);
+    expect([heard.length, step.value, message.value?.text]).toEqual([
+      0,
+      'review',
+      expect.stringContaining('nothing was sent'),
+    ]);
     await answered(tryOut());
     await answered(forward());
     expect(heard.map((each) => each.intent.dryRun === true)).toEqual([true, false]);
@@ -220,7 +330,11 @@ describe('an answer', () => {
     const sent = forward();
     onMessage({ type: 'stream', state: 'lost', attempt: 1, gaps: 0, serverVersion: '' });
     await sent;
-    expect([line.value, step.value, message.value?.text]).toEqual(['', 'type', expect.stringContaining('whether it was taken is not known')]);
+    expect([line.value, step.value, message.value?.text]).toEqual([
+      '',
+      'type',
+      expect.stringContaining('whether it was taken is not known'),
+    ]);
     connected();
     for (let presses = 0; presses < 4; ++presses) await forward();
     expect(heard).toEqual([]);
@@ -254,7 +368,10 @@ describe('an answer', () => {
     const sent = forward();
     onMessage({ type: 'not_sent', request: heard.at(-1)?.request ?? 0 });
     await sent;
-    expect([line.value, message.value?.text]).toEqual(['no op', expect.stringContaining('not connected: nothing was sent')]);
+    expect([line.value, message.value?.text]).toEqual([
+      'no op',
+      expect.stringContaining('not connected: nothing was sent'),
+    ]);
   });
 });
 
@@ -299,7 +416,9 @@ describe('the command line', () => {
     await act(() => answered(forward()));
     expect(step.value).toBe('armed');
     // What matters at that moment stands with it: why to beware, and the ground's word.
-    expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(/ARMED: EDL_DO_EDL.*Starts the timeline.*It is sent once its name is typed.*Type EDL_DO_EDL/);
+    expect(root.querySelector('[data-testid="command-armed"]')?.textContent).toMatch(
+      /ARMED: EDL_DO_EDL.*Starts the timeline.*It is sent once its name is typed.*Type EDL_DO_EDL/,
+    );
     await act(() => forward());
     expect([step.value, message.value?.good]).toEqual(['armed', false]);
     act(() => back());
@@ -319,11 +438,24 @@ describe('the command line', () => {
     await armed();
     act(() => lookAtPast({ from: -200, to: -150 }, false));
     act(() => backToLive());
-    expect([step.value, confirmation.value, previewNow.value, message.value?.text]).toEqual(['review', '', undefined, 'EDL_DO_EDL is not armed any more: nothing was sent']);
+    expect([step.value, confirmation.value, previewNow.value, message.value?.text]).toEqual([
+      'review',
+      '',
+      undefined,
+      'EDL_DO_EDL is not armed any more: nothing was sent',
+    ]);
     act(() => back(true));
     await armed();
-    act(() => useForTest(aStore([], aRun({ run: 2n })), aDictionary, (said) => said.type === 'command' && void heard.push(said)));
-    expect([step.value, confirmation.value, chosen.value, root.querySelector('[data-testid="command-armed"]')]).toEqual(['type', '', undefined, null]);
+    act(() =>
+      useForTest(
+        aStore([], aRun({ run: 2n })),
+        aDictionary,
+        (said) => said.type === 'command' && void heard.push(said),
+      ),
+    );
+    expect([step.value, confirmation.value, chosen.value, root.querySelector('[data-testid="command-armed"]')]).toEqual(
+      ['type', '', undefined, null],
+    );
     await act(() => forward());
     expect([step.value, previewNow.value, heard.length]).toEqual(['review', undefined, 1]); // and needs the ground's word of that run
   });
@@ -344,8 +476,18 @@ describe('the command line', () => {
     expect([step.value, message.value?.text]).toEqual(['review', 'solution_id is needed']);
   });
   it('shows the newest twelve commands, and older ones on request, down to the first', () => {
-    const numbers = () => [...root.querySelectorAll('[data-command] button')].map((each) => Number(each.textContent?.split('#')[1]));
-    act(() => useForTest(aStore(Array.from({ length: 30 }, (_, i) => stage({ command: BigInt(i + 1), name: 'NO_OP', stage: 'queued', status: 'ok' }))), aDictionary));
+    const numbers = () =>
+      [...root.querySelectorAll('[data-command] button')].map((each) => Number(each.textContent?.split('#')[1]));
+    act(() =>
+      useForTest(
+        aStore(
+          Array.from({ length: 30 }, (_, i) =>
+            stage({ command: BigInt(i + 1), name: 'NO_OP', stage: 'queued', status: 'ok' }),
+          ),
+        ),
+        aDictionary,
+      ),
+    );
     expect([numbers().length, numbers()[0], numbers().at(-1)]).toEqual([12, 30, 19]);
     const older = () => root.querySelector<HTMLElement>('[data-testid="older-commands"]');
     expect(older()?.textContent).toBe('18 older: show 12 of them');
@@ -356,7 +498,10 @@ describe('the command line', () => {
   it('shows a name with markup as text', () => {
     act(() => {
       type('');
-      useForTest(aStore([stage({ command: 1n, name: '<img src=x onerror=alert(1)>', stage: 'queued', status: 'ok' })]), aDictionary);
+      useForTest(
+        aStore([stage({ command: 1n, name: '<img src=x onerror=alert(1)>', stage: 'queued', status: 'ok' })]),
+        aDictionary,
+      );
     });
     expect(root.querySelector('img')).toBeNull();
     expect(root.textContent).toContain('<img src=x');

@@ -5,7 +5,21 @@ import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
 import './disarm';
 import { CommandFile } from './file_view';
 import { History, Queue } from './history';
-import { back, choiceIndex, choose, chosen, complete, forward, inArguments, line, message, offered, openCommandLine, step, type } from './line';
+import {
+  back,
+  choiceIndex,
+  choose,
+  chosen,
+  complete,
+  forward,
+  inArguments,
+  line,
+  message,
+  offered,
+  openCommandLine,
+  step,
+  type,
+} from './line';
 import { isHazardous, rangeText, unitText } from './model';
 import { Armed, Review } from './review';
 import './style.css';
@@ -15,7 +29,8 @@ function onKey(event: KeyboardEvent): void {
   else if (event.key === 'Escape') back();
   else if (event.key === 'Tab' && step.value === 'type' && line.value.trim() !== '' && !event.shiftKey) {
     if (!complete()) return; // it goes on to the next field
-  } else if (event.key === 'ArrowDown' && step.value === 'type') choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
+  } else if (event.key === 'ArrowDown' && step.value === 'type')
+    choiceIndex.value = Math.min((inArguments.value?.offers ?? offered.value).length - 1, choiceIndex.value + 1);
   else if (event.key === 'ArrowUp' && step.value === 'type') choiceIndex.value = Math.max(0, choiceIndex.value - 1);
   else if (event.key !== '/' || line.value !== '') return; // the key that opens the line, pressed in it, is no text
   event.preventDefault();
@@ -28,16 +43,32 @@ function Offers() {
   const within = inArguments.value;
   if (within) {
     return (
-      <ul class="offers" role="listbox" id="offers" aria-label={`arguments of ${within.command.name}`} data-testid="argument-offers">
+      <ul
+        class="offers"
+        role="listbox"
+        id="offers"
+        aria-label={`arguments of ${within.command.name}`}
+        data-testid="argument-offers"
+      >
         {within.offers.slice(0, SHOWN).map((offer, index) => {
           const argument = within.command.arguments.find((each) => `${each.name}=` === offer);
           return (
-            <li key={offer} id={`offer-${index}`} role="option" aria-selected={index === choiceIndex.value} onClick={() => {
-              choiceIndex.value = index;
-              complete();
-              openCommandLine();
-            }}>
-              <b>{within.stem}{offer}</b> <span>{argument && `${unitText(argument)} ${rangeText(argument)} ${argument.text}`}</span>
+            <li
+              key={offer}
+              id={`offer-${index}`}
+              role="option"
+              aria-selected={index === choiceIndex.value}
+              onClick={() => {
+                choiceIndex.value = index;
+                complete();
+                openCommandLine();
+              }}
+            >
+              <b>
+                {within.stem}
+                {offer}
+              </b>{' '}
+              <span>{argument && `${unitText(argument)} ${rangeText(argument)} ${argument.text}`}</span>
             </li>
           );
         })}
@@ -48,11 +79,21 @@ function Offers() {
   return (
     <ul class="offers" role="listbox" id="offers" aria-label="commands of the dictionary">
       {offered.value.slice(0, SHOWN).map((command, index) => (
-        <li key={command.name} id={`offer-${index}`} role="option" aria-selected={index === choiceIndex.value} onClick={() => {
-          choose(command.name);
-          openCommandLine();
-        }}>
-          <b>{isHazardous(command) ? '▲ ' : ''}{command.name}</b> <span>{command.text}</span>
+        <li
+          key={command.name}
+          id={`offer-${index}`}
+          role="option"
+          aria-selected={index === choiceIndex.value}
+          onClick={() => {
+            choose(command.name);
+            openCommandLine();
+          }}
+        >
+          <b>
+            {isHazardous(command) ? '▲ ' : ''}
+            {command.name}
+          </b>{' '}
+          <span>{command.text}</span>
         </li>
       ))}
       {offered.value.length === 0 && <li class="none">no command has these words</li>}
@@ -63,21 +104,60 @@ function Offers() {
 export function Commands() {
   const command = chosen.value;
   const canSend = takesCommands();
-  if (hasNoCommands()) return <Panel name="commands" title="Command"><p class="none" data-testid="no-commands">This venue has no commands here.</p></Panel>;
+  if (hasNoCommands())
+    return (
+      <Panel name="commands" title="Command">
+        <p class="none" data-testid="no-commands">
+          This venue has no commands here.
+        </p>
+      </Panel>
+    );
   return (
-    <Panel name="commands" title="Command" extra={<span><kbd>/</kbd> to type</span>}>
+    <Panel
+      name="commands"
+      title="Command"
+      extra={
+        <span>
+          <kbd>/</kbd> to type
+        </span>
+      }
+    >
       <div class="command-line">
-        <input data-testid="command-line" role="combobox" aria-expanded={step.value === 'type' && line.value !== ''} aria-controls="offers"
+        <input
+          data-testid="command-line"
+          role="combobox"
+          aria-expanded={step.value === 'type' && line.value !== ''}
+          aria-controls="offers"
           aria-activedescendant={step.value === 'type' && line.value !== '' ? `offer-${choiceIndex.value}` : undefined}
-          aria-label="command line" autocomplete="off" spellcheck={false} placeholder={canSend ? 'type a command in words' : pastRange.value ? 'nothing can be sent from the past' : mayAct() ? 'this run takes no commands' : 'you may look, not send'}
-          disabled={!canSend} value={line.value} onInput={(event) => type(event.currentTarget.value)} onKeyDown={onKey} />
+          aria-label="command line"
+          autocomplete="off"
+          spellcheck={false}
+          placeholder={
+            canSend
+              ? 'type a command in words'
+              : pastRange.value
+                ? 'nothing can be sent from the past'
+                : mayAct()
+                  ? 'this run takes no commands'
+                  : 'you may look, not send'
+          }
+          disabled={!canSend}
+          value={line.value}
+          onInput={(event) => type(event.currentTarget.value)}
+          onKeyDown={onKey}
+        />
       </div>
       {canSend && step.value === 'type' && line.value.trim() !== '' && <Offers />}
       {canSend && command && <Review command={command} onKey={onKey} />}
       {canSend && command && step.value === 'armed' && <Armed command={command} onKey={onKey} />}
       {message.value && (
-        <p class={`message ${message.value.good === undefined ? '' : message.value.good ? 'good' : 'bad'}`} role="status" data-testid="command-message">
-          {message.value.good === undefined ? '' : message.value.good ? '✓ ' : '✖ '}{message.value.text}
+        <p
+          class={`message ${message.value.good === undefined ? '' : message.value.good ? 'good' : 'bad'}`}
+          role="status"
+          data-testid="command-message"
+        >
+          {message.value.good === undefined ? '' : message.value.good ? '✓ ' : '✖ '}
+          {message.value.text}
         </p>
       )}
       <Queue />
@@ -86,4 +166,3 @@ export function Commands() {
     </Panel>
   );
 }
-

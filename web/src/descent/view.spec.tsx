@@ -21,7 +21,8 @@ describe('the descent picture', () => {
   });
   it('has a corridor that goes down from entry to touchdown', () => {
     expect(CORRIDOR.length).toBeGreaterThan(10);
-    for (let i = 1; i < CORRIDOR.length; ++i) expect(CORRIDOR[i]?.altitude_m).toBeLessThan(CORRIDOR[i - 1]?.altitude_m ?? 0);
+    for (let i = 1; i < CORRIDOR.length; ++i)
+      expect(CORRIDOR[i]?.altitude_m).toBeLessThan(CORRIDOR[i - 1]?.altitude_m ?? 0);
     expect(CORRIDOR.at(-1)?.speed_mps).toBeLessThan(1);
   });
   it('calls the prediction itself inside, twice its width to a side above or below', () => {
@@ -56,7 +57,9 @@ it('figures that nothing has come for are dim, with their age, and where they we
       timepoints.value = [create(TimepointRowSchema, { id: 9, name: LAYOUT.landed })];
       render(<Descent />, root);
     });
-    return ['descent-now.stale', 'descent-now [data-testid=descent-stale] dd', 'panel-extra'].map((each) => root.querySelector(`.${each}`)?.textContent);
+    return ['descent-now.stale', 'descent-now [data-testid=descent-stale] dd', 'panel-extra'].map(
+      (each) => root.querySelector(`.${each}`)?.textContent,
+    );
   };
   expect(shown(899)).toEqual([undefined, undefined, expect.stringMatching(/predicted corridor/)]);
   expect(shown(859)).toEqual([expect.stringContaining('60.0 km'), '◌ 41 s', '']);

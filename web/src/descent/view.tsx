@@ -28,7 +28,8 @@ const lastInstant = (run: RunStore | undefined, end: number) => Math.min(end, la
 
 const corridorNow = () => (dictionary.value?.reply.mission === LAYOUT.predictedFor ? CORRIDOR : []);
 
-const isFree = (box: Box, taken: readonly Box[]) => !taken.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1]);
+const isFree = (box: Box, taken: readonly Box[]) =>
+  !taken.some((b) => box[0] < b[2] && box[2] > b[0] && box[1] < b[3] && box[3] > b[1]);
 
 interface Scales {
   x: (mps: number) => number;
@@ -111,7 +112,8 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
 }
 
 /** Whose the figures are, once it is not the vehicle's. */
-const whoseWords = (run: RunStore | undefined) => (lastInstant(run, cutoff.value) < cutoff.value ? `${LAYOUT.afterLanding.whose}, the rover hangs below it` : undefined);
+const whoseWords = (run: RunStore | undefined) =>
+  lastInstant(run, cutoff.value) < cutoff.value ? `${LAYOUT.afterLanding.whose}, the rover hangs below it` : undefined;
 
 /** How old the figures are, where they are not of now; at touchdown they are of then. */
 function staleNow(run: RunStore | undefined): string | undefined {
@@ -128,7 +130,9 @@ function figures({ context: c, width, height, colours }: Surface): Box[] {
   const line_px = (whose ?? staleNow(shownRun())) === undefined ? 0 : 15;
   const bottom_px = matchMedia('(max-width: 1500px)').matches ? 46 : 62;
   const all: Box[] = [[width - RIGHT - figure_px * 3.6, height - bottom_px - line_px - 2 * figure_px, width, height]];
-  return whose === undefined ? all : [...all, [width - 36 - c.measureText(whose).width, height - bottom_px - line_px, width, height - bottom_px]];
+  return whose === undefined
+    ? all
+    : [...all, [width - 36 - c.measureText(whose).width, height - bottom_px - line_px, width, height - bottom_px]];
 }
 
 /** Each phase by its name beside the corridor, where there is room: below it, else at its left, and never under the figures. Where all of these stand. */
@@ -140,20 +144,34 @@ function drawPhases(surface: Surface, { x, y }: Scales): Box[] {
   if (!words || corridor.length === 0) return taken;
   const steps = phaseSteps(shownRun(), words, timepoints.value, cutoff.value);
   c.textBaseline = 'middle';
-  const order = steps.map((step, index) => ({ step, index })).sort((a, b) => Number(b.step.state === 'now') - Number(a.step.state === 'now'));
+  const order = steps
+    .map((step, index) => ({ step, index }))
+    .sort((a, b) => Number(b.step.state === 'now') - Number(a.step.state === 'now'));
   for (const { step, index } of order) {
     const from = step.predicted_e_s;
     const to = steps[index + 1]?.predicted_e_s;
     if (from === undefined || to === undefined) continue;
-    const at = corridor.reduce((best, point) => (Math.abs(point.e_s - (from + to) / 2) < Math.abs(best.e_s - (from + to) / 2) ? point : best));
+    const at = corridor.reduce((best, point) =>
+      Math.abs(point.e_s - (from + to) / 2) < Math.abs(best.e_s - (from + to) / 2) ? point : best,
+    );
     c.font = `${step.state === 'now' ? 800 : 600} ${Math.round(Math.min(26, width / 26, height / 13))}px ${colours.sans}`;
     c.fillStyle = step.state === 'now' ? colours.text : colours.dim;
     c.globalAlpha = step.state === 'now' ? 1 : 0.75;
     c.textAlign = 'left';
     const wide = c.measureText(step.title).width;
     const [px, py] = [x(at.speed_mps), y(at.altitude_m)];
-    const places: [number, number][] = index === 1 ? [[width - RIGHT - 6 - wide, py + 46]] : [[Math.min(width - wide - RIGHT, px + 34), py + 24], [px - wide - 44, py + 8], [px + 34, py + 4]];
-    const place = places.find(([left, top]) => left > LEFT && top + 12 < height - BOTTOM && isFree([left, top - 12, left + wide, top + 12], taken));
+    const places: [number, number][] =
+      index === 1
+        ? [[width - RIGHT - 6 - wide, py + 46]]
+        : [
+            [Math.min(width - wide - RIGHT, px + 34), py + 24],
+            [px - wide - 44, py + 8],
+            [px + 34, py + 4],
+          ];
+    const place = places.find(
+      ([left, top]) =>
+        left > LEFT && top + 12 < height - BOTTOM && isFree([left, top - 12, left + wide, top + 12], taken),
+    );
     if (place) {
       taken.push([place[0], place[1] - 12, place[0] + wide, place[1] + 12]);
       c.fillText(step.title, ...place);
@@ -179,7 +197,9 @@ function draw(surface: Surface): void {
   const until = lastInstant(run, cutoff.value);
   const recorded = pairs(run.recorded.get(altitude.id), run.recorded.get(speed.id), until, 3000);
   const live = pairs(run.live.get(altitude.id), run.live.get(speed.id), until, 3000);
-  const points = [...recorded, ...live].sort((one, other) => one.sclk - other.sclk).filter((point) => point.altitude <= TOP_M);
+  const points = [...recorded, ...live]
+    .sort((one, other) => one.sclk - other.sclk)
+    .filter((point) => point.altitude <= TOP_M);
   const silences = outages(run, 'uhf_live', Infinity, cutoff.value);
   let before: (typeof points)[number] | undefined;
   let colour = '';
@@ -196,7 +216,8 @@ function draw(surface: Surface): void {
       if (before) c.moveTo(x(before.speed), y(before.altitude));
     }
     if (!before || point.sclk - before.sclk > GAP_S) {
-      if (before) gap(c, [x(before.speed), y(before.altitude)], [x(point.speed), y(point.altitude)], colours.caution, colour);
+      if (before)
+        gap(c, [x(before.speed), y(before.altitude)], [x(point.speed), y(point.altitude)], colours.caution, colour);
       c.moveTo(x(point.speed), y(point.altitude));
     } else c.lineTo(x(point.speed), y(point.altitude));
     before = point;
@@ -227,7 +248,13 @@ function draw(surface: Surface): void {
 }
 
 /** Nothing was heard between the two: dashed, and not a trace. */
-function gap(c: CanvasRenderingContext2D, from: [number, number], to: [number, number], colour: string, back: string): void {
+function gap(
+  c: CanvasRenderingContext2D,
+  from: [number, number],
+  to: [number, number],
+  colour: string,
+  back: string,
+): void {
   c.stroke();
   c.save();
   c.strokeStyle = colour;
@@ -247,7 +274,21 @@ function line(c: CanvasRenderingContext2D, x1: number, y1: number, x2: number, y
 }
 
 /** Where the words of a moment may stand beside it, the best first. */
-const WORDS_AT = [[-14, -14, 'right'], [-18, -30, 'right'], [-22, -46, 'right'], [-18, 4, 'right'], [-26, -62, 'right'], [16, 14, 'left'], [16, 34, 'left'], [-30, -78, 'right'], [-34, -94, 'right'], [-26, 22, 'right'], [-30, 40, 'right'], [-34, 58, 'right'], [16, 54, 'left']] as const;
+const WORDS_AT = [
+  [-14, -14, 'right'],
+  [-18, -30, 'right'],
+  [-22, -46, 'right'],
+  [-18, 4, 'right'],
+  [-26, -62, 'right'],
+  [16, 14, 'left'],
+  [16, 34, 'left'],
+  [-30, -78, 'right'],
+  [-34, -94, 'right'],
+  [-26, 22, 'right'],
+  [-30, 40, 'right'],
+  [-34, 58, 'right'],
+  [16, 54, 'left'],
+] as const;
 
 /** What begins a phase has its name before others have theirs, the newest of these first. */
 function rank(firing: { name: string } | undefined): number {
@@ -256,8 +297,14 @@ function rank(firing: { name: string } | undefined): number {
 }
 
 function moments(
-  c: CanvasRenderingContext2D, points: { sclk: number; speed: number; altitude: number }[], x: (v: number) => number,
-  y: (h: number) => number, width: number, bottom: number, taken: readonly Box[], colours: Surface['colours'],
+  c: CanvasRenderingContext2D,
+  points: { sclk: number; speed: number; altitude: number }[],
+  x: (v: number) => number,
+  y: (h: number) => number,
+  width: number,
+  bottom: number,
+  taken: readonly Box[],
+  colours: Surface['colours'],
 ): void {
   const run = shownRun();
   if (!run || points.length === 0) return;
@@ -266,14 +313,16 @@ function moments(
   const way = wayOf(points.map((point) => [x(point.speed), y(point.altitude)] as const));
   const now = points[points.length - 1];
   if (now) boxes.push([x(now.speed) - 18, y(now.altitude) - 18, x(now.speed) + 18, y(now.altitude) + 18]); // the dot
-  const fired = [...run.firings.values()].map((pair) => pair.live ?? pair.recorded)
+  const fired = [...run.firings.values()]
+    .map((pair) => pair.live ?? pair.recorded)
     .filter((firing) => firing !== undefined && isImportant(firing.name) && firing.firedSclk <= cutoff.value)
     .sort((one, other) => rank(one) - rank(other));
   for (const firing of fired) {
     if (!firing) continue;
     let nearest: (typeof points)[number] | undefined;
     for (const point of points) {
-      if (!nearest || Math.abs(point.sclk - firing.firedSclk) < Math.abs(nearest.sclk - firing.firedSclk)) nearest = point;
+      if (!nearest || Math.abs(point.sclk - firing.firedSclk) < Math.abs(nearest.sclk - firing.firedSclk))
+        nearest = point;
     }
     if (!nearest || Math.abs(nearest.sclk - firing.firedSclk) > 3) continue;
     const px = x(nearest.speed);
@@ -323,21 +372,67 @@ export function Descent() {
   const stale = staleNow(run);
   const place = stale !== undefined || h === undefined || v === undefined ? undefined : placeIn(corridorNow(), h, v);
   return (
-    <Panel name="descent" title={<>Descent<span class="how">, how high and how fast</span></>} extra={
-      <>
-        {whose !== undefined && <span>at touchdown</span>}
-        {place && <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">{PLACES[place].status.shape} {PLACES[place].words}</span>}
-      </>
-    }>
+    <Panel
+      name="descent"
+      title={
+        <>
+          Descent<span class="how">, how high and how fast</span>
+        </>
+      }
+      extra={
+        <>
+          {whose !== undefined && <span>at touchdown</span>}
+          {place && (
+            <span class={`status-${PLACES[place].status.token}`} data-testid="descent-place">
+              {PLACES[place].status.shape} {PLACES[place].words}
+            </span>
+          )}
+        </>
+      }
+    >
       <div class="descent-box">
-        <Canvas label="Altitude against speed, with the predicted corridor" draw={draw} testId="descent-canvas" keyOf={() =>
-          `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value} ${isLost.value}`} />
-        {h !== undefined && <dl class={`descent-now ${stale ? 'stale' : ''}`} title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
-          <div><dt>high</dt><dd><output data-testid="altitude">{h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}</output> {inKm ? 'km' : 'm'}</dd></div>
-          <div><dt>fast</dt><dd><output data-testid="speed">{v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}</output> m/s</dd></div>
-          {whose !== undefined && <div class="descent-whose" data-testid="descent-whose"><dt>whose</dt><dd>{whose}</dd></div>}
-          {stale && <div class="descent-whose" data-testid="descent-stale"><dt>how old</dt><dd>{stale}</dd></div>}
-        </dl>}
+        <Canvas
+          label="Altitude against speed, with the predicted corridor"
+          draw={draw}
+          testId="descent-canvas"
+          keyOf={() =>
+            `${shownRun()?.id} ${withRecording.value} ${tick.value} ${timepoints.value.length} ${cutoff.value} ${isLost.value}`
+          }
+        />
+        {h !== undefined && (
+          <dl class={`descent-now ${stale ? 'stale' : ''}`} title={`${altitude?.text ?? ''}; ${speed?.text ?? ''}`}>
+            <div>
+              <dt>high</dt>
+              <dd>
+                <output data-testid="altitude">
+                  {h === undefined || Number.isNaN(h) ? '—' : inKm ? (h / 1000).toFixed(1) : h.toFixed(0)}
+                </output>{' '}
+                {inKm ? 'km' : 'm'}
+              </dd>
+            </div>
+            <div>
+              <dt>fast</dt>
+              <dd>
+                <output data-testid="speed">
+                  {v === undefined || Number.isNaN(v) ? '—' : v < 10 ? v.toFixed(2) : v.toFixed(0)}
+                </output>{' '}
+                m/s
+              </dd>
+            </div>
+            {whose !== undefined && (
+              <div class="descent-whose" data-testid="descent-whose">
+                <dt>whose</dt>
+                <dd>{whose}</dd>
+              </div>
+            )}
+            {stale && (
+              <div class="descent-whose" data-testid="descent-stale">
+                <dt>how old</dt>
+                <dd>{stale}</dd>
+              </div>
+            )}
+          </dl>
+        )}
       </div>
     </Panel>
   );

@@ -16,13 +16,18 @@ export const STATUS = {
 export type Status = keyof typeof STATUS;
 
 /** Of a condition, or of anything that holds, does not, or is not known. */
-export const held = (holds: boolean | undefined): Status => (holds === undefined ? 'unknown' : holds ? 'holds' : 'missing');
+export const held = (holds: boolean | undefined): Status =>
+  holds === undefined ? 'unknown' : holds ? 'holds' : 'missing';
 
 /** Of a link or of the connection. down: silent for a reason that is named; lost: it should be there. */
-export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown: 'unknown' } as const satisfies Record<string, Status>;
+export const LINK_STATUS = { up: 'good', down: 'quiet', lost: 'failed', unknown: 'unknown' } as const satisfies Record<
+  string,
+  Status
+>;
 export type LinkLook = keyof typeof LINK_STATUS;
 /** Ground's class of a silence stands first in its reason: of these two nothing that was predicted is the cause. */
-export const linkLook = (up: boolean, reason: string): LinkLook => (up ? 'up' : /^(unexplained|ground fault)\b/.test(reason) ? 'lost' : 'down');
+export const linkLook = (up: boolean, reason: string): LinkLook =>
+  up ? 'up' : /^(unexplained|ground fault)\b/.test(reason) ? 'lost' : 'down';
 
 /** Of a silence, by its reason: as its link looked then. */
 export const silenceStatus = (reason: string) => STATUS[LINK_STATUS[linkLook(false, reason)]];
@@ -40,7 +45,11 @@ export type StageLook = keyof typeof STAGE_LOOKS;
 /** Of a packet or a tone that came live, against the recording. */
 export const VERDICTS = {
   differs: { status: 'failed', words: 'differs', means: 'live and recording have other octets for the same packet' },
-  missing_in_recording: { status: 'failed', words: 'missing in recording', means: 'came live; the complete recording does not have it' },
+  missing_in_recording: {
+    status: 'failed',
+    words: 'missing in recording',
+    means: 'came live; the complete recording does not have it',
+  },
   not_decoded: { status: 'caution', words: 'not decoded', means: 'arrived, and no packet of the dictionary fits it' },
   never_seen_live: { status: 'unknown', words: 'never seen live', means: 'known from the recording only' },
   pending: { status: 'missing', words: 'pending', means: 'the recording is not complete yet' },

@@ -1,6 +1,8 @@
 // Axes: steps that people count in, and the way from seconds to pixels.
 
-const TIME_STEPS_S = [0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 180, 300, 600, 1800, 3600, 7200, 21600, 43200, 86400];
+const TIME_STEPS_S = [
+  0.1, 0.2, 0.5, 1, 2, 5, 10, 15, 30, 60, 120, 180, 300, 600, 1800, 3600, 7200, 21600, 43200, 86400,
+];
 
 /** The least step in seconds that gives no more than `most` ticks over `span_s`. */
 export function timeStep(span_s: number, most: number): number {
@@ -43,10 +45,12 @@ const BETWEEN_PX = 14;
 
 /** The least step whose short labels stand beside each other in `wide_px`. */
 export function shortStep(from_e_s: number, to_e_s: number, wide_px: number): number {
-  return TIME_STEPS_S.find((step) => {
-    const longest = Math.max(shortTime(from_e_s, step).length, shortTime(to_e_s, step).length);
-    return (step / (to_e_s - from_e_s)) * wide_px >= longest * CHARACTER_PX + BETWEEN_PX;
-  }) ?? 86400;
+  return (
+    TIME_STEPS_S.find((step) => {
+      const longest = Math.max(shortTime(from_e_s, step).length, shortTime(to_e_s, step).length);
+      return (step / (to_e_s - from_e_s)) * wide_px >= longest * CHARACTER_PX + BETWEEN_PX;
+    }) ?? 86400
+  );
 }
 
 /** "6 000", "−0.25": as long as it must be, in no one's language. */

@@ -12,7 +12,8 @@ export interface Surface {
 }
 
 /** By how much the page is larger on a wall: what the mouse says is in the screen's pixels, what is laid out in the page's. */
-export const grownBy = (element: Element): number => (element as Element & { currentCSSZoom?: number }).currentCSSZoom ?? 1;
+export const grownBy = (element: Element): number =>
+  (element as Element & { currentCSSZoom?: number }).currentCSSZoom ?? 1;
 /** The screen's pixels for one of the page's. */
 const sharpness = (element: Element): number => (window.devicePixelRatio || 1) * grownBy(element);
 
@@ -64,7 +65,12 @@ export function Canvas({ keyOf, draw, label, testId, onPoint, onHover, onWheel }
   const at = (event: MouseEvent): [number, number, number, number] => {
     const canvas = event.currentTarget as HTMLCanvasElement;
     const [box, grown] = [canvas.getBoundingClientRect(), grownBy(canvas)];
-    return [(event.clientX - box.left) / grown, (event.clientY - box.top) / grown, box.width / grown, box.height / grown];
+    return [
+      (event.clientX - box.left) / grown,
+      (event.clientY - box.top) / grown,
+      box.width / grown,
+      box.height / grown,
+    ];
   };
   return (
     <canvas
@@ -73,16 +79,22 @@ export function Canvas({ keyOf, draw, label, testId, onPoint, onHover, onWheel }
       aria-label={label}
       data-testid={testId}
       onClick={onPoint && ((event) => onPoint(...at(event)))}
-      onMouseMove={onHover && ((event) => {
-        const [x, , width] = at(event);
-        onHover(x, width);
-      })}
+      onMouseMove={
+        onHover &&
+        ((event) => {
+          const [x, , width] = at(event);
+          onHover(x, width);
+        })
+      }
       onMouseLeave={onHover && (() => onHover(undefined, 0))}
-      onWheel={onWheel && ((event) => {
-        event.preventDefault();
-        const [x, , width] = at(event);
-        onWheel(x, width, event.deltaY);
-      })}
+      onWheel={
+        onWheel &&
+        ((event) => {
+          event.preventDefault();
+          const [x, , width] = at(event);
+          onWheel(x, width, event.deltaY);
+        })
+      }
     />
   );
 }

@@ -70,11 +70,15 @@ describe('the loop', () => {
     vi.spyOn(performance, 'now').mockImplementation(() => clock_ms);
     const stops = ['a', 'b', 'c'].map((name) => {
       let drawn = false;
-      return onDraw(() => (drawn ? undefined : () => {
-        drawn = true;
-        clock_ms += 15;
-        did.push(name);
-      }));
+      return onDraw(() =>
+        drawn
+          ? undefined
+          : () => {
+              drawn = true;
+              clock_ms += 15;
+              did.push(name);
+            },
+      );
     });
     frames(1);
     expect(did).toEqual(['a']);
@@ -90,7 +94,9 @@ describe('the loop', () => {
       frames(1);
       seen.push([shown.tick.value, shown.rowsTick.value]);
     }
-    const changes = seen.slice(1).map(([tick, rows], i) => [tick - (seen[i] as [number, number])[0], rows - (seen[i] as [number, number])[1]]);
+    const changes = seen
+      .slice(1)
+      .map(([tick, rows], i) => [tick - (seen[i] as [number, number])[0], rows - (seen[i] as [number, number])[1]]);
     expect(changes.every(([tick, rows]) => !(tick && rows))).toBe(true);
     expect([seen.at(-1)?.[0], seen.at(-1)?.[1]].every((count) => (count ?? 0) >= 3)).toBe(true);
   });

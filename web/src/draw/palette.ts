@@ -1,8 +1,23 @@
 // The colours of the style sheet, for canvases. Read once a theme.
 
 const TOKENS = {
-  text: 'text', dim: 'dim', edge: 'edge', line: 'line', panel: 'panel', raised: 'raised', page: 'page', ghost: 'ghost', chosen: 'chosen',
-  accent: 'accent', good: 'good', caution: 'caution', alarm: 'alarm', uhf: 'by-uhf', tone: 'by-tone', recording: 'by-recording', rehearsal: 'mode-rehearsal',
+  text: 'text',
+  dim: 'dim',
+  edge: 'edge',
+  line: 'line',
+  panel: 'panel',
+  raised: 'raised',
+  page: 'page',
+  ghost: 'ghost',
+  chosen: 'chosen',
+  accent: 'accent',
+  good: 'good',
+  caution: 'caution',
+  alarm: 'alarm',
+  uhf: 'by-uhf',
+  tone: 'by-tone',
+  recording: 'by-recording',
+  rehearsal: 'mode-rehearsal',
 } as const;
 export type Palette = Record<keyof typeof TOKENS, string> & { name: string; sans: string; mono: string };
 
@@ -13,7 +28,8 @@ export function palette(): Palette {
   if (read?.name === name) return read;
   const style = getComputedStyle(document.documentElement);
   const colours = { name, sans: style.getPropertyValue('--sans'), mono: style.getPropertyValue('--mono') } as Palette;
-  for (const [each, token] of Object.entries(TOKENS)) colours[each as keyof typeof TOKENS] = style.getPropertyValue(`--${token}`).trim();
+  for (const [each, token] of Object.entries(TOKENS))
+    colours[each as keyof typeof TOKENS] = style.getPropertyValue(`--${token}`).trim();
   read = colours;
   return colours;
 }

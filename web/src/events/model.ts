@@ -15,10 +15,25 @@ export interface EventLine {
   explanation: boolean;
 }
 
-export const LEVELS = ['DIAGNOSTIC', 'ACTIVITY_LO', 'ACTIVITY_HI', 'COMMAND', 'WARNING_LO', 'WARNING_HI', 'FATAL'] as const;
+export const LEVELS = [
+  'DIAGNOSTIC',
+  'ACTIVITY_LO',
+  'ACTIVITY_HI',
+  'COMMAND',
+  'WARNING_LO',
+  'WARNING_HI',
+  'FATAL',
+] as const;
 /** None of them says how something is known, nor that it is good: those shapes are others'. */
 const SHAPES: Record<string, string> = {
-  FATAL: '✖', WARNING_HI: '▲', WARNING_LO: '△', COMMAND: '▸', ACTIVITY_HI: '»', ACTIVITY_LO: '›', DIAGNOSTIC: '–', why: '∵',
+  FATAL: '✖',
+  WARNING_HI: '▲',
+  WARNING_LO: '△',
+  COMMAND: '▸',
+  ACTIVITY_HI: '»',
+  ACTIVITY_LO: '›',
+  DIAGNOSTIC: '–',
+  why: '∵',
 };
 export const levelShape = (level: string) => SHAPES[level] ?? STATUS.unknown.shape;
 export const levelWords = (level: string) => level.replace('_HI', ', high').replace('_LO', ', low').toLowerCase();
@@ -35,9 +50,16 @@ const MINOR = new Set(['held', 'chosen', 'dropped']);
 const SAME_MOMENT_S = 1 / 16; // ours: an explanation and its event leave within a few cycles
 
 /** At most `most` lines, the newest of the `found`. An explanation stands with the event of its moment that it speaks of, else by itself. */
-export function eventLines(store: RunStore, filter: EventFilter, most: number): { lines: EventLine[]; found: number; warnings: number } {
+export function eventLines(
+  store: RunStore,
+  filter: EventFilter,
+  most: number,
+): { lines: EventLine[]; found: number; warnings: number } {
   const least = LEVELS.indexOf(filter.from);
-  const words = filter.search.toLowerCase().split(/\s+/).filter((word) => word !== '');
+  const words = filter.search
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== '');
   const inRange = (sclk: number) => {
     const e_s = sclk - store.entrySclk;
     return !filter.range || (e_s >= filter.range.from && e_s <= filter.range.to);
@@ -54,8 +76,15 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
     if (level >= 4) ++warnings;
     if (level >= 0 && level < least) continue;
     lines.push({
-      key: `e${row.seq}`, seq: row.seq, e_s: row.fact.sclk - store.entrySclk, level: row.fact.level,
-      name: row.fact.name, text: row.fact.text || row.fact.name, why: [], live: row.live, recorded: row.recorded,
+      key: `e${row.seq}`,
+      seq: row.seq,
+      e_s: row.fact.sclk - store.entrySclk,
+      level: row.fact.level,
+      name: row.fact.name,
+      text: row.fact.text || row.fact.name,
+      why: [],
+      live: row.live,
+      recorded: row.recorded,
       explanation: false,
     });
   }
@@ -64,13 +93,28 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
     const e_s = row.fact.sclk - store.entrySclk;
     const decision = row.fact.decision.toLowerCase();
     const minor = MINOR.has(row.fact.verdict);
-    const owner = minor || decision === '' ? undefined : lines.findLast((line) =>
-      !line.explanation && Math.abs(line.e_s - e_s) <= SAME_MOMENT_S && line.name.toLowerCase().startsWith(decision));
+    const owner =
+      minor || decision === ''
+        ? undefined
+        : lines.findLast(
+            (line) =>
+              !line.explanation &&
+              Math.abs(line.e_s - e_s) <= SAME_MOMENT_S &&
+              line.name.toLowerCase().startsWith(decision),
+          );
     if (owner) owner.why.push(row.fact.text);
     else if (least === 0 || !minor) {
       lines.push({
-        key: `x${row.seq}`, seq: row.seq, e_s, level: 'why', name: row.fact.decision, text: row.fact.text, why: [],
-        live: row.live, recorded: row.recorded, explanation: true,
+        key: `x${row.seq}`,
+        seq: row.seq,
+        e_s,
+        level: 'why',
+        name: row.fact.decision,
+        text: row.fact.text,
+        why: [],
+        live: row.live,
+        recorded: row.recorded,
+        explanation: true,
       });
     }
   }
@@ -81,7 +125,8 @@ export function eventLines(store: RunStore, filter: EventFilter, most: number): 
 
 export function sourceWords(line: { live: boolean; recorded: boolean }): { shape: string; words: string } {
   const { uhf, recording } = SOURCES;
-  if (line.live && line.recorded) return { shape: uhf.shape + recording.shape, words: 'seen live and found in the recording' };
+  if (line.live && line.recorded)
+    return { shape: uhf.shape + recording.shape, words: 'seen live and found in the recording' };
   if (line.recorded) return { shape: recording.shape, words: 'known from the recording only' };
   return { shape: uhf.shape, words: 'seen live; the recording is not here yet' };
 }

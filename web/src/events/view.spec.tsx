@@ -7,23 +7,41 @@ const all = { from: 'DIAGNOSTIC', search: '', range: undefined } as const;
 
 describe('events', () => {
   it('stand with the explanation of their moment', () => {
-    const store = aStore([event({ name: 'PARACHUTE_DEPLOY', sclk: 900 }), explanation({ sclk: 900, decision: 'parachute', verdict: 'fired', text: 'speed 404.6 ≤ 405' })]);
+    const store = aStore([
+      event({ name: 'PARACHUTE_DEPLOY', sclk: 900 }),
+      explanation({ sclk: 900, decision: 'parachute', verdict: 'fired', text: 'speed 404.6 ≤ 405' }),
+    ]);
     expect(eventLines(store, all, 10).lines).toMatchObject([{ name: 'PARACHUTE_DEPLOY', why: ['speed 404.6 ≤ 405'] }]);
   });
   it('are hidden below the chosen level, warnings counted', () => {
     const store = aStore([event({ name: 'A', level: 'DIAGNOSTIC' }), event({ name: 'B', level: 'WARNING_LO' })]);
-    expect(eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10)).toMatchObject({ lines: [{ name: 'B' }], warnings: 1 });
+    expect(eventLines(store, { ...all, from: 'ACTIVITY_LO' }, 10)).toMatchObject({
+      lines: [{ name: 'B' }],
+      warnings: 1,
+    });
   });
   it('keep to the range of a past view and to the words searched', () => {
-    const store = aStore([event({ name: 'EARLY', sclk: 800, text: 'one' }), event({ name: 'LATE', sclk: 950, text: 'two' })]);
-    expect(eventLines(store, { ...all, range: { from: -250, to: -100 } }, 10).lines.map((line) => line.name)).toEqual(['EARLY']);
+    const store = aStore([
+      event({ name: 'EARLY', sclk: 800, text: 'one' }),
+      event({ name: 'LATE', sclk: 950, text: 'two' }),
+    ]);
+    expect(eventLines(store, { ...all, range: { from: -250, to: -100 } }, 10).lines.map((line) => line.name)).toEqual([
+      'EARLY',
+    ]);
     expect(eventLines(store, { ...all, search: 'TWO' }, 10).lines.map((line) => line.name)).toEqual(['LATE']);
   });
   it('have levels whose shapes differ, and none of which says how something is known, or that it is good', () => {
     const shapes = [...LEVELS, 'why'].map(levelShape);
     expect(new Set(shapes).size).toBe(shapes.length);
-    for (const { shape } of [...Object.values(SOURCES), STATUS.good, STATUS.unknown, STATUS.never]) expect(shapes).not.toContain(shape);
-    expect([[true, false], [false, true], [true, true]].map(([live = false, recorded = false]) => sourceWords({ live, recorded }).shape)).toEqual(['◆', '▣', '◆▣']);
+    for (const { shape } of [...Object.values(SOURCES), STATUS.good, STATUS.unknown, STATUS.never])
+      expect(shapes).not.toContain(shape);
+    expect(
+      [
+        [true, false],
+        [false, true],
+        [true, true],
+      ].map(([live = false, recorded = false]) => sourceWords({ live, recorded }).shape),
+    ).toEqual(['◆', '▣', '◆▣']);
   });
   it('beyond what is shown are counted', () => {
     const store = aStore(['A', 'B', 'C'].map((name, i) => event({ name, sclk: 900 + i })));

@@ -17,7 +17,12 @@ const time = (e_s: number | undefined) => (e_s === undefined ? '' : fromEntry(e_
 
 export function flownRow(row: AsFlownTimepoint): FlownRow {
   return {
-    name: row.name, planned: time(row.plannedES), predicted: time(row.predictedES), tone: time(row.toneES), uhf: time(row.realtimeES), recorded: time(row.recordedES),
+    name: row.name,
+    planned: time(row.plannedES),
+    predicted: time(row.predictedES),
+    tone: time(row.toneES),
+    uhf: time(row.realtimeES),
+    recorded: time(row.recordedES),
     margin: row.marginS === undefined ? '' : `${row.marginS.toFixed(1)} s`,
     verdict: row.verdict,
   };
@@ -25,7 +30,13 @@ export function flownRow(row: AsFlownTimepoint): FlownRow {
 
 /** An event that flight reported, by what brought it. */
 export function flownEvent(row: AsFlownEvent) {
-  return { name: row.name, predicted: time(row.predictedES), uhf: time(row.realtimeES), recorded: time(row.recordedES), text: row.text };
+  return {
+    name: row.name,
+    predicted: time(row.predictedES),
+    uhf: time(row.realtimeES),
+    recorded: time(row.recordedES),
+    text: row.text,
+  };
 }
 
 /** What the landing came to, in one sentence for people. */
@@ -33,11 +44,16 @@ export function summaryOf(report: AsFlownReport): string {
   const all = report.timepoints.length;
   const count = (known: (row: AsFlownTimepoint) => boolean) => report.timepoints.filter(known).length;
   const fired = count((row) => row.recordedES !== undefined || row.realtimeES !== undefined);
-  return `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
-    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.${report.predictionNote && ` Note: ${report.predictionNote}.`}`;
+  return (
+    `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
+    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.${report.predictionNote && ` Note: ${report.predictionNote}.`}`
+  );
 }
 
 export function silenceWords(silence: AsFlownReport['silences'][number]): string {
-  const to = silence.toES === undefined ? 'to the end' : `to ${fromEntry(silence.toES)}, ${Math.round(silence.toES - silence.fromES)} s`;
+  const to =
+    silence.toES === undefined
+      ? 'to the end'
+      : `to ${fromEntry(silence.toES)}, ${Math.round(silence.toES - silence.fromES)} s`;
   return `${fromEntry(silence.fromES)} ${to}: ${silence.reason}`;
 }

@@ -1,6 +1,11 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { AsFlownEventSchema, AsFlownReportSchema, AsFlownTimepointSchema, SilenceSchema } from '../gen/aeolis/v1/run_pb';
+import {
+  AsFlownEventSchema,
+  AsFlownReportSchema,
+  AsFlownTimepointSchema,
+  SilenceSchema,
+} from '../gen/aeolis/v1/run_pb';
 import { flownEvent, flownRow, silenceWords, summaryOf } from './model';
 
 const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_deploy', verdict: 'nominal', ...of });
@@ -8,7 +13,12 @@ const row = (of: object) => create(AsFlownTimepointSchema, { name: 'parachute_de
 describe('a timepoint as it was flown', () => {
   it('has the times that are known, from entry, and nothing where nobody told', () => {
     expect(flownRow(row({ predictedES: 255.9 }))).toMatchObject({ planned: '', predicted: 'E+04:15.9', recorded: '' });
-    expect(flownRow(row({ realtimeES: 254.05, recordedES: 254.05 }))).toMatchObject({ planned: '', tone: '', uhf: 'E+04:14.1', recorded: 'E+04:14.1' });
+    expect(flownRow(row({ realtimeES: 254.05, recordedES: 254.05 }))).toMatchObject({
+      planned: '',
+      tone: '',
+      uhf: 'E+04:14.1',
+      recorded: 'E+04:14.1',
+    });
   });
   it('tells what it had to spare, which is nothing where it only follows the one before', () => {
     expect(flownRow(row({ marginS: 0.1 }))).toMatchObject({ margin: '0.1 s' });
@@ -19,19 +29,40 @@ describe('a timepoint as it was flown', () => {
 
 describe('an event as it was flown', () => {
   it('has the times that are known, and flight’s own words', () => {
-    expect(flownEvent(create(AsFlownEventSchema, { name: 'bank_reversal_2', recordedES: 121.5, text: 'Bank reversal 2 begins' })))
-      .toEqual({ name: 'bank_reversal_2', predicted: '', uhf: '', recorded: 'E+02:01.5', text: 'Bank reversal 2 begins' });
+    expect(
+      flownEvent(
+        create(AsFlownEventSchema, { name: 'bank_reversal_2', recordedES: 121.5, text: 'Bank reversal 2 begins' }),
+      ),
+    ).toEqual({
+      name: 'bank_reversal_2',
+      predicted: '',
+      uhf: '',
+      recorded: 'E+02:01.5',
+      text: 'Bank reversal 2 begins',
+    });
   });
 });
 
 describe('the report', () => {
   it('says in a sentence what came by which way', () => {
-    const report = create(AsFlownReportSchema, { timepoints: [row({ toneES: 1, realtimeES: 2, recordedES: 2 }), row({ recordedES: 3 }), row({})], tonesDecoded: 40n, tonesErased: 3n });
-    expect(summaryOf(report)).toBe('2 of 3 timepoints fired: 1 told by UHF, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.');
-    expect(summaryOf(create(AsFlownReportSchema, { predictionNote: 'by today’s sheet' }))).toMatch(/ Note: by today’s sheet\.$/);
+    const report = create(AsFlownReportSchema, {
+      timepoints: [row({ toneES: 1, realtimeES: 2, recordedES: 2 }), row({ recordedES: 3 }), row({})],
+      tonesDecoded: 40n,
+      tonesErased: 3n,
+    });
+    expect(summaryOf(report)).toBe(
+      '2 of 3 timepoints fired: 1 told by UHF, 1 by tones, 2 in the recording. 40 tones were decoded, 3 were lost.',
+    );
+    expect(summaryOf(create(AsFlownReportSchema, { predictionNote: 'by today’s sheet' }))).toMatch(
+      / Note: by today’s sheet\.$/,
+    );
   });
   it('tells a silence from when to when, and why', () => {
-    expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'plasma', fromES: 60, toES: 130 }))).toBe('E+01:00 to E+02:10, 70 s: plasma');
-    expect(silenceWords(create(SilenceSchema, { link: 'x_band', reason: 'Earth has set', fromES: 300 }))).toBe('E+05:00 to the end: Earth has set');
+    expect(silenceWords(create(SilenceSchema, { link: 'uhf_live', reason: 'plasma', fromES: 60, toES: 130 }))).toBe(
+      'E+01:00 to E+02:10, 70 s: plasma',
+    );
+    expect(silenceWords(create(SilenceSchema, { link: 'x_band', reason: 'Earth has set', fromES: 300 }))).toBe(
+      'E+05:00 to the end: Earth has set',
+    );
   });
 });

@@ -17,20 +17,46 @@ export function Flown() {
     <div class="table-box" data-testid="flown">
       {pastRange.value && <p class="not-past">▲ The report is of the whole run, with all that is known of it now.</p>}
       <div class="table-tools">
-        <span data-testid="flown-summary">{of ? summaryOf(of) : flown.problem.value ? `✖ ${flown.problem.value}` : 'asking the archive…'}</span>
-        <a href={`api/v1/runs/${run.id}/report`} download={`as-flown-${run.id}.json`}>take the report as JSON</a>
-        <a href={`api/v1/runs/${run.id}/report?format=csv`} download={`as-flown-${run.id}.csv`}>its timepoints and events as CSV</a>
+        <span data-testid="flown-summary">
+          {of ? summaryOf(of) : flown.problem.value ? `✖ ${flown.problem.value}` : 'asking the archive…'}
+        </span>
+        <a href={`api/v1/runs/${run.id}/report`} download={`as-flown-${run.id}.json`}>
+          take the report as JSON
+        </a>
+        <a href={`api/v1/runs/${run.id}/report?format=csv`} download={`as-flown-${run.id}.csv`}>
+          its timepoints and events as CSV
+        </a>
       </div>
       <div class="table-scroll" tabIndex={0} role="region" aria-label="timepoints and events as flown">
         {of && (
           <table data-testid="flown-table">
-            <thead><tr><th>timepoint</th><th class="number">planned</th><th class="number" title="at entry interface, by the anchors that ground had then">predicted</th><th class="number">by tone</th><th class="number">by UHF</th><th class="number">recorded</th>
-              <th class="number" title="beyond the minimum offset from the previous one">margin</th><th>verdict</th></tr></thead>
+            <thead>
+              <tr>
+                <th>timepoint</th>
+                <th class="number">planned</th>
+                <th class="number" title="at entry interface, by the anchors that ground had then">
+                  predicted
+                </th>
+                <th class="number">by tone</th>
+                <th class="number">by UHF</th>
+                <th class="number">recorded</th>
+                <th class="number" title="beyond the minimum offset from the previous one">
+                  margin
+                </th>
+                <th>verdict</th>
+              </tr>
+            </thead>
             <tbody>
               {of.timepoints.map(flownRow).map((row) => (
                 <tr key={row.name} data-flown={row.name}>
-                  <td>{row.name}</td><td class="number">{row.planned}</td><td class="number">{row.predicted}</td><td class="number">{row.tone}</td><td class="number">{row.uhf}</td><td class="number">{row.recorded}</td>
-                  <td class="number">{row.margin}</td><td>{row.verdict}</td>
+                  <td>{row.name}</td>
+                  <td class="number">{row.planned}</td>
+                  <td class="number">{row.predicted}</td>
+                  <td class="number">{row.tone}</td>
+                  <td class="number">{row.uhf}</td>
+                  <td class="number">{row.recorded}</td>
+                  <td class="number">{row.margin}</td>
+                  <td>{row.verdict}</td>
                 </tr>
               ))}
             </tbody>
@@ -40,11 +66,25 @@ export function Flown() {
           <section aria-label="events as flown">
             <h3>Events</h3>
             <table data-testid="flown-events">
-              <thead><tr><th>event</th><th class="number" title="by the anchor of that name, when the run began">predicted</th><th class="number">by UHF</th><th class="number">recorded</th><th>as flight reported it</th></tr></thead>
+              <thead>
+                <tr>
+                  <th>event</th>
+                  <th class="number" title="by the anchor of that name, when the run began">
+                    predicted
+                  </th>
+                  <th class="number">by UHF</th>
+                  <th class="number">recorded</th>
+                  <th>as flight reported it</th>
+                </tr>
+              </thead>
               <tbody>
                 {of.events.map(flownEvent).map((row) => (
                   <tr key={row.name} data-flown-event={row.name}>
-                    <td>{row.name}</td><td class="number">{row.predicted}</td><td class="number">{row.uhf}</td><td class="number">{row.recorded}</td><td>{row.text}</td>
+                    <td>{row.name}</td>
+                    <td class="number">{row.predicted}</td>
+                    <td class="number">{row.uhf}</td>
+                    <td class="number">{row.recorded}</td>
+                    <td>{row.text}</td>
                   </tr>
                 ))}
               </tbody>
@@ -54,7 +94,13 @@ export function Flown() {
         {of && of.silences.length > 0 && (
           <section aria-label="silences">
             <h3>Silences</h3>
-            <ul>{of.silences.map((silence) => <li key={`${silence.link}${silence.fromES}`}>{linkTitle(silence.link)}, {silenceWords(silence)}</li>)}</ul>
+            <ul>
+              {of.silences.map((silence) => (
+                <li key={`${silence.link}${silence.fromES}`}>
+                  {linkTitle(silence.link)}, {silenceWords(silence)}
+                </li>
+              ))}
+            </ul>
           </section>
         )}
       </div>

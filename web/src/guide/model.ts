@@ -45,22 +45,57 @@ type FirstStep = (typeof LAYOUT.firstSteps)[number];
 function commandPress(step: FirstStep, at: Step): Press[] {
   switch (at) {
     case 'review':
-      return [{ key: 'Enter', words: 'when you have read it: it goes on, with what is shown' }, { key: 'Esc', words: 'goes back' }];
+      return [
+        { key: 'Enter', words: 'when you have read it: it goes on, with what is shown' },
+        { key: 'Esc', words: 'goes back' },
+      ];
     case 'armed':
-      return [{ type: step.command, words: 'so that nobody sends it by mistake' }, { key: 'Enter', words: 'sends it' }];
+      return [
+        { type: step.command, words: 'so that nobody sends it by mistake' },
+        { key: 'Enter', words: 'sends it' },
+      ];
     case 'sending':
       return [{ words: 'It is on its way.' }];
     default:
-      return [{ key: '/', words: 'opens the command line' }, { type: step.words, words: '' }, { key: 'Enter', words: 'shows what would be sent; nothing is sent yet' }];
+      return [
+        { key: '/', words: 'opens the command line' },
+        { type: step.words, words: '' },
+        { key: 'Enter', words: 'shows what would be sent; nothing is sent yet' },
+      ];
   }
 }
 
-export function guideStep(run: RunStore | undefined, words: Dictionary, plan: readonly TimepointRow[], mode: Mode, at: Step, until: number, recorded = false): GuideStep | undefined {
+export function guideStep(
+  run: RunStore | undefined,
+  words: Dictionary,
+  plan: readonly TimepointRow[],
+  mode: Mode,
+  at: Step,
+  until: number,
+  recorded = false,
+): GuideStep | undefined {
   if (mode === 'range' || mode === 'replay') {
-    return { number: GUIDE_STEPS, title: 'You are looking at the past', why: recorded ? 'Every panel shows what had happened by then, with what only the recording told later.' : 'Every panel shows what had been heard by then, and nothing later.',
-      press: [{ key: 'w', words: recorded ? 'shows what had been heard then' : 'shows it with the recording' }, { key: 'Esc', words: 'goes back' }], wants: 'nothing' };
+    return {
+      number: GUIDE_STEPS,
+      title: 'You are looking at the past',
+      why: recorded
+        ? 'Every panel shows what had happened by then, with what only the recording told later.'
+        : 'Every panel shows what had been heard by then, and nothing later.',
+      press: [
+        { key: 'w', words: recorded ? 'shows what had been heard then' : 'shows it with the recording' },
+        { key: 'Esc', words: 'goes back' },
+      ],
+      wants: 'nothing',
+    };
   }
-  if (!run) return { number: 1, title: 'Start a rehearsal', why: 'A simulated landing, as it would be heard on Earth.', press: [{ key: 's', words: 'goes to the runs; choose one and press Enter' }], wants: 'nothing' };
+  if (!run)
+    return {
+      number: 1,
+      title: 'Start a rehearsal',
+      why: 'A simulated landing, as it would be heard on Earth.',
+      press: [{ key: 's', words: 'goes to the runs; choose one and press Enter' }],
+      wants: 'nothing',
+    };
   if (mode === 'live') return undefined; // the real thing is not where one learns
   if (mode === 'ended') return afterwards(run);
 
@@ -70,53 +105,100 @@ export function guideStep(run: RunStore | undefined, words: Dictionary, plan: re
     const number = missing.number + 1;
     const late = tooLate(run, words, plan, until);
     if (late !== undefined) {
-      return { number: 1, title: 'Too late for this run: start another', why: late, wants: 'nothing',
-        press: [{ key: 's', words: 'goes to the runs' }, { words: `“end run ${run.id}”, pressed twice, ends this one` }, { words: '“start a rehearsal” begins anew' }] };
+      return {
+        number: 1,
+        title: 'Too late for this run: start another',
+        why: late,
+        wants: 'nothing',
+        press: [
+          { key: 's', words: 'goes to the runs' },
+          { words: `“end run ${run.id}”, pressed twice, ends this one` },
+          { words: '“start a rehearsal” begins anew' },
+        ],
+      };
     }
     const nothing: Pick<GuideStep, 'number' | 'press' | 'wants'> = { number, press: [], wants: 'nothing' };
     if (at === 'type' && state === 'sent') {
-      return { ...nothing, title: 'Sent. Waiting for the vehicle to say so', why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.' };
+      return {
+        ...nothing,
+        title: 'Sent. Waiting for the vehicle to say so',
+        why: 'A command counts once the vehicle answers, not when it leaves. Its stages are in the command panel.',
+      };
     }
     if (at === 'type' && state === 'on_ground') {
-      return { ...nothing, wants: 'command', title: 'It waits on the ground', why: `“${step.words}” ${evidence}. In the command panel it can be released or approved, or cancelled and sent anew.` };
+      return {
+        ...nothing,
+        wants: 'command',
+        title: 'It waits on the ground',
+        why: `“${step.words}” ${evidence}. In the command panel it can be released or approved, or cancelled and sent anew.`,
+      };
     }
     if (at === 'type' && against) {
       return {
-        ...nothing, title: 'Taken. Waiting for the vehicle’s status to say so',
+        ...nothing,
+        title: 'Taken. Waiting for the vehicle’s status to say so',
         why: `${against.value}: until it changes, “${step.words}” would be refused. The status comes about once a second.`,
       };
     }
     return {
-      number, title: missing.number === 0 ? 'Tell the vehicle where it is' : 'Let it begin', why: `“${step.words}” ${step.why}.`,
-      press: commandPress(step, at), wants: 'command',
+      number,
+      title: missing.number === 0 ? 'Tell the vehicle where it is' : 'Let it begin',
+      why: `“${step.words}” ${step.why}.`,
+      press: commandPress(step, at),
+      wants: 'command',
     };
   }
   const phases = phaseSteps(run, words, plan, until);
   const now = phases.findIndex((phase) => phase.state === 'now');
-  const plain = LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.';
+  const plain =
+    LAYOUT.phases.find((phase) => phase.title === phases[now]?.title)?.plain ?? 'The vehicle flies by itself.';
   const pace = run.run.pace === 0 ? Infinity : run.run.pace;
   const paused = run.run.state === 'paused';
   if (now <= 0 && run.seenE < NEAR_ENTRY_S) {
     return {
-      number: 3, title: 'Nothing to do until entry', why: plain, wants: pace < FAST ? 'pace' : 'nothing',
-      press: paused ? [{ key: 'p', words: 'goes on' }]
-        : pace < FAST ? [{ key: '+', words: 'a few times, to 100×: the minutes before entry pass in seconds' }] : [{ words: `At ${pace === Infinity ? 'this pace' : `${pace}×`} it is soon there.` }],
+      number: 3,
+      title: 'Nothing to do until entry',
+      why: plain,
+      wants: pace < FAST ? 'pace' : 'nothing',
+      press: paused
+        ? [{ key: 'p', words: 'goes on' }]
+        : pace < FAST
+          ? [{ key: '+', words: 'a few times, to 100×: the minutes before entry pass in seconds' }]
+          : [{ words: `At ${pace === Infinity ? 'this pace' : `${pace}×`} it is soon there.` }],
     };
   }
   const down = now === phases.length - 1; // nothing is left to be watched
-  const press: Press[] = paused ? [{ key: 'p', words: 'goes on' }]
-    : down ? [{ words: `${Math.round(run.run.relayProgress * 100)} % of the recording is down.` }]
-    : pace > FAST ? [{ key: '−', words: 'to 10× or less, to see it happen' }] : [{ words: 'Watch the dot: it should stay inside the grey corridor.' }];
-  return { number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2), title: now <= 0 ? 'Entry is near' : phases[now]?.title ?? '', why: plain, press, wants: !paused && !down && pace > FAST ? 'pace' : 'nothing' };
+  const press: Press[] = paused
+    ? [{ key: 'p', words: 'goes on' }]
+    : down
+      ? [{ words: `${Math.round(run.run.relayProgress * 100)} % of the recording is down.` }]
+      : pace > FAST
+        ? [{ key: '−', words: 'to 10× or less, to see it happen' }]
+        : [{ words: 'Watch the dot: it should stay inside the grey corridor.' }];
+  return {
+    number: now <= 0 ? 3 : Math.min(GUIDE_STEPS - 1, now + 2),
+    title: now <= 0 ? 'Entry is near' : (phases[now]?.title ?? ''),
+    why: plain,
+    press,
+    wants: !paused && !down && pace > FAST ? 'pace' : 'nothing',
+  };
 }
 
 function afterwards(run: RunStore): GuideStep {
   const landed = run.run.outcome === 'touchdown';
-  const [look, another] = [[{ key: 'v', words: 'the verdicts' }, { key: 'y', words: 'see it again' }], { key: 's', words: 'start another' }];
+  const [look, another] = [
+    [
+      { key: 'v', words: 'the verdicts' },
+      { key: 'y', words: 'see it again' },
+    ],
+    { key: 's', words: 'start another' },
+  ];
   return {
     number: GUIDE_STEPS,
     title: landed ? 'You have landed it' : 'This run is over',
-    why: landed ? 'The recording is compared with all that was heard live, octet by octet.' : 'All that was known is kept, and what went wrong is among the events.',
+    why: landed
+      ? 'The recording is compared with all that was heard live, octet by octet.'
+      : 'All that was known is kept, and what went wrong is among the events.',
     press: landed ? [...look, another] : [another, ...look],
     wants: 'nothing',
   };
@@ -125,7 +207,15 @@ function afterwards(run: RunStore): GuideStep {
 export function guideNow(): GuideStep | undefined {
   const words = dictionary.value;
   if (!guideShown.value || !words) return undefined;
-  const step = guideStep(runNow(), words, timepoints.value, modeNow(), commandStep.value, cutoff.value, withRecording.value);
+  const step = guideStep(
+    runNow(),
+    words,
+    timepoints.value,
+    modeNow(),
+    commandStep.value,
+    cutoff.value,
+    withRecording.value,
+  );
   // Who only looks on finds nothing to press that would be refused.
   const allowed = step?.wants === 'command' ? mayAct() : modeNow() !== 'rehearsal' || mayRehearse();
   return step && !allowed ? { ...step, press: [], wants: 'nothing' } : step;

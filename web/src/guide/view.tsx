@@ -9,10 +9,14 @@ export function Guide() {
     <aside class="guide" data-testid="guide" aria-label="guide for a first landing">
       <p class="guide-head">
         <span class="guide-dots" role="img" aria-label={`step ${step.number} of ${GUIDE_STEPS}`}>
-          {Array.from({ length: GUIDE_STEPS }, (_, i) => <i key={i} class={i + 1 < step.number ? 'done' : i + 1 === step.number ? 'now' : ''} />)}
+          {Array.from({ length: GUIDE_STEPS }, (_, i) => (
+            <i key={i} class={i + 1 < step.number ? 'done' : i + 1 === step.number ? 'now' : ''} />
+          ))}
         </span>
         Your first landing
-        <button type="button" class="quiet" onClick={toggleGuide} data-testid="guide-hide">put away <kbd>g</kbd></button>
+        <button type="button" class="quiet" onClick={toggleGuide} data-testid="guide-hide">
+          put away <kbd>g</kbd>
+        </button>
       </p>
       <h2 aria-live="polite">{step.title}</h2>
       <p>{step.why}</p>
@@ -20,7 +24,13 @@ export function Guide() {
         <ol>
           {step.press.map((press) => (
             <li key={`${press.key} ${press.type} ${press.words}`}>
-              {press.key && <kbd>{press.key}</kbd>}{press.type && <>type <kbd>{press.type}</kbd></>} {press.words}
+              {press.key && <kbd>{press.key}</kbd>}
+              {press.type && (
+                <>
+                  type <kbd>{press.type}</kbd>
+                </>
+              )}{' '}
+              {press.words}
             </li>
           ))}
         </ol>

@@ -32,24 +32,34 @@ export interface LinkView {
 export function linkViews(store: RunStore, proof: ProofReport | undefined, cutoff: number, lost = false): LinkView[] {
   const totals = new Map(linkTotals(store).map((each) => [each.link, each]));
   const names = new Set([
-    ...store.links.keys(), ...totals.keys(), ...(proof?.counters.map((each) => each.link) ?? []), ...(proof?.links.map((each) => each.name) ?? []),
+    ...store.links.keys(),
+    ...totals.keys(),
+    ...(proof?.counters.map((each) => each.link) ?? []),
+    ...(proof?.links.map((each) => each.name) ?? []),
   ]);
   const now = Math.min(store.seenSclk, cutoff) - store.entrySclk;
   return [...names].sort(byImportance).map((link) => {
     const silent = lost && cutoff === Infinity && store.going;
-    const last = (store.links.get(link) ?? []).findLast((change) => !(store.sclkSeenAt(change.fact.ert) > cutoff))?.fact;
+    const last = (store.links.get(link) ?? []).findLast(
+      (change) => !(store.sclkSeenAt(change.fact.ert) > cutoff),
+    )?.fact;
     const total = totals.get(link);
     const judged = proof?.links.find((row) => row.name === link);
     return {
       link,
       state: last === undefined || silent ? 'unknown' : linkLook(last.up, last.reason),
-      reason: silent ? 'no connection' : last?.reason ?? '',
+      reason: silent ? 'no connection' : (last?.reason ?? ''),
       since_e_s: last && store.sclkSeenAt(last.ert) - store.entrySclk,
       silences: outages(store, link, now, cutoff),
-      units: total?.units ?? 0, octets: total?.octets ?? 0, seenBefore: total?.duplicates ?? 0,
+      units: total?.units ?? 0,
+      octets: total?.octets ?? 0,
+      seenBefore: total?.duplicates ?? 0,
       counters: proof?.counters.find((each) => each.link === link),
       judged: judged && {
-        live: Number(judged.realtime), identical: Number(judged.identical), recorded: Number(judged.recorded), neverLive: Number(judged.neverSeenLive),
+        live: Number(judged.realtime),
+        identical: Number(judged.identical),
+        recorded: Number(judged.recorded),
+        neverLive: Number(judged.neverSeenLive),
       },
     };
   });

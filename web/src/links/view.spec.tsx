@@ -6,24 +6,46 @@ import { framesKept, linkTitle, linkViews } from './model';
 
 describe('the links', () => {
   it('have names that people say', () => {
-    expect(['uhf_live', 'uhf_mro', 'relay', 'relay_mex', 'x_band', 'downlink'].map(linkTitle)).toEqual(['UHF live', 'UHF MRO', 'Relay', 'Relay MEX', 'X-band', 'downlink']);
+    expect(['uhf_live', 'uhf_mro', 'relay', 'relay_mex', 'x_band', 'downlink'].map(linkTitle)).toEqual([
+      'UHF live',
+      'UHF MRO',
+      'Relay',
+      'Relay MEX',
+      'X-band',
+      'downlink',
+    ]);
   });
   it('take a silence that nothing predicted for a loss, and say why', () => {
-    const store = aStore([link({ link: 'uhf_live', up: false, reason: 'unexplained: nothing is predicted to silence it now', ert: '2012-219T04:59:00.0' }), link({ link: 'x_band', up: false, reason: 'Earth set: predicted at E+297 s', ert: '2012-219T04:59:00.0' })]);
+    const store = aStore([
+      link({
+        link: 'uhf_live',
+        up: false,
+        reason: 'unexplained: nothing is predicted to silence it now',
+        ert: '2012-219T04:59:00.0',
+      }),
+      link({ link: 'x_band', up: false, reason: 'Earth set: predicted at E+297 s', ert: '2012-219T04:59:00.0' }),
+    ]);
     expect(linkViews(store, undefined, Infinity).map((each) => each.state)).toEqual(['lost', 'down']);
   });
   it('show what is down with its reason and its silences, and never up what told nothing', () => {
     const store = aStore([
-      link({ link: 'uhf_live', up: true, ert: '2012-219T04:58:00.0' }), link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T04:59:00.0' }),
+      link({ link: 'uhf_live', up: true, ert: '2012-219T04:58:00.0' }),
+      link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T04:59:00.0' }),
     ]);
     const proof = create(ProofReportSchema, { counters: [{ link: 'uhf_mro', frames: 3n }] });
     const [live, orbiter] = linkViews(store, proof, Infinity);
-    expect(live).toMatchObject({ link: 'uhf_live', state: 'down', reason: 'plasma blackout', silences: [{ words: 'plasma blackout', from: -160, to: -100 }] });
+    expect(live).toMatchObject({
+      link: 'uhf_live',
+      state: 'down',
+      reason: 'plasma blackout',
+      silences: [{ words: 'plasma blackout', from: -160, to: -100 }],
+    });
     expect(orbiter).toMatchObject({ link: 'uhf_mro', state: 'unknown' });
   });
   it('in a past view have the state of then', () => {
     const store = aStore([
-      link({ link: 'uhf_live', up: true, ert: '2012-219T04:58:00.0' }), link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T04:59:00.0' }),
+      link({ link: 'uhf_live', up: true, ert: '2012-219T04:58:00.0' }),
+      link({ link: 'uhf_live', up: false, reason: 'plasma blackout', ert: '2012-219T04:59:00.0' }),
     ]);
     expect(linkViews(store, undefined, 830)[0]?.state).toBe('up');
   });

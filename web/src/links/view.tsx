@@ -18,33 +18,73 @@ function Row({ view }: { view: LinkView }) {
   const kept = counters && framesKept(counters);
   return (
     <tr data-testid={`link-row-${view.link}`} data-state={view.state}>
-      <td><b><span class={`status-${look.token}`} aria-hidden="true">{look.shape}</span> {linkTitle(view.link)}</b></td>
-      <td class={`status-${look.token}`}>{view.state === 'unknown' ? 'not known' : view.state}{view.reason && `, ${view.reason}`}
-        {view.since_e_s !== undefined && Number.isFinite(view.since_e_s) && <small> since {fromEntry(view.since_e_s)}</small>}</td>
+      <td>
+        <b>
+          <span class={`status-${look.token}`} aria-hidden="true">
+            {look.shape}
+          </span>{' '}
+          {linkTitle(view.link)}
+        </b>
+      </td>
+      <td class={`status-${look.token}`}>
+        {view.state === 'unknown' ? 'not known' : view.state}
+        {view.reason && `, ${view.reason}`}
+        {view.since_e_s !== undefined && Number.isFinite(view.since_e_s) && (
+          <small> since {fromEntry(view.since_e_s)}</small>
+        )}
+      </td>
       {counters ? (
         <>
-          <td class="kept">{kept !== undefined && <><span class="kept-bar"><i style={{ width: `${kept * 100}%` }} /></span> {(kept * 100).toFixed(1)} %</>}</td>
-          <td class="number">{count(counters.frames)}</td><td class={hurt(counters.missingFrames)}>{count(counters.missingFrames)}</td>
-          <td class="number">{count(counters.gaps)}</td><td class={hurt(counters.badCrc)}>{count(counters.badCrc)}</td>
-          <td class={hurt(counters.badHeader)}>{count(counters.badHeader)}</td><td class="number">{count(counters.repeatedFrames)}</td>
-          <td class="number">{count(counters.octets)}</td><td class={hurt(counters.skippedOctets)}>{count(counters.skippedOctets)}</td>
-          <td class="number">{(counters.octetsPerS * 8 / 1000).toFixed(1)} kb/s</td>
+          <td class="kept">
+            {kept !== undefined && (
+              <>
+                <span class="kept-bar">
+                  <i style={{ width: `${kept * 100}%` }} />
+                </span>{' '}
+                {(kept * 100).toFixed(1)} %
+              </>
+            )}
+          </td>
+          <td class="number">{count(counters.frames)}</td>
+          <td class={hurt(counters.missingFrames)}>{count(counters.missingFrames)}</td>
+          <td class="number">{count(counters.gaps)}</td>
+          <td class={hurt(counters.badCrc)}>{count(counters.badCrc)}</td>
+          <td class={hurt(counters.badHeader)}>{count(counters.badHeader)}</td>
+          <td class="number">{count(counters.repeatedFrames)}</td>
+          <td class="number">{count(counters.octets)}</td>
+          <td class={hurt(counters.skippedOctets)}>{count(counters.skippedOctets)}</td>
+          <td class="number">{((counters.octetsPerS * 8) / 1000).toFixed(1)} kb/s</td>
         </>
-      ) : <td colSpan={10} class="status-dim">{view.link === 'x_band' ? 'carries tones, not frames: see the strip of tones' : 'no frames counted'}</td>}
-      <td class="number">{judged ? count(judged.live > 0 ? judged.live : judged.recorded) : count(view.units)}{view.seenBefore > 0 && <small> {count(view.seenBefore)} again</small>}</td>
+      ) : (
+        <td colSpan={10} class="status-dim">
+          {view.link === 'x_band' ? 'carries tones, not frames: see the strip of tones' : 'no frames counted'}
+        </td>
+      )}
+      <td class="number">
+        {judged ? count(judged.live > 0 ? judged.live : judged.recorded) : count(view.units)}
+        {view.seenBefore > 0 && <small> {count(view.seenBefore)} again</small>}
+      </td>
       <td class="number">{judged && judged.live > 0 ? count(judged.identical) : ''}</td>
     </tr>
   );
 }
 
 function Silences({ views }: { views: LinkView[] }) {
-  const all = views.flatMap((view) => view.silences.map((silence) => ({ ...silence, link: view.link }))).sort((a, b) => b.from - a.from).slice(0, 40);
+  const all = views
+    .flatMap((view) => view.silences.map((silence) => ({ ...silence, link: view.link })))
+    .sort((a, b) => b.from - a.from)
+    .slice(0, 40);
   return (
     <section class="silences">
       <h3>Silences, newest first</h3>
       <ol data-testid="silences">
         {all.map((silence) => (
-          <li key={`${silence.link} ${silence.from}`}><time>{fromEntry(silence.from)} … {fromEntry(silence.to)}</time> <b>{linkTitle(silence.link)}</b> {silence.words} <small>{duration(silence.to - silence.from)}</small></li>
+          <li key={`${silence.link} ${silence.from}`}>
+            <time>
+              {fromEntry(silence.from)} … {fromEntry(silence.to)}
+            </time>{' '}
+            <b>{linkTitle(silence.link)}</b> {silence.words} <small>{duration(silence.to - silence.from)}</small>
+          </li>
         ))}
         {all.length === 0 && <li>none</li>}
       </ol>
@@ -59,14 +99,39 @@ export function Links() {
   const views = linkViews(run, proof, cutoff.value, stream.value.state === 'lost');
   return (
     <div class="table-box" data-testid="links">
-      {pastRange.value && <p class="not-past">▲ Counters are of the whole run; states and silences are those of the past that is shown.</p>}
+      {pastRange.value && (
+        <p class="not-past">
+          ▲ Counters are of the whole run; states and silences are those of the past that is shown.
+        </p>
+      )}
       <div class="table-scroll" tabIndex={0} aria-label="links">
-        {views.length === 0 ? <p class="none">no link has been heard of yet</p> : (
+        {views.length === 0 ? (
+          <p class="none">no link has been heard of yet</p>
+        ) : (
           <table class="link-table" data-testid="link-table">
-            <thead><tr><th>link</th><th>state</th><th>frames that came</th><th class="number">frames</th><th class="number">missing</th><th class="number">gaps</th>
-              <th class="number">bad CRC</th><th class="number">bad header</th><th class="number">repeated</th><th class="number">octets</th><th class="number">skipped</th>
-              <th class="number">rate</th><th class="number">packets</th><th class="number">identical</th></tr></thead>
-            <tbody>{views.map((view) => <Row key={view.link} view={view} />)}</tbody>
+            <thead>
+              <tr>
+                <th>link</th>
+                <th>state</th>
+                <th>frames that came</th>
+                <th class="number">frames</th>
+                <th class="number">missing</th>
+                <th class="number">gaps</th>
+                <th class="number">bad CRC</th>
+                <th class="number">bad header</th>
+                <th class="number">repeated</th>
+                <th class="number">octets</th>
+                <th class="number">skipped</th>
+                <th class="number">rate</th>
+                <th class="number">packets</th>
+                <th class="number">identical</th>
+              </tr>
+            </thead>
+            <tbody>
+              {views.map((view) => (
+                <Row key={view.link} view={view} />
+              ))}
+            </tbody>
           </table>
         )}
         <Silences views={views} />

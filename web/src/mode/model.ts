@@ -17,8 +17,18 @@ export const MODES: Record<Mode, ModeWords> = {
   live: { badge: 'LIVE', mark: 'live', shape: '●', words: 'a real vehicle, as it is heard now' },
   rehearsal: { badge: 'REHEARSAL', mark: 'rehearsal', shape: '◪', words: 'a simulated vehicle, as it is heard now' },
   ended: { badge: 'ENDED RUN', mark: 'ended', shape: '■', words: 'a run that is over, with all that is known of it' },
-  range: { badge: 'PAST, NOT LIVE', mark: 'past', shape: '◧', words: 'a fixed range of the past; nothing here is live' },
-  replay: { badge: 'REPLAY, NOT LIVE', mark: 'replay', shape: '↻', words: 'the past, played again at a pace; nothing here is live' },
+  range: {
+    badge: 'PAST, NOT LIVE',
+    mark: 'past',
+    shape: '◧',
+    words: 'a fixed range of the past; nothing here is live',
+  },
+  replay: {
+    badge: 'REPLAY, NOT LIVE',
+    mark: 'replay',
+    shape: '↻',
+    words: 'the past, played again at a pace; nothing here is live',
+  },
 };
 
 /** Only what follows a real downlink is the real thing; whatever else a venue is called is a rehearsal. */
@@ -47,13 +57,20 @@ export function panelMark(mode: Mode, run: RunState | undefined): string {
 }
 
 /** After a break: since when, what was filled in, and whether the run went on without us. */
-export function resumedWords(break_: { after: number; through: number; attempts: number }, run: RunState, lost_e_s: number): string {
+export function resumedWords(
+  break_: { after: number; through: number; attempts: number },
+  run: RunState,
+  lost_e_s: number,
+): string {
   const count = break_.through - break_.after;
-  const filled = count > 0
-    ? `numbers ${break_.after + 1} to ${break_.through}, which came meanwhile, were filled in from the archive, none is missing`
-    : 'nothing had come meanwhile';
+  const filled =
+    count > 0
+      ? `numbers ${break_.after + 1} to ${break_.through}, which came meanwhile, were filled in from the archive, none is missing`
+      : 'nothing had come meanwhile';
   const begin = `The connection was lost at ${fromEntry(lost_e_s)} and is back at attempt ${break_.attempts}: ${filled}.`;
   if (run.state !== 'interrupted') return begin;
   const cutOff = `${begin} The server had stopped and was started again: this run was cut off at number ${break_.through}`;
-  return canContinue(run) ? `${cutOff}; continue it under Runs, or start another.` : `${cutOff}, and cannot be continued: what is followed after it is another run.`;
+  return canContinue(run)
+    ? `${cutOff}; continue it under Runs, or start another.`
+    : `${cutOff}, and cannot be continued: what is followed after it is another run.`;
 }

@@ -11,7 +11,15 @@ import './style.css';
 export function Tape() {
   const run = runNow();
   if (!run || isReal(run.run)) return null;
-  return <div class="tape" data-testid="tape" role="region" aria-label="This is a rehearsal"><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span><span>rehearsal</span></div>;
+  return (
+    <div class="tape" data-testid="tape" role="region" aria-label="This is a rehearsal">
+      <span>rehearsal</span>
+      <span>rehearsal</span>
+      <span>rehearsal</span>
+      <span>rehearsal</span>
+      <span>rehearsal</span>
+    </div>
+  );
 }
 
 export function PastBar() {
@@ -20,12 +28,20 @@ export function PastBar() {
   const lost = stream.value.state === 'lost';
   return (
     <>
-      {lost && <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">✖ NO CONNECTION: {past ? 'nothing new comes' : 'everything here is old'}. Trying again, attempt {stream.value.attempt}.</div>}
+      {lost && (
+        <div class="past-bar lost-bar" role="alert" data-testid="lost-bar">
+          ✖ NO CONNECTION: {past ? 'nothing new comes' : 'everything here is old'}. Trying again, attempt{' '}
+          {stream.value.attempt}.
+        </div>
+      )}
       {past && !replay.value && (
         <div class="past-bar" role="alert" data-testid="past-bar">
-          THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live{run?.going ? '; the run goes on' : ''}.
+          THE PAST: {fromEntry(past.from)} to {fromEntry(past.to)}. Nothing here is live
+          {run?.going ? '; the run goes on' : ''}.
           <Reading />
-          <button type="button" onClick={backToLive}>leave <kbd>Esc</kbd></button>
+          <button type="button" onClick={backToLive}>
+            leave <kbd>Esc</kbd>
+          </button>
         </div>
       )}
     </>
@@ -34,5 +50,9 @@ export function PastBar() {
 
 export function ModeMark() {
   const mode = modeNow();
-  return <span class="mode-mark" data-testid="mode-mark" title={MODES[mode].words}><span aria-hidden="true">{MODES[mode].shape}</span> {panelMark(mode, runNow()?.run)}</span>;
+  return (
+    <span class="mode-mark" data-testid="mode-mark" title={MODES[mode].words}>
+      <span aria-hidden="true">{MODES[mode].shape}</span> {panelMark(mode, runNow()?.run)}
+    </span>
+  );
 }

@@ -38,7 +38,8 @@ export async function refreshNotes(): Promise<void> {
     for (let page = 0; page < PAGES; ++page) {
       const list = await read<NoteList>(`/runs/${run.id}/notes${after > 0 ? `?after=${after}` : ''}`);
       for (const { seq, note } of list.notes ?? []) {
-        if (Number(seq) > (all.at(-1)?.seq ?? 0)) all.push({ seq: Number(seq), text: note.text, by: note.by ?? '', at: note.at ?? '', sclk: note.sclk });
+        if (Number(seq) > (all.at(-1)?.seq ?? 0))
+          all.push({ seq: Number(seq), text: note.text, by: note.by ?? '', at: note.at ?? '', sclk: note.sclk });
       }
       after = Number(list.next_after ?? 0);
       if (after === 0) break;
@@ -56,11 +57,20 @@ export async function write(text: string, sclk: number | undefined): Promise<boo
   const run = store.value;
   if (!run || writing.value) return false;
   const octets = new TextEncoder().encode(text.trim()).length;
-  problem.value = octets === 0 ? 'there is nothing to write down' : octets > OCTETS ? `it has ${octets} octets; a note has at most ${OCTETS}` : '';
+  problem.value =
+    octets === 0
+      ? 'there is nothing to write down'
+      : octets > OCTETS
+        ? `it has ${octets} octets; a note has at most ${OCTETS}`
+        : '';
   if (problem.value) return false;
   writing.value = true;
   try {
-    await change(`/runs/${run.id}/notes`, { text: text.trim(), by: uplink.value.controller.trim(), ...(sclk !== undefined && { sclk }) });
+    await change(`/runs/${run.id}/notes`, {
+      text: text.trim(),
+      by: uplink.value.controller.trim(),
+      ...(sclk !== undefined && { sclk }),
+    });
     await refreshNotes();
     return true;
   } catch (error) {
@@ -72,10 +82,20 @@ export async function write(text: string, sclk: number | undefined): Promise<boo
 }
 
 /** Newest first; of the past only what had been written by then; every word must be in text or name. */
-export function found(all: readonly NoteRow[], search: string, run: Pick<RunStore, 'sclkSeenAt'>, cutoff: number): NoteRow[] {
-  const words = search.toLowerCase().split(/\s+/).filter((word) => word !== '');
-  return all.filter((row) => {
-    const text = `${row.text} ${row.by}`.toLowerCase();
-    return words.every((word) => text.includes(word)) && !(run.sclkSeenAt(row.at) > cutoff);
-  }).reverse();
+export function found(
+  all: readonly NoteRow[],
+  search: string,
+  run: Pick<RunStore, 'sclkSeenAt'>,
+  cutoff: number,
+): NoteRow[] {
+  const words = search
+    .toLowerCase()
+    .split(/\s+/)
+    .filter((word) => word !== '');
+  return all
+    .filter((row) => {
+      const text = `${row.text} ${row.by}`.toLowerCase();
+      return words.every((word) => text.includes(word)) && !(run.sclkSeenAt(row.at) > cutoff);
+    })
+    .reverse();
 }

@@ -9,7 +9,10 @@ import { found, notes, problem, refreshNotes, write } from './model';
 import { Notes } from './view';
 
 const server = aServer();
-const a = (seq: number, text: string, at = '2012-219T04:59:00.0') => ({ seq: String(seq), note: { text, by: 'ann', at } });
+const a = (seq: number, text: string, at = '2012-219T04:59:00.0') => ({
+  seq: String(seq),
+  note: { text, by: 'ann', at },
+});
 
 beforeEach(() => {
   notes.value = undefined;
@@ -25,7 +28,11 @@ describe('notes', () => {
     server.routes['GET /runs/1/notes?after=9'] = { json: { notes: [] } };
     await refreshNotes();
     expect(typeof notes.value === 'object' && notes.value.all.map((row) => row.text)).toEqual(['one', 'two']);
-    expect(server.asked.map((each) => each.path)).toEqual(['/runs/1/notes', '/runs/1/notes?after=3', '/runs/1/notes?after=9']);
+    expect(server.asked.map((each) => each.path)).toEqual([
+      '/runs/1/notes',
+      '/runs/1/notes?after=3',
+      '/runs/1/notes?after=9',
+    ]);
   });
   it('are found by any words, newest first, and in the past only what had been written', () => {
     const row = (seq: number, text: string, at: string) => ({ seq, text, by: 'Ann', at, sclk: undefined });
@@ -38,11 +45,16 @@ describe('notes', () => {
     server.routes['POST /runs/1/notes'] = { json: {} };
     server.routes['GET /runs/1/notes'] = { json: { notes: [] } };
     expect(await Promise.all([write(' look ', 870), write('look', 870)])).toEqual([true, false]);
-    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([{ text: 'look', by: '', sclk: 870 }]);
+    expect(server.asked.filter((each) => each.method === 'POST').map((each) => each.body)).toEqual([
+      { text: 'look', by: '', sclk: 870 },
+    ]);
   });
   it('that are empty, too long or refused say so, and nothing of them is lost', async () => {
     expect([await write('  ', undefined), problem.value]).toEqual([false, 'there is nothing to write down']);
-    expect([await write('ä'.repeat(2001), undefined), problem.value]).toEqual([false, 'it has 4002 octets; a note has at most 4000']);
+    expect([await write('ä'.repeat(2001), undefined), problem.value]).toEqual([
+      false,
+      'it has 4002 octets; a note has at most 4000',
+    ]);
     server.routes['POST /runs/1/notes'] = { status: 401, json: { error: 'log in' } };
     expect([await write('x', undefined), problem.value]).toEqual([false, 'it was not written down: log in']);
   });

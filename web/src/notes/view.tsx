@@ -29,30 +29,66 @@ export function Notes() {
   const instant = Math.min(run.seenSclk, cutoff.value);
   return (
     <div class="table-box" data-testid="notes">
-      <form class="table-tools" onSubmit={(event) => {
-        event.preventDefault();
-        const sent = text.value;
-        void write(sent, atInstant.value ? instant : undefined).then((written) => {
-          if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
-        });
-      }}>
-        <input class="note-text" data-testid="note-text" aria-label="write a note" placeholder={mayAct() ? 'write a note; Enter keeps it' : 'observers write no notes'} value={text.value} disabled={!mayAct()}
-          onInput={(event) => (text.value = event.currentTarget.value)} />
-        <label><input type="checkbox" data-testid="note-instant" checked={atInstant.value} onChange={(event) => (atInstant.value = event.currentTarget.checked)} /> at {fromEntry(instant - run.entrySclk)}</label>
+      <form
+        class="table-tools"
+        onSubmit={(event) => {
+          event.preventDefault();
+          const sent = text.value;
+          void write(sent, atInstant.value ? instant : undefined).then((written) => {
+            if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
+          });
+        }}
+      >
+        <input
+          class="note-text"
+          data-testid="note-text"
+          aria-label="write a note"
+          placeholder={mayAct() ? 'write a note; Enter keeps it' : 'observers write no notes'}
+          value={text.value}
+          disabled={!mayAct()}
+          onInput={(event) => (text.value = event.currentTarget.value)}
+        />
+        <label>
+          <input
+            type="checkbox"
+            data-testid="note-instant"
+            checked={atInstant.value}
+            onChange={(event) => (atInstant.value = event.currentTarget.checked)}
+          />{' '}
+          at {fromEntry(instant - run.entrySclk)}
+        </label>
         <Signature />
-        <button type="submit" disabled={!mayAct() || writing.value}>keep</button>
-        <input type="search" data-testid="note-search" aria-label="search notes" placeholder="search" value={search.value} onInput={(event) => (search.value = event.currentTarget.value)} />
+        <button type="submit" disabled={!mayAct() || writing.value}>
+          keep
+        </button>
+        <input
+          type="search"
+          data-testid="note-search"
+          aria-label="search notes"
+          placeholder="search"
+          value={search.value}
+          onInput={(event) => (search.value = event.currentTarget.value)}
+        />
       </form>
-      {problem.value && <p role="alert" class="status-alarm" data-testid="note-problem">✖ {problem.value}</p>}
-      {pastRange.value && <p class="not-past">◧ Only what had been written by then; what you write now is not among these.</p>}
+      {problem.value && (
+        <p role="alert" class="status-alarm" data-testid="note-problem">
+          ✖ {problem.value}
+        </p>
+      )}
+      {pastRange.value && (
+        <p class="not-past">◧ Only what had been written by then; what you write now is not among these.</p>
+      )}
       <ol class="notes table-scroll" tabIndex={0} aria-label="notes, newest first" data-testid="note-list">
         {shown.map((row) => (
           <li key={row.seq}>
-            <time>{row.at}</time> <b>{row.by || 'unsigned'}</b> {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
+            <time>{row.at}</time> <b>{row.by || 'unsigned'}</b>{' '}
+            {row.sclk !== undefined && <i>on {fromEntry(row.sclk - run.entrySclk)}</i>}
             <p>{row.text}</p>
           </li>
         ))}
-        {shown.length === 0 && <li class="none">{search.value ? `no note has “${search.value}”` : 'nothing is written down yet'}</li>}
+        {shown.length === 0 && (
+          <li class="none">{search.value ? `no note has “${search.value}”` : 'nothing is written down yet'}</li>
+        )}
       </ol>
     </div>
   );

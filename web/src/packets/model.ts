@@ -40,7 +40,10 @@ function recentOf(store: RunStore): { units: Unit[]; span_s: number } | undefine
 function rateOf(recent: ReturnType<typeof recentOf>, belongs: (unit: Unit) => boolean): Rate | undefined {
   if (!recent) return undefined;
   const units = recent.units.filter(belongs);
-  return { units_per_s: units.length / recent.span_s, octets_per_s: units.reduce((sum, unit) => sum + unit.octets, 0) / recent.span_s };
+  return {
+    units_per_s: units.length / recent.span_s,
+    octets_per_s: units.reduce((sum, unit) => sum + unit.octets, 0) / recent.span_s,
+  };
 }
 
 function grouped<K>(all: Iterable<UnitTotals>, key: (each: UnitTotals) => K): Map<K, { first: UnitTotals } & Totals> {
@@ -56,7 +59,10 @@ function grouped<K>(all: Iterable<UnitTotals>, key: (each: UnitTotals) => K): Ma
 }
 
 export function linkTotals(store: RunStore): (Totals & { link: string })[] {
-  return [...grouped(store.unitTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({ link: first.link, ...totals }));
+  return [...grouped(store.unitTotals.values(), (each) => each.link).values()].map(({ first, ...totals }) => ({
+    link: first.link,
+    ...totals,
+  }));
 }
 
 /** `rated`: with the rates of now, which are none of a past view. */
@@ -70,7 +76,9 @@ export function packetStreams(store: RunStore, rated = true): PacketStream[] {
   const recent = rated ? recentOf(store) : undefined;
   return [...grouped(store.unitTotals.values(), (each) => `${each.apid} ${each.name}`).values()]
     .map(({ first, ...totals }) => ({
-      apid: first.apid, name: first.name, ...totals,
+      apid: first.apid,
+      name: first.name,
+      ...totals,
       rate: rateOf(recent, (unit) => unit.apid === first.apid && unit.name === first.name),
     }))
     .sort((a, b) => a.apid - b.apid || a.name.localeCompare(b.name));
@@ -82,7 +90,10 @@ export function heardRows(store: RunStore, rows: readonly PacketRow[], cutoff: n
 }
 
 export function newestUnits(store: RunStore, most: number, packet?: string): Known<Unit>[] {
-  return store.units.filter(({ fact }) => packet === undefined || fact.name === packet).slice(-most).reverse();
+  return store.units
+    .filter(({ fact }) => packet === undefined || fact.name === packet)
+    .slice(-most)
+    .reverse();
 }
 
 /** Of what the archive has in a range, a page at a time. */
@@ -106,7 +117,9 @@ export function hexLines(hex: string): HexLine[] {
   for (let first = 0; first < all.length; first += 16) {
     const octets = all.slice(first, first + 16);
     lines.push({
-      at: first.toString(16).padStart(4, '0'), first, octets,
+      at: first.toString(16).padStart(4, '0'),
+      first,
+      octets,
       text: octets.map((octet) => {
         const code = parseInt(octet, 16);
         return code >= 32 && code < 127 ? String.fromCharCode(code) : '·';
@@ -118,7 +131,10 @@ export function hexLines(hex: string): HexLine[] {
 
 /** The octets that a field lies in, first and last. */
 export function octetsOf(field: Pick<PacketField, 'positionBits' | 'bits'>): { first: number; last: number } {
-  return { first: Math.floor(field.positionBits / 8), last: Math.floor((field.positionBits + Math.max(1, field.bits) - 1) / 8) };
+  return {
+    first: Math.floor(field.positionBits / 8),
+    last: Math.floor((field.positionBits + Math.max(1, field.bits) - 1) / 8),
+  };
 }
 
 /** Indices of the fields that lie, if only in part, in an octet. */
@@ -134,6 +150,7 @@ export function placeWords(field: Pick<PacketField, 'positionBits' | 'bits'>): s
   const { first, last } = octetsOf(field);
   const from = field.positionBits % 8;
   const to = (field.positionBits + field.bits - 1) % 8;
-  if (first === last && (from !== 0 || to !== 7)) return `bit${from === to ? ` ${from}` : `s ${from} to ${to}`} of octet ${first}`;
+  if (first === last && (from !== 0 || to !== 7))
+    return `bit${from === to ? ` ${from}` : `s ${from} to ${to}`} of octet ${first}`;
   return first === last ? `octet ${first}` : `octets ${first} to ${last}`;
 }

@@ -9,7 +9,17 @@ import { cutoff, notify, pastRange, replay, runNow, signalOfRun, store, withReco
 import type { RunStore } from '../run/store';
 import { fromEntry } from '../run/time';
 import { Mark } from '../verdicts/mark';
-import { fieldsAt, heardRows, hexLines, linkRows, newestUnits, octetsOf, packetStreams, pageWords, placeWords } from './model';
+import {
+  fieldsAt,
+  heardRows,
+  hexLines,
+  linkRows,
+  newestUnits,
+  octetsOf,
+  packetStreams,
+  pageWords,
+  placeWords,
+} from './model';
 import type { Rate } from './model';
 import './style.css';
 
@@ -30,7 +40,11 @@ const held = signal<{ run: number; lines: Line[] } | undefined>(undefined);
 /** In a past view the units of that range come from the archive: the page itself holds only the newest. */
 const pastRows = signal<{ packets: PacketRow[]; next: number }>({ packets: [], next: 0 });
 /** Which page of which range: where each begins, up to the one that is shown. */
-const pages = signal<{ of: object | undefined; name: string | undefined; after: number[] }>({ of: undefined, name: undefined, after: [0] });
+const pages = signal<{ of: object | undefined; name: string | undefined; after: number[] }>({
+  of: undefined,
+  name: undefined,
+  after: [0],
+});
 /** What the mouse or the keys are at: a field, or an octet with all fields in it. */
 const lit = signal<{ field: number } | { octet: number } | undefined>(undefined);
 
@@ -68,7 +82,9 @@ function linesOf(run: RunStore, past: boolean): Line[] {
   if (held.value?.run === run.id) return held.value.lines;
   if (!past) return newestUnits(run, SHOWN, wanted.value);
   const rows = withRecording.value ? pastRows.value.packets : heardRows(run, pastRows.value.packets, cutoff.value);
-  return rows.flatMap((row) => (row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : []));
+  return rows.flatMap((row) =>
+    row.unit && (wanted.value === undefined || row.unit.name === wanted.value) ? [{ fact: row.unit, seq: 0, row }] : [],
+  );
 }
 
 function onListKey(event: KeyboardEvent, lines: Line[]): void {
@@ -79,7 +95,9 @@ function onListKey(event: KeyboardEvent, lines: Line[]): void {
   else {
     const line = lines[Math.min(lines.length - 1, Math.max(0, to))];
     if (line) void show(line, lines);
-    (event.currentTarget as HTMLElement).querySelectorAll('tbody tr')[Math.min(lines.length - 1, Math.max(0, to))]?.scrollIntoView({ block: 'nearest' });
+    (event.currentTarget as HTMLElement)
+      .querySelectorAll('tbody tr')
+      [Math.min(lines.length - 1, Math.max(0, to))]?.scrollIntoView({ block: 'nearest' });
   }
   event.preventDefault();
   event.stopPropagation();
@@ -98,12 +116,18 @@ function Links({ whole }: { whole: boolean }) {
     <div class="table-tools link-rates" data-testid="link-rates">
       {rows.map((row) => (
         <span key={row.link}>
-          <b>{linkTitle(row.link)}</b>{whole ? ', whole run:' : ''} {row.units} units, {row.octets} octets
-          {row.rate && `, ${rateText(row.rate)}`}{row.duplicates > 0 && `, ${row.duplicates} seen before`}
+          <b>{linkTitle(row.link)}</b>
+          {whole ? ', whole run:' : ''} {row.units} units, {row.octets} octets
+          {row.rate && `, ${rateText(row.rate)}`}
+          {row.duplicates > 0 && `, ${row.duplicates} seen before`}
         </span>
       ))}
       {rows.length === 0 && <span>no unit yet</span>}
-      {!whole && run.run.relayProgress > 0 && <span>units of the recording: ask for a range <kbd>r</kbd></span>}
+      {!whole && run.run.relayProgress > 0 && (
+        <span>
+          units of the recording: ask for a range <kbd>r</kbd>
+        </span>
+      )}
     </div>
   );
 }
@@ -117,12 +141,30 @@ function Streams({ whole }: { whole: boolean }) {
   return (
     <div class="table-scroll streams" tabIndex={0} role="region" aria-label="packets by APID">
       <table data-testid="packet-streams">
-        <thead><tr><th class="number">APID</th><th>packet</th><th class="number">units</th><th class="number">a second</th><th class="number">rate</th></tr></thead>
+        <thead>
+          <tr>
+            <th class="number">APID</th>
+            <th>packet</th>
+            <th class="number">units</th>
+            <th class="number">a second</th>
+            <th class="number">rate</th>
+          </tr>
+        </thead>
         <tbody>
           {(run ? packetStreams(run, !whole) : []).map((row) => (
             <tr key={`${row.apid} ${row.name}`} class={wanted.value === row.name ? 'shown' : ''}>
               <td class="number">0x{row.apid.toString(16).padStart(3, '0')}</td>
-              <td><button type="button" class="link-button" aria-pressed={wanted.value === row.name} title={row.name} onClick={() => choose(wanted.value === row.name ? undefined : row.name)}>{row.name}</button></td>
+              <td>
+                <button
+                  type="button"
+                  class="link-button"
+                  aria-pressed={wanted.value === row.name}
+                  title={row.name}
+                  onClick={() => choose(wanted.value === row.name ? undefined : row.name)}
+                >
+                  {row.name}
+                </button>
+              </td>
               <td class="number">{row.units}</td>
               <td class="number">{row.rate?.units_per_s.toFixed(1) ?? ''}</td>
               <td class="number">{rateText(row.rate)}</td>
@@ -136,21 +178,50 @@ function Streams({ whole }: { whole: boolean }) {
 
 function Units({ run, lines }: { run: RunStore; lines: Line[] }) {
   return (
-    <div class="table-scroll units" tabIndex={0} role="region" aria-label={`units, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`} data-testid="units" onKeyDown={(event) => onListKey(event, lines)}>
+    <div
+      class="table-scroll units"
+      tabIndex={0}
+      role="region"
+      aria-label={`units, ${pastRange.value ? 'oldest' : 'newest'} first; up and down open them`}
+      data-testid="units"
+      onKeyDown={(event) => onListKey(event, lines)}
+    >
       <table data-testid="unit-table">
-        <thead><tr><th class="number">from entry</th><th>unit</th><th class="number">APID</th><th>packet</th><th class="number">octets</th><th>link</th><th>verdict</th></tr></thead>
+        <thead>
+          <tr>
+            <th class="number">from entry</th>
+            <th>unit</th>
+            <th class="number">APID</th>
+            <th>packet</th>
+            <th class="number">octets</th>
+            <th>link</th>
+            <th>verdict</th>
+          </tr>
+        </thead>
         <tbody>
           {lines.map((line) => {
             const { fact } = line;
             const chosen = fact.unit === current.value;
             return (
-              <tr key={String(fact.unit)} class={chosen ? 'shown' : ''} aria-current={chosen ? 'true' : undefined} onClick={() => void show(line, lines)}>
+              <tr
+                key={String(fact.unit)}
+                class={chosen ? 'shown' : ''}
+                aria-current={chosen ? 'true' : undefined}
+                onClick={() => void show(line, lines)}
+              >
                 <td class="number">{fromEntry(fact.sclk - run.entrySclk, { tenths: true })}</td>
-                <td><button type="button" class="link-button" tabIndex={-1}>{String(fact.unit)}</button></td>
+                <td>
+                  <button type="button" class="link-button" tabIndex={-1}>
+                    {String(fact.unit)}
+                  </button>
+                </td>
                 <td class="number">0x{fact.apid.toString(16).padStart(3, '0')}</td>
                 <td title={fact.name}>{fact.name}</td>
                 <td class="number">{fact.octets}</td>
-                <td title={fact.duplicate ? 'came before over another link' : undefined}>{linkTitle(fact.link)}{fact.duplicate ? ' (again)' : ''}</td>
+                <td title={fact.duplicate ? 'came before over another link' : undefined}>
+                  {linkTitle(fact.link)}
+                  {fact.duplicate ? ' (again)' : ''}
+                </td>
                 <td>{line.row ? <Mark verdict={line.row.verdict} /> : <span class="status-dim">open it</span>}</td>
               </tr>
             );
@@ -173,7 +244,10 @@ function Contents({ packet }: { packet: PacketRow }) {
     for (let octet = first; octet <= last; ++octet) octets.add(octet);
   }
   const place = fields.map((index) => packet.fields[index]).filter((field) => field !== undefined);
-  const light = (octet: number) => ({ class: octets.has(octet) ? 'lit' : undefined, onMouseEnter: () => (lit.value = { octet }) });
+  const light = (octet: number) => ({
+    class: octets.has(octet) ? 'lit' : undefined,
+    onMouseEnter: () => (lit.value = { octet }),
+  });
   const onFieldKey = (event: KeyboardEvent) => {
     const now = at && 'field' in at ? at.field : -1;
     const to = { ArrowDown: now + 1, ArrowUp: now - 1, Home: 0, End: packet.fields.length - 1 }[event.key];
@@ -181,7 +255,9 @@ function Contents({ packet }: { packet: PacketRow }) {
     else if (to === undefined) return;
     else {
       lit.value = { field: Math.min(packet.fields.length - 1, Math.max(0, to)) };
-      (event.currentTarget as HTMLElement).querySelectorAll('tr')[lit.value.field]?.scrollIntoView({ block: 'nearest' });
+      (event.currentTarget as HTMLElement)
+        .querySelectorAll('tr')
+        [lit.value.field]?.scrollIntoView({ block: 'nearest' });
     }
     event.preventDefault();
     event.stopPropagation();
@@ -192,23 +268,56 @@ function Contents({ packet }: { packet: PacketRow }) {
         {hexLines(packet.hex).map((line) => (
           <div key={line.at}>
             <span class="alias">{line.at}</span>
-            <span class="hex-part">{line.octets.map((octet, i) => <span key={i} data-octet={line.first + i} {...light(line.first + i)}>{octet}</span>)}</span>
-            <span class="text-part">{line.text.map((letter, i) => <span key={i} {...light(line.first + i)}>{letter}</span>)}</span>
+            <span class="hex-part">
+              {line.octets.map((octet, i) => (
+                <span key={i} data-octet={line.first + i} {...light(line.first + i)}>
+                  {octet}
+                </span>
+              ))}
+            </span>
+            <span class="text-part">
+              {line.text.map((letter, i) => (
+                <span key={i} {...light(line.first + i)}>
+                  {letter}
+                </span>
+              ))}
+            </span>
           </div>
         ))}
       </div>
-      <div class="table-scroll packet-fields" tabIndex={0} role="region" aria-label="fields; up and down light their octets" data-testid="packet-fields" onKeyDown={onFieldKey}>
+      <div
+        class="table-scroll packet-fields"
+        tabIndex={0}
+        role="region"
+        aria-label="fields; up and down light their octets"
+        data-testid="packet-fields"
+        onKeyDown={onFieldKey}
+      >
         <table>
           <tbody>
             {packet.fields.map((field, index) => (
-              <tr key={index} class={fields.includes(index) ? 'lit' : ''} data-field={field.name} title={placeWords(field)} onMouseEnter={() => (lit.value = { field: index })}>
-                <td>{field.name}</td><td class="number">{field.text}</td>
+              <tr
+                key={index}
+                class={fields.includes(index) ? 'lit' : ''}
+                data-field={field.name}
+                title={placeWords(field)}
+                onMouseEnter={() => (lit.value = { field: index })}
+              >
+                <td>{field.name}</td>
+                <td class="number">{field.text}</td>
               </tr>
             ))}
           </tbody>
         </table>
       </div>
-      <p class="place" aria-live="polite" data-testid="packet-place">{place.length === 0 ? 'point at a field or an octet, or go through the fields with ↑ ↓' : place.slice(0, 3).map((field) => `${field.name}: ${placeWords(field)}, ${field.bits} bits`).join(' · ')}</p>
+      <p class="place" aria-live="polite" data-testid="packet-place">
+        {place.length === 0
+          ? 'point at a field or an octet, or go through the fields with ↑ ↓'
+          : place
+              .slice(0, 3)
+              .map((field) => `${field.name}: ${placeWords(field)}, ${field.bits} bits`)
+              .join(' · ')}
+      </p>
     </div>
   );
 }
@@ -216,9 +325,16 @@ function Contents({ packet }: { packet: PacketRow }) {
 function Packet({ packet }: { packet: PacketRow }) {
   return (
     <div class="packet" data-testid="packet">
-      <p><b>unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}</b> over {linkTitle(packet.unit?.link ?? '')}, {packet.hex.length / 2} octets · <Mark verdict={packet.verdict} />
+      <p>
+        <b>
+          unit {String(packet.unit?.unit ?? '')} · {packet.unit?.name}
+        </b>{' '}
+        over {linkTitle(packet.unit?.link ?? '')}, {packet.hex.length / 2} octets · <Mark verdict={packet.verdict} />
         {packet.unit?.duplicate ? ', came before over another link' : ''}
-        <button type="button" class="quiet" aria-label="close the packet" onClick={close}>close <kbd>Esc</kbd></button></p>
+        <button type="button" class="quiet" aria-label="close the packet" onClick={close}>
+          close <kbd>Esc</kbd>
+        </button>
+      </p>
       <Contents packet={packet} />
     </div>
   );
@@ -233,9 +349,16 @@ function Pages({ after, listed }: { after: number[]; listed: number }) {
   };
   return (
     <div class="table-tools" data-testid="unit-pages">
-      <button type="button" disabled={after.length < 2} onClick={() => turn(after.slice(0, -1))}>‹ earlier</button>
-      <button type="button" disabled={next === 0} onClick={() => turn([...after, next])}>later ›</button>
-      <span role="status">{pageWords(after.length - 1, SHOWN, packets.length, next !== 0)}{listed < packets.length && `; ${listed} of them had been heard by then`}</span>
+      <button type="button" disabled={after.length < 2} onClick={() => turn(after.slice(0, -1))}>
+        ‹ earlier
+      </button>
+      <button type="button" disabled={next === 0} onClick={() => turn([...after, next])}>
+        later ›
+      </button>
+      <span role="status">
+        {pageWords(after.length - 1, SHOWN, packets.length, next !== 0)}
+        {listed < packets.length && `; ${listed} of them had been heard by then`}
+      </span>
     </div>
   );
 }
@@ -256,31 +379,56 @@ export function Packets() {
     const { from, to } = replay.value ? { from: past.to - 10, to: past.to } : past;
     const only = name === undefined ? '' : `&name=${encodeURIComponent(name)}`;
     let current = true;
-    void askPackets(`from=${run.entrySclk + from}&to=${run.entrySclk + to}&limit=${SHOWN}&after=${begin}${only}`).then((rows) => {
-      if (current) pastRows.value = rows;
-    });
+    void askPackets(`from=${run.entrySclk + from}&to=${run.entrySclk + to}&limit=${SHOWN}&after=${begin}${only}`).then(
+      (rows) => {
+        if (current) pastRows.value = rows;
+      },
+    );
     return () => {
       current = false;
     };
   }, [past, name, begin]);
   const run = runNow();
   if (!run) return null;
-  if (moving) return <p class="none" data-testid="packets-not-replayed">▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.</p>;
+  if (moving)
+    return (
+      <p class="none" data-testid="packets-not-replayed">
+        ▲ Units are not replayed. Hold the replay (<kbd>p</kbd>) to see those of the ten seconds before it.
+      </p>
+    );
   const packet = opened.value;
   const lines = linesOf(run, past !== undefined);
   const top = held.value?.run === run.id && !past ? lines[0]?.fact.unit : undefined;
-  const since = top === undefined ? 0 : run.units.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value)).length;
+  const since =
+    top === undefined
+      ? 0
+      : run.units.filter(({ fact }) => fact.unit > top && (wanted.value === undefined || fact.name === wanted.value))
+          .length;
   return (
     <div class="table-box">
       {past && <p class="not-past">▲ Counts are of the whole run; the units are those of the past that is shown.</p>}
       <Links whole={past !== undefined} />
       {(wanted.value !== undefined || since > 0) && (
         <div class="table-tools">
-          {wanted.value !== undefined && <span>only <b>{wanted.value}</b>, of {past ? 'all of the range' : 'the newest held'} <button type="button" onClick={() => {
-            wanted.value = undefined;
-            close();
-          }}>show all</button></span>}
-          {since > 0 && <span class="status-caution" data-testid="list-held">▲ the list stands still while a packet is open: {since} came since</span>}
+          {wanted.value !== undefined && (
+            <span>
+              only <b>{wanted.value}</b>, of {past ? 'all of the range' : 'the newest held'}{' '}
+              <button
+                type="button"
+                onClick={() => {
+                  wanted.value = undefined;
+                  close();
+                }}
+              >
+                show all
+              </button>
+            </span>
+          )}
+          {since > 0 && (
+            <span class="status-caution" data-testid="list-held">
+              ▲ the list stands still while a packet is open: {since} came since
+            </span>
+          )}
         </div>
       )}
       {past && <Pages after={after} listed={held.value ? pastRows.value.packets.length : lines.length} />}

@@ -26,7 +26,11 @@ interface Group {
 
 /** The strip of phases. What the vehicle said last decides, in packets or, where it is further, by tone; before it said anything, all are ahead. */
 export function phaseSteps(
-  store: RunStore | undefined, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number, predictions: readonly Prediction[] = [],
+  store: RunStore | undefined,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+  predictions: readonly Prediction[] = [],
 ): PhaseStep[] {
   const channel = dictionary.pick(LAYOUT.phase);
   const labels = new Map(channel?.labels.map((label) => [Number(label.value), label.label]));
@@ -34,13 +38,15 @@ export function phaseSteps(
   const groups: readonly Group[] = LAYOUT.phases.some((phase) => phase.of.some((name) => known.has(name)))
     ? LAYOUT.phases
     : [...known].map((label) => ({ title: inWords(label), of: [label] }));
-  const groupOf = (label: string | undefined, e_s: number) => groups.findIndex((group) =>
-    label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)));
+  const groupOf = (label: string | undefined, e_s: number) =>
+    groups.findIndex(
+      (group) => label !== undefined && (group.of.includes(label) || (group.untilEntry === label && e_s < 0)),
+    );
   const entryKnown = store?.entryKnown !== false;
   // As timeline and "waiting for" have it; without a plan as it was published.
   const published = entryKnown && dictionary.reply.mission === LAYOUT.predictedFor;
   const predicted = (group: Group | undefined) =>
-    (published ? predictions.find((each) => each.name === group?.from)?.e_s ?? group?.predicted_e_s : undefined);
+    published ? (predictions.find((each) => each.name === group?.from)?.e_s ?? group?.predicted_e_s) : undefined;
   const seen_e_s = store ? Math.min(store.seenSclk, cutoff) - store.entrySclk : NaN;
   const now = channel && store?.latest(channel.id, cutoff);
   const label = now && labels.get(now.value);
@@ -67,30 +73,60 @@ export function phaseSteps(
     return {
       title: group.title,
       state: at < 0 || index > at ? 'ahead' : index === at ? 'now' : 'done',
-      detail: index === at && isByTone ? '■ by tone' : index === at && label !== undefined && inWords(label) !== group.title.toLowerCase() ? inWords(label) : '',
+      detail:
+        index === at && isByTone
+          ? '■ by tone'
+          : index === at && label !== undefined && inWords(label) !== group.title.toLowerCase()
+            ? inWords(label)
+            : '',
       since_e_s,
       predicted_e_s: predicted(group),
-      part: index !== at || since_e_s === undefined || next_e_s === undefined ? undefined
-        : Math.max(0, Math.min(1, (seen_e_s - since_e_s) / (next_e_s - since_e_s))),
+      part:
+        index !== at || since_e_s === undefined || next_e_s === undefined
+          ? undefined
+          : Math.max(0, Math.min(1, (seen_e_s - since_e_s) / (next_e_s - since_e_s))),
     };
   });
 }
 
 /** The last phase whose timepoint, or one after it, is known by a tone; and since when each is known to have begun. */
-function byTone(store: RunStore, groups: readonly Group[], plan: readonly TimepointRow[], cutoff: number): { group: number; since: (number | undefined)[] } | undefined {
+function byTone(
+  store: RunStore,
+  groups: readonly Group[],
+  plan: readonly TimepointRow[],
+  cutoff: number,
+): { group: number; since: (number | undefined)[] } | undefined {
   const heard = heardOf(store, plan, cutoff);
   const last = plan.findLastIndex((row) => heard.get(row.id)?.by === 'tone');
   if (last < 0) return undefined;
   const begins = groups.map((group) => plan.findIndex((row) => row.name === group.from));
-  const since = begins.map((at) => (at < 0 || at > last ? undefined : heard.get(plan.slice(at).find((row) => heard.has(row.id))?.id ?? -1)?.triggered_sclk));
-  return { group: Math.max(0, begins.findLastIndex((at) => at >= 0 && at <= last)), since };
+  const since = begins.map((at) =>
+    at < 0 || at > last
+      ? undefined
+      : heard.get(plan.slice(at).find((row) => heard.has(row.id))?.id ?? -1)?.triggered_sclk,
+  );
+  return {
+    group: Math.max(
+      0,
+      begins.findLastIndex((at) => at >= 0 && at <= last),
+    ),
+    since,
+  };
 }
 
 /** "parachute in ≈ 1 m 20 s", as far as it is predicted; what is overdue is predicted for now at the earliest. */
-export function nextWords(steps: readonly PhaseStep[], seen_e_s: number, duration: (seconds: number) => string): string {
+export function nextWords(
+  steps: readonly PhaseStep[],
+  seen_e_s: number,
+  duration: (seconds: number) => string,
+): string {
   const next = steps[steps.findIndex((step) => step.state === 'now') + 1];
   if (next?.state !== 'ahead' || next.predicted_e_s === undefined) return '';
   const left = next.predicted_e_s - seen_e_s;
   const title = next.title.toLowerCase();
-  return left > 0 ? `${title} in ≈ ${duration(left)}` : left > -1 ? `${title} is due` : `${title} ≈ ${duration(-left)} later than predicted`;
+  return left > 0
+    ? `${title} in ≈ ${duration(left)}`
+    : left > -1
+      ? `${title} is due`
+      : `${title} ≈ ${duration(-left)} later than predicted`;
 }

@@ -13,19 +13,38 @@ describe('the strip of phases', () => {
   });
   it('goes on by tone where UHF is silent, says so, and is not held back by an older word of UHF', () => {
     const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
-    const store = aStore([samples(700, { 1: 0, 2: 1, 5: 1 }), tone({ sclk: 1255, tone: 41, name: 'parachute_deploy' })], aRun({ clocks: undefined as never, startSclk: 1300 }));
+    const store = aStore(
+      [samples(700, { 1: 0, 2: 1, 5: 1 }), tone({ sclk: 1255, tone: 41, name: 'parachute_deploy' })],
+      aRun({ clocks: undefined as never, startSclk: 1300 }),
+    );
     const steps = phaseSteps(store, aDictionary, plan, Infinity);
-    expect(steps.find((step) => step.state === 'now')).toMatchObject({ title: 'Parachute', detail: '■ by tone', since_e_s: 255 });
+    expect(steps.find((step) => step.state === 'now')).toMatchObject({
+      title: 'Parachute',
+      detail: '■ by tone',
+      since_e_s: 255,
+    });
   });
   it('is predicted as timeline and “waiting for” are, so that what a command moved is moved here, too; without a plan as it was published', () => {
     const store = aStore([samples(1000, { 1: 4 })], aRun({ clocks: undefined as never, startSclk: 1100 }));
     const msl = new Dictionary({ ...aDictionary.reply, mission: 'MSL' });
-    const steps = (...predicted: [name: string, e_s: number][]) => phaseSteps(store, msl, aPlan, Infinity, predicted.map(([name, e_s], id) => ({ id, name, e_s, fired: false })));
+    const steps = (...predicted: [name: string, e_s: number][]) =>
+      phaseSteps(
+        store,
+        msl,
+        aPlan,
+        Infinity,
+        predicted.map(([name, e_s], id) => ({ id, name, e_s, fired: false })),
+      );
     expect(steps().map((step) => step.predicted_e_s)).toEqual([undefined, 0, 255.9, 378.2, 431.5]);
     const moved = steps(['parachute_deploy', 400], ['powered_approach', 522]);
     expect(moved.map((step) => step.predicted_e_s)).toEqual([undefined, 0, 400, 522, 431.5]);
     expect(moved[1]?.part, 'of what is going on').toBeCloseTo(0.25);
-    expect([100, 400, 400.1, 410].map((seen_e_s) => nextWords(moved, seen_e_s, String))).toEqual(['parachute in ≈ 300', 'parachute is due', 'parachute is due', 'parachute ≈ 10 later than predicted']);
+    expect([100, 400, 400.1, 410].map((seen_e_s) => nextWords(moved, seen_e_s, String))).toEqual([
+      'parachute in ≈ 300',
+      'parachute is due',
+      'parachute is due',
+      'parachute ≈ 10 later than predicted',
+    ]);
   });
   it('claims no phase before the vehicle has spoken', () => {
     expect(phaseSteps(aStore(), aDictionary, aPlan, Infinity).every((step) => step.state === 'ahead')).toBe(true);

@@ -15,13 +15,26 @@ export function Phases() {
   return (
     <ol class="phases" data-testid="phases" aria-label="Phases of the landing">
       {steps.map((step) => (
-        <li key={step.title} class={`phase phase-${step.state}`} aria-current={step.state === 'now' ? 'step' : undefined}
-          data-testid={step.state === 'now' ? 'phase-now' : undefined}>
-          <b><span aria-hidden="true">{SHAPES[step.state]}</span> {step.title}</b>
+        <li
+          key={step.title}
+          class={`phase phase-${step.state}`}
+          aria-current={step.state === 'now' ? 'step' : undefined}
+          data-testid={step.state === 'now' ? 'phase-now' : undefined}
+        >
+          <b>
+            <span aria-hidden="true">{SHAPES[step.state]}</span> {step.title}
+          </b>
           <small>
-            {step.state === 'now' ? <>{step.detail || (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)} <i>{nextWords(steps, seen_e_s, duration)}</i></>
-              : step.state === 'done' ? step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`
-                : step.predicted_e_s !== undefined && `≈ ${fromEntry(step.predicted_e_s)}`}
+            {step.state === 'now' ? (
+              <>
+                {step.detail || (step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`)}{' '}
+                <i>{nextWords(steps, seen_e_s, duration)}</i>
+              </>
+            ) : step.state === 'done' ? (
+              step.since_e_s !== undefined && `from ${fromEntry(step.since_e_s)}`
+            ) : (
+              step.predicted_e_s !== undefined && `≈ ${fromEntry(step.predicted_e_s)}`
+            )}
           </small>
           {step.part !== undefined && <span class="phase-part" style={{ width: `${(step.part * 100).toFixed(1)}%` }} />}
         </li>

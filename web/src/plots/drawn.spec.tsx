@@ -9,29 +9,41 @@ import { aDictionary, aStore, samples, unit } from '../testing/fixtures';
 import { Plots } from './view';
 
 const { looks, sizes } = vi.hoisted(() => ({ looks: [] as (() => (() => void) | undefined)[], sizes: [] as number[] }));
-vi.mock('../draw/loop', () => ({ onDraw: (look: (typeof looks)[number]) => {
-  looks.push(look);
-  return () => undefined;
-} }));
-vi.mock('uplot', () => ({ default: class {
-  scales = {};
-  width = 300;
-  height = 300;
-  batch(change: () => void) {
-    change();
-  }
-  setData([x]: number[][]) {
-    sizes.push(x?.length ?? 0);
-  }
-  setScale() {}
-  destroy() {}
-} }));
+vi.mock('../draw/loop', () => ({
+  onDraw: (look: (typeof looks)[number]) => {
+    looks.push(look);
+    return () => undefined;
+  },
+}));
+vi.mock('uplot', () => ({
+  default: class {
+    scales = {};
+    width = 300;
+    height = 300;
+    batch(change: () => void) {
+      change();
+    }
+    setData([x]: number[][]) {
+      sizes.push(x?.length ?? 0);
+    }
+    setScale() {}
+    destroy() {}
+  },
+}));
 
 it('a plot of the past is drawn again when only what it knows of it changes, with the recording or as it was heard', () => {
   const heard = (sclk: number, ert: string) => [unit({ name: 'Navigation', sclk, ert }), samples(sclk, { 3: sclk })];
   // SCLK 900 is heard at 05:00:00; 912 came from an orbiter five minutes later.
-  useForTest(aStore([...heard(911, '2012-219T05:00:11.0'), ...heard(912, '2012-219T05:05:12.0'), ...heard(913, '2012-219T05:00:13.0')]), aDictionary);
-  for (const side of ['clientWidth', 'clientHeight']) vi.spyOn(HTMLElement.prototype, side as 'clientWidth', 'get').mockReturnValue(300);
+  useForTest(
+    aStore([
+      ...heard(911, '2012-219T05:00:11.0'),
+      ...heard(912, '2012-219T05:05:12.0'),
+      ...heard(913, '2012-219T05:00:13.0'),
+    ]),
+    aDictionary,
+  );
+  for (const side of ['clientWidth', 'clientHeight'])
+    vi.spyOn(HTMLElement.prototype, side as 'clientWidth', 'get').mockReturnValue(300);
   const root = document.createElement('div');
   act(() => render(<Plots />, root));
   const drawn = (recorded: boolean) => {
@@ -53,7 +65,11 @@ it('the figure beside a plot goes stale as the channel does, and not under the c
       cursor.value = at;
       render(<Plots />, root);
     });
-    return ['.stale [data-testid=stale-altitude]', '.stale [data-testid=reading-altitude]', '[data-testid=reading-altitude]'].map((each) => root.querySelector(each)?.textContent?.trim());
+    return [
+      '.stale [data-testid=stale-altitude]',
+      '.stale [data-testid=reading-altitude]',
+      '[data-testid=reading-altitude]',
+    ].map((each) => root.querySelector(each)?.textContent?.trim());
   };
   useForTest(aStore([samples(899, { 3: 65100 })]), aDictionary);
   expect(shown()).toEqual([undefined, undefined, '65.10']);

@@ -17,13 +17,22 @@ export const GAP_S = 6; // ours: longer without a sample is drawn as a gap; what
 
 /** `pixels` wide: of the samples that share one, the least and the largest are drawn, so that no peak is lost. */
 export function align(
-  recorded: Series | undefined, live: Series | undefined, silences: readonly Silence[], entry_sclk: number,
-  from_e_s: number, to_e_s: number, cutoff: number, per: number, pixels: number,
+  recorded: Series | undefined,
+  live: Series | undefined,
+  silences: readonly Silence[],
+  entry_sclk: number,
+  from_e_s: number,
+  to_e_s: number,
+  cutoff: number,
+  per: number,
+  pixels: number,
 ): Aligned {
   const from = from_e_s + entry_sclk;
   const to = Math.min(to_e_s + entry_sclk, cutoff);
   const step_s = bucketOf((to_e_s - from_e_s) / pixels);
-  const edges = silences.flatMap((silence) => [silence.from + entry_sclk, silence.to + entry_sclk]).sort((one, other) => one - other);
+  const edges = silences
+    .flatMap((silence) => [silence.from + entry_sclk, silence.to + entry_sclk])
+    .sort((one, other) => one - other);
   const aligned: Aligned = [[], [], []];
   const [xs, silent, lit] = aligned;
   const a = thin(recorded, from, to, cutoff, step_s, edges, OF_RECORDED);
@@ -88,13 +97,21 @@ class Thinned {
 const [OF_RECORDED, OF_LIVE] = [new Thinned(), new Thinned()];
 
 /** Of each bucket the least, the largest and the first that is undefined, in order of time; and the newest sample. A bucket ends at an edge, too. */
-function thin(series: Series | undefined, from: number, to: number, cutoff: number, step_s: number, edges: readonly number[], into: Thinned): Thinned {
+function thin(
+  series: Series | undefined,
+  from: number,
+  to: number,
+  cutoff: number,
+  step_s: number,
+  edges: readonly number[],
+  into: Thinned,
+): Thinned {
   into.length = 0;
   if (!series) return into;
   const { sclk, value } = series;
   const end = Math.min(series.length, series.firstAfter(to) + (cutoff < Infinity ? 0 : 1));
   let edge = 0;
-  for (let i = Math.max(0, series.firstAfter(from) - 1); i < end;) {
+  for (let i = Math.max(0, series.firstAfter(from) - 1); i < end; ) {
     const since = sclk[i] as number;
     while (edge < edges.length && (edges[edge] as number) <= since) ++edge;
     const ends = Math.min((Math.floor(since / step_s) + 1) * step_s, edges[edge] ?? Infinity);
@@ -116,7 +133,13 @@ function thin(series: Series | undefined, from: number, to: number, cutoff: numb
     const until = sclk[i - 1] as number;
     const [one, other] = least < largest ? [least, largest] : [largest, least];
     let last = -1;
-    for (const index of unknown < 0 ? [one, other] : unknown < one ? [unknown, one, other] : unknown < other ? [one, unknown, other] : [one, other, unknown]) {
+    for (const index of unknown < 0
+      ? [one, other]
+      : unknown < one
+        ? [unknown, one, other]
+        : unknown < other
+          ? [one, unknown, other]
+          : [one, other, unknown]) {
       if (index > last) into.add(series, (last = index), since, until);
     }
     if (i === end && last < i - 1) into.add(series, i - 1, since, until);

@@ -7,7 +7,10 @@ import { align, readingAt } from './model';
 
 function series(...points: [number, number][]): Series {
   const made = new Series();
-  made.append(Float64Array.from(points, ([x]) => x), Float64Array.from(points, ([, y]) => y));
+  made.append(
+    Float64Array.from(points, ([x]) => x),
+    Float64Array.from(points, ([, y]) => y),
+  );
   return made;
 }
 
@@ -18,7 +21,17 @@ describe('a plot', () => {
     expect(lit).toEqual([10, 20, null, 30]);
   });
   it('draws what only the recording knows in another colour, in one trace', () => {
-    const [x, silent, lit] = align(series([2, 2], [3, 3], [4, 4]), series([1, 1], [5, 5]), [{ from: 1.5, to: 4.5 }], 0, 0, 100, Infinity, 1, 1000);
+    const [x, silent, lit] = align(
+      series([2, 2], [3, 3], [4, 4]),
+      series([1, 1], [5, 5]),
+      [{ from: 1.5, to: 4.5 }],
+      0,
+      0,
+      100,
+      Infinity,
+      1,
+      1000,
+    );
     expect(x).toEqual([1, 2, 3, 4, 5]);
     expect(silent).toEqual([1, 2, 3, 4, 5]);
     expect(lit).toEqual([1, null, null, null, 5]);
@@ -37,7 +50,11 @@ describe('a plot', () => {
     expect(lit.at(-1)).toBe(999);
   });
   it('loses no peak: one sample of a thousand is drawn, high or low, wherever it stands, and stays when time goes on', () => {
-    for (const [at, peak] of [[503.7, 12], [17.1, -40], [950, 9.5]] as const) {
+    for (const [at, peak] of [
+      [503.7, 12],
+      [17.1, -40],
+      [950, 9.5],
+    ] as const) {
       const all = Array.from({ length: 8000 }, (_, i): [number, number] => [i / 8, Math.sin(i / 50)]);
       const made = series(...[...all, [at + 0.01, peak] as [number, number]].sort(([one], [other]) => one - other));
       for (let end = 1000; end < 1010; end += 0.3) {
@@ -54,30 +71,59 @@ describe('a plot', () => {
     expect(other).toEqual(one);
   });
   it('keeps a peak beside what is undefined, and a gap between samples that are thinned', () => {
-    const made = series(...Array.from({ length: 1000 }, (_, i): [number, number] => [i / 10 + (i >= 500 ? 20 : 0), i === 250 ? NaN : i === 251 ? 99 : 1]));
+    const made = series(
+      ...Array.from({ length: 1000 }, (_, i): [number, number] => [
+        i / 10 + (i >= 500 ? 20 : 0),
+        i === 250 ? NaN : i === 251 ? 99 : 1,
+      ]),
+    );
     const [x, , lit] = align(undefined, made, [], 0, 0, 120, Infinity, 1, 40);
     expect(lit).toContain(99);
     expect(lit.filter((value) => value === null)).toHaveLength(2);
     expect(x[lit.lastIndexOf(null)]).toBeCloseTo(70 - 1e-3);
   });
   it('has ticks that can be read at the size of the console: at least three, none over another', () => {
-    for (const [from, to] of [[-60, 470], [-60, 260], [200, 260], [30, 35], [-1200, 470], [-7200, 0]] as const) {
+    for (const [from, to] of [
+      [-60, 470],
+      [-60, 260],
+      [200, 260],
+      [30, 35],
+      [-1200, 470],
+      [-7200, 0],
+    ] as const) {
       const step = shortStep(from, to, 190);
       const labels = ticks(from, to, step).map((e_s) => [e_s, shortTime(e_s, step)] as const);
       expect(labels.length, `${from} … ${to}: ${labels}`).toBeGreaterThanOrEqual(2);
-      expect((step / (to - from)) * 190, `${labels}`).toBeGreaterThan(Math.max(...labels.map(([, words]) => words.length)) * 6.7);
+      expect((step / (to - from)) * 190, `${labels}`).toBeGreaterThan(
+        Math.max(...labels.map(([, words]) => words.length)) * 6.7,
+      );
     }
-    expect(ticks(-60, 470, shortStep(-60, 470, 190)).map((e_s) => shortTime(e_s, 180))).toEqual(['E', '+3:00', '+6:00']);
+    expect(ticks(-60, 470, shortStep(-60, 470, 190)).map((e_s) => shortTime(e_s, 180))).toEqual([
+      'E',
+      '+3:00',
+      '+6:00',
+    ]);
   });
   it('says under the cursor what there was, whichever way it is known, and in a gap nothing', () => {
     const altitude = aDictionary.pick(['altitude_m'])?.id as number;
-    const store = aStore([samples(800, { [altitude]: 5 }), samples(801, { [altitude]: 6 }), samples(805, { [altitude]: 7 }, 2)]);
+    const store = aStore([
+      samples(800, { [altitude]: 5 }),
+      samples(801, { [altitude]: 6 }),
+      samples(805, { [altitude]: 7 }, 2),
+    ]);
     expect(readingAt(store, altitude, -200, Infinity)).toMatchObject({ value: 5, recorded: false });
     expect(readingAt(store, altitude, -194.5, Infinity)).toMatchObject({ value: 7, recorded: true });
     expect(readingAt(store, altitude, -150, Infinity)).toBeUndefined();
     expect(readingAt(store, altitude, -194.5, 803)).toMatchObject({ value: 6 });
   });
   it('numbers its axis in no one’s language', () => {
-    expect([6000, -200000, 0.1 + 0.2, -0.25, 0, 1e-7].map(axisNumber)).toEqual(['6\u2009000', '−200\u2009000', '0.3', '−0.25', '0', '1e-7']);
+    expect([6000, -200000, 0.1 + 0.2, -0.25, 0, 1e-7].map(axisNumber)).toEqual([
+      '6\u2009000',
+      '−200\u2009000',
+      '0.3',
+      '−0.25',
+      '0',
+      '1e-7',
+    ]);
   });
 });

@@ -36,14 +36,25 @@ interface Properties {
 
 function options(width: number, height: number, channel: DictionaryChannel, per: number): uPlot.Options {
   const colours = palette();
-  const axis = { stroke: colours.dim, font: `11px ${colours.mono}`, grid: { stroke: colours.line, width: 1 }, ticks: { show: false } };
+  const axis = {
+    stroke: colours.dim,
+    font: `11px ${colours.mono}`,
+    grid: { stroke: colours.line, width: 1 },
+    ticks: { show: false },
+  };
   return {
-    width, height, legend: { show: false }, pxAlign: 1, padding: [6, 20, 0, 0],
+    width,
+    height,
+    legend: { show: false },
+    pxAlign: 1,
+    padding: [6, 20, 0, 0],
     cursor: { show: false }, // ours is one for plots, tones and timeline
     scales: { x: { time: false } },
     axes: [
       {
-        ...axis, size: 22, gap: 3,
+        ...axis,
+        size: 22,
+        gap: 3,
         splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, plot.over.clientWidth)),
         values: (plot, splits) => {
           const { min = 0, max = 1 } = plot.scales['x'] ?? {};
@@ -102,13 +113,22 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   const { ctx } = plot;
   const named: { words: string; x: number; y: number; room: number; colour: string }[] = [];
   ctx.save();
-  for (const stretch of limitsOver(run, words, channel, run.entrySclk + from, Math.min(run.seenSclk, cutoff.value, run.entrySclk + to))) {
+  for (const stretch of limitsOver(
+    run,
+    words,
+    channel,
+    run.entrySclk + from,
+    Math.min(run.seenSclk, cutoff.value, run.entrySclk + to),
+  )) {
     const x1 = Math.max(left, plot.valToPos(stretch.from_sclk - run.entrySclk, 'x', true));
     const x2 = Math.min(right, plot.valToPos(stretch.to_sclk - run.entrySclk, 'x', true));
     if (x2 - x1 < 1) continue;
     for (const limit of stretch.limits) {
       const colour = isWorst(limit.severity) ? colours.alarm : colours.caution;
-      for (const [bound, side] of [[limit.below, bottom], [limit.above, top]] as const) {
+      for (const [bound, side] of [
+        [limit.below, bottom],
+        [limit.above, top],
+      ] as const) {
         if (bound === undefined) continue;
         const y = plot.valToPos(bound / per, 'y', true);
         const above = side === top;
@@ -120,7 +140,18 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
         ctx.globalAlpha = 0.8;
         ctx.fillRect(x1, Math.round(edge), x2 - x1, ratio);
         const name = `${limit.severity} ${above ? '>' : '<'} ${+(bound / per).toPrecision(4)}${stretch.context && limit.context ? `, ${inWords(stretch.context)}` : ''}`;
-        named.unshift({ words: name, x: x1, room: x2 - x1, y: above && edge - top > 13 * ratio ? edge - 3 * ratio : bottom - edge > 13 * ratio ? edge + 11 * ratio : edge - 3 * ratio, colour });
+        named.unshift({
+          words: name,
+          x: x1,
+          room: x2 - x1,
+          y:
+            above && edge - top > 13 * ratio
+              ? edge - 3 * ratio
+              : bottom - edge > 13 * ratio
+                ? edge + 11 * ratio
+                : edge - 3 * ratio,
+          colour,
+        });
       }
     }
   }
@@ -129,12 +160,15 @@ function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void 
   ctx.textAlign = 'left';
   ctx.textBaseline = 'alphabetic';
   const taken: [number, number, number][] = []; // left, right, line
-  for (const { words: whole, x, y, room, colour } of named.sort((one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm))) {
-    const short = ctx.measureText(whole).width < room - 6 * ratio ? whole : whole.split(',')[0] as string;
+  for (const { words: whole, x, y, room, colour } of named.sort(
+    (one, other) => Number(other.colour === colours.alarm) - Number(one.colour === colours.alarm),
+  )) {
+    const short = ctx.measureText(whole).width < room - 6 * ratio ? whole : (whole.split(',')[0] as string);
     if (y - 9 * ratio < top || y > bottom) continue;
     const wide = ctx.measureText(short).width;
     const at = Math.max(left + 2, Math.min(right - wide - 2, x + 3));
-    if (taken.some(([from_px, to_px, line]) => at < to_px && at + wide > from_px && Math.abs(y - line) < 10 * ratio)) continue;
+    if (taken.some(([from_px, to_px, line]) => at < to_px && at + wide > from_px && Math.abs(y - line) < 10 * ratio))
+      continue;
     taken.push([at, at + wide, y]);
     ctx.fillStyle = colour;
     ctx.strokeStyle = colours.panel; // the lines of other limits do not strike it out; the trace, drawn later, does
@@ -178,7 +212,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
       const silences = run?.links.get('uhf_live') ?? []; // one that goes on grows with the clock, though no sample comes
       const silent = silences.at(-1)?.fact.up === false ? run?.seenSclk.toFixed(0) : '';
       const key = `${run?.id} ${silences.length} ${silent} ${recorded?.version} ${live?.version} ${span.from.toFixed(1)} ${span.to.toFixed(1)} ${cutoff.value} ${width} ${height} ${newShape}`;
-      if (key === shown && traces[0] === recorded && traces[1] === live) return cursor.peek() === placed ? undefined : placeCursor;
+      if (key === shown && traces[0] === recorded && traces[1] === live)
+        return cursor.peek() === placed ? undefined : placeCursor;
       shown = key;
       traces = [recorded, live];
       return () => {
@@ -190,7 +225,17 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
           plot.setSize({ width, height });
         }
         const data = run
-          ? align(recorded, live, outages(run, 'uhf_live', span.to, cutoff.value), run.entrySclk, span.from, span.to, cutoff.value, per, width)
+          ? align(
+              recorded,
+              live,
+              outages(run, 'uhf_live', span.to, cutoff.value),
+              run.entrySclk,
+              span.from,
+              span.to,
+              cutoff.value,
+              per,
+              width,
+            )
           : ([[], [], []] as Aligned);
         element.dataset['holes'] = String(holesOf(data));
         element.dataset['newest'] = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
@@ -215,27 +260,70 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
   const now = run?.latest(channel.id, cutoff.value)?.value;
   const shown = at === undefined || !run ? undefined : readingAt(run, channel.id, at, cutoff.value);
   const value = at === undefined ? now : shown?.value;
-  const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter((each) => each !== false && each !== undefined);
-  const whose = run && whoseAt(run, channel.name, at === undefined ? run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity : run.entrySclk + at);
+  const sources = [run?.live.has(channel.id) && SOURCES.uhf, run?.recorded.has(channel.id) && SOURCES.recording].filter(
+    (each) => each !== false && each !== undefined,
+  );
+  const whose =
+    run &&
+    whoseAt(
+      run,
+      channel.name,
+      at === undefined ? (run.latest(channel.id, cutoff.value)?.sclk ?? -Infinity) : run.entrySclk + at,
+    );
   const stale = at === undefined ? staleWords(run, channel, cutoff.value, isLost.value) : undefined;
   const name = title.toLowerCase();
   return (
-    <Panel name={`plot-${name}`} title={title} extra={
-      <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
-        {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
-        {whose && <span class="whose" data-testid={`whose-${name}`} title={whose}><i>{whose.replace(/\S+$/, '')}</i>{/\S+$/.exec(whose)} </span>}
-        {at !== undefined ? <span class="cursor-time" data-testid={`cursor-${name}`}>{fromEntry(at, { tenths: true })} {shown && (shown.recorded ? SOURCES.recording : SOURCES.uhf).shape}</span>
-          : !whose && !stale && <span class="legend">{sources.map((each) => <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>{each.shape} <i>{each.word.split(/[ ,]/)[1]}</i> </span>)}</span>}
-        {' '}<output data-testid={`reading-${name}`}>{value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}</output> {unit}
-      </span>
-    }>
+    <Panel
+      name={`plot-${name}`}
+      title={title}
+      extra={
+        <span class={`reading ${at !== undefined ? 'at-cursor' : stale ? 'stale' : ''}`}>
+          {stale && <span data-testid={`stale-${name}`}>{stale} </span>}
+          {whose && (
+            <span class="whose" data-testid={`whose-${name}`} title={whose}>
+              <i>{whose.replace(/\S+$/, '')}</i>
+              {/\S+$/.exec(whose)}{' '}
+            </span>
+          )}
+          {at !== undefined ? (
+            <span class="cursor-time" data-testid={`cursor-${name}`}>
+              {fromEntry(at, { tenths: true })} {shown && (shown.recorded ? SOURCES.recording : SOURCES.uhf).shape}
+            </span>
+          ) : (
+            !whose &&
+            !stale && (
+              <span class="legend">
+                {sources.map((each) => (
+                  <span key={each.word} style={{ color: `var(--${each.token})` }} title={each.word}>
+                    {each.shape} <i>{each.word.split(/[ ,]/)[1]}</i>{' '}
+                  </span>
+                ))}
+              </span>
+            )
+          )}{' '}
+          <output data-testid={`reading-${name}`}>
+            {value === undefined || Number.isNaN(value) ? '—' : reading(value / per, digits)}
+          </output>{' '}
+          {unit}
+        </span>
+      }
+    >
       {now === undefined && <span class="plot-empty">no {channel.name} has come yet</span>}
-      <div class={`plot ${now === undefined ? 'is-empty' : ''}`} ref={box} role="img" aria-label={`${title} in ${unit} over time from entry`}
+      <div
+        class={`plot ${now === undefined ? 'is-empty' : ''}`}
+        ref={box}
+        role="img"
+        aria-label={`${title} in ${unit} over time from entry`}
         onMouseMove={(event) => {
           const plot = drawn.current;
-          if (plot) cursor.value = plot.posToVal((event.clientX - plot.over.getBoundingClientRect().left) / grownBy(plot.over), 'x');
+          if (plot)
+            cursor.value = plot.posToVal(
+              (event.clientX - plot.over.getBoundingClientRect().left) / grownBy(plot.over),
+              'x',
+            );
         }}
-        onMouseLeave={() => (cursor.value = undefined)}>
+        onMouseLeave={() => (cursor.value = undefined)}
+      >
         <i class="plot-cursor" ref={mark} hidden />
       </div>
     </Panel>
@@ -279,7 +367,13 @@ export function Plots() {
       <div class="plots plots-named">
         {NAMED.slice(0, MOST_NAMED).map((name) => {
           const channel = words.pick([name]);
-          return channel ? <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} digits={3} /> : <p class="none" key={name}>no channel {name} in the dictionary</p>;
+          return channel ? (
+            <Plot key={name} channel={channel} title={name} unit={channel.unit} per={1} digits={3} />
+          ) : (
+            <p class="none" key={name}>
+              no channel {name} in the dictionary
+            </p>
+          );
         })}
       </div>
     );
@@ -289,13 +383,20 @@ export function Plots() {
     <div class="plots">
       {LAYOUT.plots.map((pick) => {
         const known = words.pick(pick.channel);
-        const channel = known ?? words.channels.find((candidate) => candidate.labels.length === 0 && !taken.has(candidate.id));
+        const channel =
+          known ?? words.channels.find((candidate) => candidate.labels.length === 0 && !taken.has(candidate.id));
         if (!channel) return null;
         taken.add(channel.id);
         const scaled = known && (pick.unit === undefined || pick.channel.length > 0);
         return (
-          <Plot key={channel.id} channel={channel} title={known ? pick.title : channel.name}
-            unit={(scaled && pick.unit) || channel.unit} per={scaled ? pick.per : 1} digits={pick.digits} />
+          <Plot
+            key={channel.id}
+            channel={channel}
+            title={known ? pick.title : channel.name}
+            unit={(scaled && pick.unit) || channel.unit}
+            per={scaled ? pick.per : 1}
+            digits={pick.digits}
+          />
         );
       })}
     </div>

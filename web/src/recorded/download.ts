@@ -4,7 +4,11 @@ import { Refused, turnedAway, wordsOf } from '../run/api';
 const LOOSE_MAX = 16e6; // ours
 
 /** All of it. `told` gets octets that have come, and of how many where the server says. Rejects with the server's words, or as aborted. */
-export async function download(path: string, stop: AbortSignal, told: (octets: number, of: number | undefined) => void): Promise<Blob> {
+export async function download(
+  path: string,
+  stop: AbortSignal,
+  told: (octets: number, of: number | undefined) => void,
+): Promise<Blob> {
   const response = await fetch(path, { signal: stop, credentials: 'same-origin', cache: 'no-store' });
   if (!response.ok || !response.body) {
     if (response.status === 401) turnedAway.value += 1;

@@ -27,7 +27,15 @@ export function rangeRow({ name, unit, samples, thinned, columns }: SeriesAnswer
   const count = (recorded: boolean) => columns.find((column) => column.recorded === recorded)?.sclk.length ?? 0;
   const [live, recorded] = [count(false), count(true)];
   return {
-    name, unit, samples, thinned, least, largest, live, recorded, given: live + recorded,
+    name,
+    unit,
+    samples,
+    thinned,
+    least,
+    largest,
+    live,
+    recorded,
+    given: live + recorded,
     first_sclk: columns.length > 0 ? Math.min(...columns.map((column) => column.sclk[0] ?? NaN)) : NaN,
     last_sclk: columns.length > 0 ? Math.max(...columns.map((column) => column.sclk.at(-1) ?? NaN)) : NaN,
   };
@@ -41,10 +49,21 @@ export function rangeProblem(from: number | undefined, to: number | undefined): 
   return undefined;
 }
 
-const rangeQuery = (names: readonly string[], from_sclk: number, to_sclk: number) => ({ names: names.join(','), from: String(from_sclk), to: String(to_sclk) });
+const rangeQuery = (names: readonly string[], from_sclk: number, to_sclk: number) => ({
+  names: names.join(','),
+  from: String(from_sclk),
+  to: String(to_sclk),
+});
 
 /** At most `size` points a channel; `live`: only of what came so. */
-export function seriesPath(run: number, names: readonly string[], from_sclk: number, to_sclk: number, size: number, live = false): string {
+export function seriesPath(
+  run: number,
+  names: readonly string[],
+  from_sclk: number,
+  to_sclk: number,
+  size: number,
+  live = false,
+): string {
   return `/runs/${run}/channels?${new URLSearchParams({ ...rangeQuery(names, from_sclk, to_sclk), points: String(size), format: 'protobuf', ...(live && { source: 'realtime' }) }).toString()}`;
 }
 

@@ -12,14 +12,26 @@ describe('a recorded range', () => {
   });
   it('counts what came live and what the recording alone has', () => {
     const columns = [
-      { id: 1, recorded: false, sclk: Float64Array.of(1, 3), value: Float64Array.of(5, 7) }, { id: 1, recorded: true, sclk: Float64Array.of(2), value: Float64Array.of(-1) },
+      { id: 1, recorded: false, sclk: Float64Array.of(1, 3), value: Float64Array.of(5, 7) },
+      { id: 1, recorded: true, sclk: Float64Array.of(2), value: Float64Array.of(-1) },
     ];
     const series = { id: 1, name: 'a', unit: '', samples: 9, thinned: true, columns };
-    expect(rangeRow(series)).toMatchObject({ samples: 9, given: 3, live: 2, recorded: 1, least: -1, largest: 7, first_sclk: 1, last_sclk: 3 });
+    expect(rangeRow(series)).toMatchObject({
+      samples: 9,
+      given: 3,
+      live: 2,
+      recorded: 1,
+      least: -1,
+      largest: 7,
+      first_sclk: 1,
+      last_sclk: 3,
+    });
     expect(rangeRow({ ...series, columns: [] })).toMatchObject({ given: 0, first_sclk: NaN });
   });
   it('asks the route as it is documented', () => {
-    expect(seriesPath(3, ['a', 'b'], 1.5, 2, 100)).toBe('/runs/3/channels?names=a%2Cb&from=1.5&to=2&points=100&format=protobuf');
+    expect(seriesPath(3, ['a', 'b'], 1.5, 2, 100)).toBe(
+      '/runs/3/channels?names=a%2Cb&from=1.5&to=2&points=100&format=protobuf',
+    );
     expect(samplesPath(3, ['a', 'b'], 1.5, 2)).toBe('/runs/3/samples?names=a%2Cb&from=1.5&to=2');
   });
 });
@@ -28,18 +40,31 @@ describe('an export', () => {
   afterEach(() => void vi.unstubAllGlobals());
   /** Answers in pieces until it is aborted. */
   const serves = (pieces: number, headers: Record<string, string> = {}) =>
-    vi.stubGlobal('fetch', async (_: string, { signal }: RequestInit) => new Response(new ReadableStream({
-      pull(controller) {
-        if (signal?.aborted) controller.error(signal.reason);
-        else if (pieces-- > 0) controller.enqueue(new Uint8Array(1000));
-        else controller.close();
-      },
-    }), { headers }));
+    vi.stubGlobal(
+      'fetch',
+      async (_: string, { signal }: RequestInit) =>
+        new Response(
+          new ReadableStream({
+            pull(controller) {
+              if (signal?.aborted) controller.error(signal.reason);
+              else if (pieces-- > 0) controller.enqueue(new Uint8Array(1000));
+              else controller.close();
+            },
+          }),
+          { headers },
+        ),
+    );
   it('tells how much has come, of how much where that is said, and comes whole', async () => {
     const told: [number, number | undefined][] = [];
     serves(3);
-    expect((await download('x', new AbortController().signal, (octets, of) => told.push([octets, of]))).size).toBe(3000);
-    expect(told).toEqual([[1000, undefined], [2000, undefined], [3000, undefined]]);
+    expect((await download('x', new AbortController().signal, (octets, of) => told.push([octets, of]))).size).toBe(
+      3000,
+    );
+    expect(told).toEqual([
+      [1000, undefined],
+      [2000, undefined],
+      [3000, undefined],
+    ]);
     serves(1, { 'content-length': '1000' });
     await download('x', new AbortController().signal, (octets, of) => told.push([octets, of]));
     expect(told.at(-1)).toEqual([1000, 1000]);
@@ -48,12 +73,16 @@ describe('an export', () => {
   it('that is cancelled ends, and makes no file', async () => {
     serves(1e9);
     const stop = new AbortController();
-    await expect(download('x', stop.signal, (octets) => {
-      if (octets >= 5000) stop.abort();
-    })).rejects.toThrow();
+    await expect(
+      download('x', stop.signal, (octets) => {
+        if (octets >= 5000) stop.abort();
+      }),
+    ).rejects.toThrow();
   });
   it('that is refused says why', async () => {
     vi.stubGlobal('fetch', async () => new Response('{"error":"too many questions wait"}', { status: 503 }));
-    await expect(download('x', new AbortController().signal, () => undefined)).rejects.toThrow('too many questions wait');
+    await expect(download('x', new AbortController().signal, () => undefined)).rejects.toThrow(
+      'too many questions wait',
+    );
   });
 });

@@ -20,7 +20,9 @@ const channels = signal<string | undefined>(undefined);
 const size = signal('20000');
 const rows = signalOfRun<RangeRow[]>([]);
 const summary = signalOfRun<RecordingSummary | undefined>(undefined);
-const message = signalOfRun<{ good: boolean; text: string; range?: { from: number; to: number } } | undefined>(undefined);
+const message = signalOfRun<{ good: boolean; text: string; range?: { from: number; to: number } } | undefined>(
+  undefined,
+);
 const csvPath = signalOfRun<string | undefined>(undefined);
 const underWay = signal(false);
 /** The file that is being taken. */
@@ -37,14 +39,20 @@ async function take(path: string): Promise<void> {
     save(file, 'aeolis.csv');
     message.value = { good: true, text: `aeolis.csv: ${sizeWords(file.size, undefined)}` };
   } catch (error) {
-    message.value = { good: false, text: stop.signal.aborted ? 'cancelled: no file was made' : `no file was made: ${wordsFor(error)}` };
+    message.value = {
+      good: false,
+      text: stop.signal.aborted ? 'cancelled: no file was made' : `no file was made: ${wordsFor(error)}`,
+    };
   } finally {
     taking.value = undefined;
   }
 }
 
 function defaultChannels(): string {
-  return LAYOUT.plots.map((plot) => dictionary.value?.pick(plot.channel)?.name).filter((name) => name !== undefined).join(' ');
+  return LAYOUT.plots
+    .map((plot) => dictionary.value?.pick(plot.channel)?.name)
+    .filter((name) => name !== undefined)
+    .join(' ');
 }
 
 async function query(): Promise<void> {
@@ -56,7 +64,9 @@ async function query(): Promise<void> {
   const names = (channels.value ?? defaultChannels()).split(/[\s,]+/).filter((name) => name !== '');
   const unknown = names.find((name) => !words.pick([name]));
   const points = Number(size.value);
-  const problem = rangeProblem(start, end) ?? (names.length === 0 ? 'name at least one channel' : undefined) ??
+  const problem =
+    rangeProblem(start, end) ??
+    (names.length === 0 ? 'name at least one channel' : undefined) ??
     (unknown === undefined ? undefined : `no channel ${unknown} in the dictionary`) ??
     (Number.isInteger(points) && points >= 2 && points <= 20000 ? undefined : 'points: a whole number from 2 to 20000');
   if (problem !== undefined || start === undefined || end === undefined) {
@@ -89,7 +99,8 @@ async function query(): Promise<void> {
 function verdict(recording: RecordingSummary): string {
   if (recording.progress < 1) return `… the recording is here to ${Math.floor(recording.progress * 100)} %.`;
   return recording.realtimeNotRecorded + recording.realtimeDiffers === 0n
-    ? '✓ Every live packet is in the recording, bit for bit.' : '✖ Live and recording do not agree.';
+    ? '✓ Every live packet is in the recording, bit for bit.'
+    : '✖ Live and recording do not agree.';
 }
 
 export function Recorded() {
@@ -97,48 +108,130 @@ export function Recorded() {
   if (!run) return null;
   return (
     <div class="table-box" data-testid="recorded">
-      <form class="table-tools recorded-form" onSubmit={(event) => {
-        event.preventDefault();
-        void query();
-      }}>
-        <label>from <input class="time" data-testid="range-from" value={from.value} onInput={(event) => (from.value = event.currentTarget.value)} /></label>
-        <label>to <input class="time" data-testid="range-to" value={to.value} onInput={(event) => (to.value = event.currentTarget.value)} /></label>
-        <label class="wide">channels <input data-testid="range-channels" value={channels.value ?? defaultChannels()} onInput={(event) => (channels.value = event.currentTarget.value)} /></label>
-        <label>points <input class="points" value={size.value} inputMode="numeric" onInput={(event) => (size.value = event.currentTarget.value)} /></label>
-        <button type="submit" disabled={underWay.value} data-testid="range-query">{underWay.value ? 'asking…' : 'ask'}</button>
+      <form
+        class="table-tools recorded-form"
+        onSubmit={(event) => {
+          event.preventDefault();
+          void query();
+        }}
+      >
+        <label>
+          from{' '}
+          <input
+            class="time"
+            data-testid="range-from"
+            value={from.value}
+            onInput={(event) => (from.value = event.currentTarget.value)}
+          />
+        </label>
+        <label>
+          to{' '}
+          <input
+            class="time"
+            data-testid="range-to"
+            value={to.value}
+            onInput={(event) => (to.value = event.currentTarget.value)}
+          />
+        </label>
+        <label class="wide">
+          channels{' '}
+          <input
+            data-testid="range-channels"
+            value={channels.value ?? defaultChannels()}
+            onInput={(event) => (channels.value = event.currentTarget.value)}
+          />
+        </label>
+        <label>
+          points{' '}
+          <input
+            class="points"
+            value={size.value}
+            inputMode="numeric"
+            onInput={(event) => (size.value = event.currentTarget.value)}
+          />
+        </label>
+        <button type="submit" disabled={underWay.value} data-testid="range-query">
+          {underWay.value ? 'asking…' : 'ask'}
+        </button>
       </form>
-      {message.value && <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">{message.value.good ? '✓' : '✖'} {message.value.text}{message.value.range && pastRange.value === message.value.range && !replay.value && '; every panel now shows this range'}</p>}
+      {message.value && (
+        <p class={`message ${message.value.good ? 'good' : 'bad'}`} role="status" data-testid="range-message">
+          {message.value.good ? '✓' : '✖'} {message.value.text}
+          {message.value.range &&
+            pastRange.value === message.value.range &&
+            !replay.value &&
+            '; every panel now shows this range'}
+        </p>
+      )}
       <div class="table-scroll" tabIndex={0} aria-label="recorded range">
         {rows.value.length > 0 && (
           <table data-testid="range-table">
-            <thead><tr><th>channel</th><th>unit</th><th class="number">samples</th><th class="number">live</th><th class="number">recording only</th><th class="number">least</th><th class="number">largest</th><th>first … last</th></tr></thead>
+            <thead>
+              <tr>
+                <th>channel</th>
+                <th>unit</th>
+                <th class="number">samples</th>
+                <th class="number">live</th>
+                <th class="number">recording only</th>
+                <th class="number">least</th>
+                <th class="number">largest</th>
+                <th>first … last</th>
+              </tr>
+            </thead>
             <tbody>
               {rows.value.map((row) => (
                 <tr key={row.name} data-samples={row.samples}>
-                  <td>{row.name}</td><td>{row.unit}</td><td class="number">{row.samples}{row.thinned ? ` (${row.given} shown)` : ''}</td>
-                  <td class="number">{row.live}</td><td class="number">{row.recorded}</td>
-                  <td class="number">{numberText(row.least)}</td><td class="number">{numberText(row.largest)}</td>
-                  <td class="number">{fromEntry(row.first_sclk - run.entrySclk, { tenths: true })} … {fromEntry(row.last_sclk - run.entrySclk, { tenths: true })}</td>
+                  <td>{row.name}</td>
+                  <td>{row.unit}</td>
+                  <td class="number">
+                    {row.samples}
+                    {row.thinned ? ` (${row.given} shown)` : ''}
+                  </td>
+                  <td class="number">{row.live}</td>
+                  <td class="number">{row.recorded}</td>
+                  <td class="number">{numberText(row.least)}</td>
+                  <td class="number">{numberText(row.largest)}</td>
+                  <td class="number">
+                    {fromEntry(row.first_sclk - run.entrySclk, { tenths: true })} …{' '}
+                    {fromEntry(row.last_sclk - run.entrySclk, { tenths: true })}
+                  </td>
                 </tr>
               ))}
             </tbody>
           </table>
         )}
-        {rows.value.length === 0 && <p class="none">A range of this run, by time from entry. The answer comes from the archive; every panel then shows that range and says so.</p>}
+        {rows.value.length === 0 && (
+          <p class="none">
+            A range of this run, by time from entry. The answer comes from the archive; every panel then shows that
+            range and says so.
+          </p>
+        )}
         {summary.value && (
           <p data-testid="recording-summary">
-            {verdict(summary.value)} Recording: {String(summary.value.recorded)} packets; live: {String(summary.value.realtime)},
-            not in the recording {String(summary.value.realtimeNotRecorded)}, differing from it {String(summary.value.realtimeDiffers)}.
+            {verdict(summary.value)} Recording: {String(summary.value.recorded)} packets; live:{' '}
+            {String(summary.value.realtime)}, not in the recording {String(summary.value.realtimeNotRecorded)},
+            differing from it {String(summary.value.realtimeDiffers)}.
           </p>
         )}
         {csvPath.value && rows.value.length > 0 && (
           <p data-testid="range-export">
             {taking.value ? (
               <>
-                <progress max={taking.value.of ?? 1} value={taking.value.of === undefined ? undefined : taking.value.octets} aria-label="of the file" />{' '}
-                {sizeWords(taking.value.octets, taking.value.of)} have come <button type="button" onClick={() => taking.value?.stop.abort()}>cancel</button>
+                <progress
+                  max={taking.value.of ?? 1}
+                  value={taking.value.of === undefined ? undefined : taking.value.octets}
+                  aria-label="of the file"
+                />{' '}
+                {sizeWords(taking.value.octets, taking.value.of)} have come{' '}
+                <button type="button" onClick={() => taking.value?.stop.abort()}>
+                  cancel
+                </button>
               </>
-            ) : <button type="button" onClick={() => csvPath.value && void take(csvPath.value)}>take these samples as CSV</button>}
+            ) : (
+              <button type="button" onClick={() => csvPath.value && void take(csvPath.value)}>
+                take these samples as CSV
+              </button>
+            )}
           </p>
         )}
       </div>

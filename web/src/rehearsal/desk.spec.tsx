@@ -13,7 +13,9 @@ import { Review } from './review';
 import { interventions, message, ofRun, refreshInterventions } from './instructor';
 
 const server = aServer();
-const silent = { device_fault: { device: 'DEVICE_RADAR', unit: 'REDUNDANT_UNIT_B', kind: 'DEVICE_FAULT_KIND_SILENT', duration_s: 10 } };
+const silent = {
+  device_fault: { device: 'DEVICE_RADAR', unit: 'REDUNDANT_UNIT_B', kind: 'DEVICE_FAULT_KIND_SILENT', duration_s: 10 },
+};
 let page: HTMLElement;
 const shown = (name: string) => page.querySelector<HTMLElement>(`[data-testid="${name}"]`);
 const soon = () => act(() => new Promise<void>((done) => setTimeout(done, 10)));
@@ -28,7 +30,9 @@ const open = async () => {
   await soon();
 };
 const send = async (field: string) => {
-  shown(field)?.closest('form')?.dispatchEvent(new Event('submit', { bubbles: true, cancelable: true }));
+  shown(field)
+    ?.closest('form')
+    ?.dispatchEvent(new Event('submit', { bubbles: true, cancelable: true }));
   await soon();
 };
 
@@ -53,21 +57,51 @@ describe('the instructor’s desk', () => {
     expect(page.textContent).not.toContain('radar');
   });
   it('lists faults and notes with their instants, and says who else can read it', async () => {
-    server.routes['GET /runs/1/interventions'] = { json: { interventions: [{ e_s: 12.25, fault: silent }, { e_s: 14, note: { text: '<b>no one looks</b>', by: 'Ida' } }] } };
+    server.routes['GET /runs/1/interventions'] = {
+      json: {
+        interventions: [
+          { e_s: 12.25, fault: silent },
+          { e_s: 14, note: { text: '<b>no one looks</b>', by: 'Ida' } },
+        ],
+      },
+    };
     await open();
-    expect([...page.querySelectorAll('[data-testid="interventions"] li')].map((each) => each.textContent)).toEqual(['E+00:12.3 ▲ radar B silent, for 10 s', 'E+00:14.0 Ida <b>no one looks</b>']);
+    expect([...page.querySelectorAll('[data-testid="interventions"] li')].map((each) => each.textContent)).toEqual([
+      'E+00:12.3 ▲ radar B silent, for 10 s',
+      'E+00:14.0 Ida <b>no one looks</b>',
+    ]);
     expect(page.textContent).toContain('no accounts: whoever opens this fold can read it');
   });
   it('asks for a fault in the words of the schema, and a refusal says why in place', async () => {
     const outage = injectionOf('the ground station', 'A', '', 30);
-    expect([outage, faultWords(outage)]).toEqual([{ station_outage: { duration_s: 30 } }, 'the ground station brings nothing, for 30 s']);
-    expect([injectionOf('DEVICE_IMU', 'B', 'DEVICE_FAULT_KIND_DROPOUT', 3), faultWords({ computer_reset: true })]).toEqual([
-      { device_fault: { device: 'DEVICE_IMU', unit: 'REDUNDANT_UNIT_B', kind: 'DEVICE_FAULT_KIND_DROPOUT', duration_s: 3 } }, 'the prime computer starts anew',
+    expect([outage, faultWords(outage)]).toEqual([
+      { station_outage: { duration_s: 30 } },
+      'the ground station brings nothing, for 30 s',
     ]);
-    server.routes['POST /rehearsals/current'] = { status: 422, json: { error: 'device_faults[0].kind: is not possible for this device' } };
+    expect([
+      injectionOf('DEVICE_IMU', 'B', 'DEVICE_FAULT_KIND_DROPOUT', 3),
+      faultWords({ computer_reset: true }),
+    ]).toEqual([
+      {
+        device_fault: {
+          device: 'DEVICE_IMU',
+          unit: 'REDUNDANT_UNIT_B',
+          kind: 'DEVICE_FAULT_KIND_DROPOUT',
+          duration_s: 3,
+        },
+      },
+      'the prime computer starts anew',
+    ]);
+    server.routes['POST /rehearsals/current'] = {
+      status: 422,
+      json: { error: 'device_faults[0].kind: is not possible for this device' },
+    };
     await open();
     await send('fault-what');
-    expect(server.asked.at(-1)?.body).toEqual({ run: 1, inject: injectionOf('DEVICE_RADAR', 'A', 'DEVICE_FAULT_KIND_SILENT', 10) });
+    expect(server.asked.at(-1)?.body).toEqual({
+      run: 1,
+      inject: injectionOf('DEVICE_RADAR', 'A', 'DEVICE_FAULT_KIND_SILENT', 10),
+    });
     expect(shown('instructor-message')?.textContent).toContain('not possible for this device');
   });
   it('keeps a note once, in the instructor’s name, and apart from the shift log', async () => {
@@ -75,12 +109,17 @@ describe('the instructor’s desk', () => {
     server.routes['POST /rehearsals/current'] = { json: {} };
     await open();
     await send('instructor-note');
-    expect([shown('instructor-message')?.textContent, server.asked.some((each) => each.method === 'POST')]).toEqual(['✖ there is nothing to write down', false]);
+    expect([shown('instructor-message')?.textContent, server.asked.some((each) => each.method === 'POST')]).toEqual([
+      '✖ there is nothing to write down',
+      false,
+    ]);
     const field = shown('instructor-note') as HTMLInputElement;
     field.value = ' do they see it? ';
     act(() => void field.dispatchEvent(new Event('input', { bubbles: true })));
     await send('instructor-note');
-    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([{ method: 'POST', path: '/rehearsals/current', body: { run: 1, note: { text: 'do they see it?', by: 'Ida' } } }]);
+    expect(server.asked.filter((each) => each.method === 'POST')).toEqual([
+      { method: 'POST', path: '/rehearsals/current', body: { run: 1, note: { text: 'do they see it?', by: 'Ida' } } },
+    ]);
     expect([field.value, shown('instructor-message')?.textContent]).toEqual(['', '● kept for the review']);
     uplink.value = { ...uplink.value, controller: '' };
   });
@@ -89,7 +128,8 @@ describe('the instructor’s desk', () => {
     await open();
     await refreshInterventions();
     expect([shown('instructor'), server.asked.length]).toEqual([null, 0]);
-    for (const state of ['finished', 'interrupted']) { // one that was cut off is over as well
+    for (const state of ['finished', 'interrupted']) {
+      // one that was cut off is over as well
       interventions.value = undefined;
       const over = aStore([], aRun({ state }));
       useForTest(over, aDictionary);
@@ -123,20 +163,29 @@ describe('the review', () => {
     over.completeThrough = 1_000_000;
     server.routes['GET /runs/1/alarms'] = { status: 503, json: { error: 'too much waits' } };
     server.routes['GET /runs/1/interventions'] = { json: {} };
-    expect([await shownFor(over), server.asked.map((each) => each.path)]).toEqual(['✖ too much waits', expect.arrayContaining(['/runs/1/alarms', '/runs/1/interventions'])]);
+    expect([await shownFor(over), server.asked.map((each) => each.path)]).toEqual([
+      '✖ too much waits',
+      expect.arrayContaining(['/runs/1/alarms', '/runs/1/interventions']),
+    ]);
   });
   it('asks for changes of alarms until there are no more, however many pages that takes; of a list that does not go on no score is made, and it says so', async () => {
     server.routes['GET /runs/1/interventions'] = { json: {} };
     const pages = 30;
-    const acts = (page: number) => [{ alarm_action: { alarm: `battery ${page}`, action: 'shelve', by: 'Ann', at: '2012-219T05:00:00.0' } }];
+    const acts = (page: number) => [
+      { alarm_action: { alarm: `battery ${page}`, action: 'shelve', by: 'Ann', at: '2012-219T05:00:00.0' } },
+    ];
     for (let page = 0; page < pages; ++page)
-      server.routes[`GET /runs/1/alarms${page > 0 ? `?after=${page}` : ''}`] = { json: { changes: acts(page), ...(page < pages - 1 && { next_after: String(page + 1) }) } };
+      server.routes[`GET /runs/1/alarms${page > 0 ? `?after=${page}` : ''}`] = {
+        json: { changes: acts(page), ...(page < pages - 1 && { next_after: String(page + 1) }) },
+      };
     await shownFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown' })));
     const asked = () => server.asked.filter((each) => each.path.startsWith('/runs/1/alarms')).map((each) => each.path);
     expect([asked().length, asked().at(-1)]).toEqual([pages, '/runs/1/alarms?after=29']);
     server.routes['GET /runs/1/alarms?after=1'] = { json: { changes: acts(1), next_after: '1' } };
     await toggled(false);
-    expect(await toggled(true)).toBe('✖ the server’s list of alarms does not go on after 1: no review is made of a part');
+    expect(await toggled(true)).toBe(
+      '✖ the server’s list of alarms does not go on after 1: no review is made of a part',
+    );
   });
   it('has no score without what was broken, says why, and asks again when it is opened again', async () => {
     server.routes['GET /runs/1/alarms'] = { json: {} };

@@ -19,7 +19,16 @@ export function InterventionList({ of }: { of: readonly Intervention[] }) {
   return (
     <ul class="interventions" data-testid="interventions">
       {of.map(({ e_s, fault, note }, i) => (
-        <li key={i}><time>{fromEntry(e_s, { tenths: true })}</time> {fault ? <>▲ {faultWords(fault)}</> : <><b>{note?.by || 'unsigned'}</b> {note?.text}</>}</li>
+        <li key={i}>
+          <time>{fromEntry(e_s, { tenths: true })}</time>{' '}
+          {fault ? (
+            <>▲ {faultWords(fault)}</>
+          ) : (
+            <>
+              <b>{note?.by || 'unsigned'}</b> {note?.text}
+            </>
+          )}
+        </li>
       ))}
     </ul>
   );
@@ -27,15 +36,26 @@ export function InterventionList({ of }: { of: readonly Intervention[] }) {
 
 function NoteForm() {
   return (
-    <form class="table-tools" onSubmit={(event) => {
-      event.preventDefault();
-      const sent = text.value;
-      void write(sent).then((written) => written && text.value === sent && (text.value = '')); // what was typed meanwhile is the next
-    }}>
-      <input class="note-text" data-testid="instructor-note" aria-label="write an instructor’s note" placeholder="what you see them do; Enter keeps it with its instant" value={text.value}
-        onInput={(event) => (text.value = event.currentTarget.value)} />
+    <form
+      class="table-tools"
+      onSubmit={(event) => {
+        event.preventDefault();
+        const sent = text.value;
+        void write(sent).then((written) => written && text.value === sent && (text.value = '')); // what was typed meanwhile is the next
+      }}
+    >
+      <input
+        class="note-text"
+        data-testid="instructor-note"
+        aria-label="write an instructor’s note"
+        placeholder="what you see them do; Enter keeps it with its instant"
+        value={text.value}
+        onInput={(event) => (text.value = event.currentTarget.value)}
+      />
       <Signature />
-      <button type="submit" disabled={busy.value}>keep</button>
+      <button type="submit" disabled={busy.value}>
+        keep
+      </button>
     </form>
   );
 }
@@ -52,10 +72,15 @@ function Desk() {
     <>
       <FaultForm />
       <NoteForm />
-      <p role="status" data-testid="instructor-message">{message.value && `${message.value.good ? '●' : '✖'} ${message.value.text}`}</p>
+      <p role="status" data-testid="instructor-message">
+        {message.value && `${message.value.good ? '●' : '✖'} ${message.value.text}`}
+      </p>
       {run && <InterventionList of={ofRun(run)} />}
-      <p class="status-dim">{access.value.state === 'in' ? 'Until the run is over the server tells this only to who may rehearse.'
-        : 'Until the run is over this stands nowhere else. This server has no accounts: whoever opens this fold can read it.'}</p>
+      <p class="status-dim">
+        {access.value.state === 'in'
+          ? 'Until the run is over the server tells this only to who may rehearse.'
+          : 'Until the run is over this stands nowhere else. This server has no accounts: whoever opens this fold can read it.'}
+      </p>
     </>
   );
 }
@@ -64,7 +89,12 @@ function Desk() {
 export function InstructorDesk() {
   if (!mayRehearse()) return null;
   return (
-    <details class="instructor" data-testid="instructor" open={open.value} onToggle={(event) => (open.value = event.currentTarget.open)}>
+    <details
+      class="instructor"
+      data-testid="instructor"
+      open={open.value}
+      onToggle={(event) => (open.value = event.currentTarget.open)}
+    >
       <summary>Instructor: break something, write notes for the review</summary>
       {open.value && <Desk />}
     </details>

@@ -6,7 +6,11 @@ import type { Fault } from './instructor';
 
 const words = (name: string): string => name.toLowerCase().replaceAll('_', ' ');
 // By the enumerations and not by their descriptors, which would bring all of the protobuf library into the page: only the worker needs it.
-const namesOf = (all: object, prefix: string): string[] => Object.keys(all).filter((name) => !/^\d+$/.test(name)).slice(1).map((name) => prefix + name);
+const namesOf = (all: object, prefix: string): string[] =>
+  Object.keys(all)
+    .filter((name) => !/^\d+$/.test(name))
+    .slice(1)
+    .map((name) => prefix + name);
 const DEVICES = namesOf(Device, 'DEVICE_');
 const KINDS = namesOf(DeviceFaultKind, 'DEVICE_FAULT_KIND_');
 const SYSTEM = 'a system outside EDL';
@@ -29,7 +33,8 @@ export function injectionOf(device: string, of_unit: string, how: string, durati
 }
 
 export function faultWords({ device_fault: device, system_fault: system, station_outage: station }: Fault): string {
-  if (device) return `${deviceWords(device.device)} ${device.unit.at(-1)} ${kindWords(device.kind)}, for ${device.duration_s} s`;
+  if (device)
+    return `${deviceWords(device.device)} ${device.unit.at(-1)} ${kindWords(device.kind)}, for ${device.duration_s} s`;
   if (station) return `${STATION} brings nothing, for ${station.duration_s} s`;
   return system ? `${SYSTEM}, for ${system.duration_s} s` : `${COMPUTER} starts anew`;
 }
@@ -38,25 +43,78 @@ export function FaultForm() {
   const device = ![SYSTEM, COMPUTER, STATION].includes(what.value);
   const bad = what.value !== COMPUTER && !(Number(seconds.value) > 0);
   return (
-    <form class="table-tools" data-testid="faults" aria-label="faults" onSubmit={(event) => {
-      event.preventDefault();
-      if (!bad) void inject(injectionOf(what.value, unit.value, kind.value, Number(seconds.value)));
-    }}>
-      <label>break <select value={what.value} data-testid="fault-what" onChange={(event) => (what.value = event.currentTarget.value)}>
-        {DEVICES.map((name) => <option key={name} value={name}>{deviceWords(name)}</option>)}
-        <option value={SYSTEM}>{SYSTEM}</option>
-        <option value={COMPUTER}>{COMPUTER}</option>
-        <option value={STATION}>{STATION}</option>
-      </select></label>
-      {device && <label>unit <select value={unit.value} data-testid="fault-unit" onChange={(event) => (unit.value = event.currentTarget.value)}>
-        <option>A</option><option>B</option>
-      </select></label>}
-      {device && <label>so that it is <select value={kind.value} data-testid="fault-kind" onChange={(event) => (kind.value = event.currentTarget.value)}>
-        {KINDS.map((name) => <option key={name} value={name}>{kindWords(name)}</option>)}
-      </select></label>}
-      {what.value !== COMPUTER && <label>for <input class="seed" value={seconds.value} inputMode="decimal" aria-invalid={bad} data-testid="fault-seconds"
-        onInput={(event) => (seconds.value = event.currentTarget.value)} /> s</label>}
-      <button type="submit" disabled={bad || busy.value} data-testid="fault-inject">inject now</button>
+    <form
+      class="table-tools"
+      data-testid="faults"
+      aria-label="faults"
+      onSubmit={(event) => {
+        event.preventDefault();
+        if (!bad) void inject(injectionOf(what.value, unit.value, kind.value, Number(seconds.value)));
+      }}
+    >
+      <label>
+        break{' '}
+        <select
+          value={what.value}
+          data-testid="fault-what"
+          onChange={(event) => (what.value = event.currentTarget.value)}
+        >
+          {DEVICES.map((name) => (
+            <option key={name} value={name}>
+              {deviceWords(name)}
+            </option>
+          ))}
+          <option value={SYSTEM}>{SYSTEM}</option>
+          <option value={COMPUTER}>{COMPUTER}</option>
+          <option value={STATION}>{STATION}</option>
+        </select>
+      </label>
+      {device && (
+        <label>
+          unit{' '}
+          <select
+            value={unit.value}
+            data-testid="fault-unit"
+            onChange={(event) => (unit.value = event.currentTarget.value)}
+          >
+            <option>A</option>
+            <option>B</option>
+          </select>
+        </label>
+      )}
+      {device && (
+        <label>
+          so that it is{' '}
+          <select
+            value={kind.value}
+            data-testid="fault-kind"
+            onChange={(event) => (kind.value = event.currentTarget.value)}
+          >
+            {KINDS.map((name) => (
+              <option key={name} value={name}>
+                {kindWords(name)}
+              </option>
+            ))}
+          </select>
+        </label>
+      )}
+      {what.value !== COMPUTER && (
+        <label>
+          for{' '}
+          <input
+            class="seed"
+            value={seconds.value}
+            inputMode="decimal"
+            aria-invalid={bad}
+            data-testid="fault-seconds"
+            onInput={(event) => (seconds.value = event.currentTarget.value)}
+          />{' '}
+          s
+        </label>
+      )}
+      <button type="submit" disabled={bad || busy.value} data-testid="fault-inject">
+        inject now
+      </button>
       {bad && <span class="status-alarm">✖ a length in seconds, above 0</span>}
     </form>
   );

@@ -25,7 +25,8 @@ export const interventions = signal<{ run: number; all: Intervention[] } | undef
 export const message = signalOfRun<{ good: boolean; text: string } | undefined>(undefined);
 export const busy = signal(false);
 
-export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] => (interventions.value?.run === run.id ? interventions.value.all : []);
+export const ofRun = (run: Pick<RunStore, 'id'>): readonly Intervention[] =>
+  interventions.value?.run === run.id ? interventions.value.all : [];
 /** While it goes on only who may rehearse; of one that is over, or was cut off, everybody. */
 const mayRead = (run: Pick<RunStore, 'going'>): boolean => !run.going || mayRehearse();
 
@@ -64,12 +65,19 @@ async function intervene(what: object, done: string): Promise<boolean> {
   }
 }
 
-export const inject = (fault: Fault): Promise<boolean> => intervene({ inject: fault }, 'injected: it begins with the next cycle');
+export const inject = (fault: Fault): Promise<boolean> =>
+  intervene({ inject: fault }, 'injected: it begins with the next cycle');
 
 export function write(text: string): Promise<boolean> {
   const octets = new TextEncoder().encode(text.trim()).length;
-  const bad = octets === 0 ? 'there is nothing to write down' : octets > OCTETS ? `it has ${octets} octets; a note has at most ${OCTETS}` : '';
-  if (!bad) return intervene({ note: { text: text.trim(), by: uplink.value.controller.trim() } }, 'kept for the review');
+  const bad =
+    octets === 0
+      ? 'there is nothing to write down'
+      : octets > OCTETS
+        ? `it has ${octets} octets; a note has at most ${OCTETS}`
+        : '';
+  if (!bad)
+    return intervene({ note: { text: text.trim(), by: uplink.value.controller.trim() } }, 'kept for the review');
   message.value = { good: false, text: bad };
   return Promise.resolve(false);
 }

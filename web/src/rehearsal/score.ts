@@ -50,14 +50,27 @@ const WORTH = { landing: 40, timepoints: 20, faults: 20, alarms: 10, commands: 1
 const QUICK_S = 30; // so soon is all of it
 const LATE_S = 300; // so late, or never, is none
 
-export const promptness = (after_s: number | undefined): number => (after_s === undefined ? 0 : Math.min(1, Math.max(0, (LATE_S - after_s) / (LATE_S - QUICK_S))));
+export const promptness = (after_s: number | undefined): number =>
+  after_s === undefined ? 0 : Math.min(1, Math.max(0, (LATE_S - after_s) / (LATE_S - QUICK_S)));
 const mean = (shares: readonly number[]): number => shares.reduce((sum, share) => sum + share, 0) / shares.length;
 const count = (many: number, one: string): string => `${many} ${one}${many === 1 ? '' : 's'}`;
 
 /** Over ground, between two directions from the centre of Mars. */
-export function miss_m(position_m: readonly number[], latitude_deg: number, longitude_deg: number, radius_m: number): number {
-  const [latitude, longitude] = [latitude_deg, longitude_deg].map((angle) => (angle * Math.PI) / 180) as [number, number];
-  const target = [Math.cos(latitude) * Math.cos(longitude), Math.cos(latitude) * Math.sin(longitude), Math.sin(latitude)];
+export function miss_m(
+  position_m: readonly number[],
+  latitude_deg: number,
+  longitude_deg: number,
+  radius_m: number,
+): number {
+  const [latitude, longitude] = [latitude_deg, longitude_deg].map((angle) => (angle * Math.PI) / 180) as [
+    number,
+    number,
+  ];
+  const target = [
+    Math.cos(latitude) * Math.cos(longitude),
+    Math.cos(latitude) * Math.sin(longitude),
+    Math.sin(latitude),
+  ];
   const cosine = target.reduce((sum, each, i) => sum + each * (position_m[i] as number), 0) / Math.hypot(...position_m);
   return radius_m * Math.acos(Math.min(1, cosine));
 }
@@ -95,7 +108,8 @@ export function raisedAlarms({ alarms, report, e_sOf, channelName }: Recorded): 
       else inside.add(staleness.packet);
     } else if (action?.action === 'acknowledge') {
       const one = open.get(action.alarm);
-      if (one && !one.acknowledged) one.acknowledged = { after_s: e_sOf(action.at) - one.e_s, by: action.by || 'unsigned' };
+      if (one && !one.acknowledged)
+        one.acknowledged = { after_s: e_sOf(action.at) - one.e_s, by: action.by || 'unsigned' };
     }
   }
   return raised;
@@ -116,7 +130,10 @@ const SIGNED = /^(?:armed and confirmed by name|no arming needed), by (.+?)(?:; 
 
 function senderOf(words: readonly { stage: string; evidence: string }[]): string | undefined {
   if (words.some(({ stage, evidence }) => stage === 'queued' && evidence.startsWith(OF_SCRIPT))) return undefined;
-  return words.flatMap(({ stage, evidence }) => (stage === 'authorised' ? (SIGNED.exec(evidence)?.[1] ?? []) : []))[0] ?? 'someone';
+  return (
+    words.flatMap(({ stage, evidence }) => (stage === 'authorised' ? (SIGNED.exec(evidence)?.[1] ?? []) : []))[0] ??
+    'someone'
+  );
 }
 
 /** Of each stage the last word counts; the last stage that has one says how it went. */
@@ -128,7 +145,14 @@ export function commandOutcomes({ report, e_sOf }: Recorded): CommandOutcome[] {
     const failed = [...last.values()].find((stage) => stage.status === 'failed');
     const done = [...last.values()].every((stage) => stage.status === 'ok') && last.has('executed');
     const cancelled = failed?.evidence.startsWith('cancelled') ?? false;
-    return { name: command.name, number: Number(command.command), e_s: e_sOf(at), how: cancelled ? 'cancelled' : failed ? 'failed' : done ? 'done' : 'not known', why: failed?.evidence ?? '', sender: senderOf(words) };
+    return {
+      name: command.name,
+      number: Number(command.command),
+      e_s: e_sOf(at),
+      how: cancelled ? 'cancelled' : failed ? 'failed' : done ? 'done' : 'not known',
+      why: failed?.evidence ?? '',
+      sender: senderOf(words),
+    };
   });
 }
 
@@ -141,11 +165,14 @@ interface Reaction {
 function reactions(of: Recorded): Reaction[] {
   const acts: Reaction[] = [];
   for (const { alarm_action: action } of of.alarms) {
-    if (action) acts.push({ e_s: of.e_sOf(action.at), words: `${action.by || 'someone'}: ${action.action} ${action.alarm}` });
+    if (action)
+      acts.push({ e_s: of.e_sOf(action.at), words: `${action.by || 'someone'}: ${action.action} ${action.alarm}` });
   }
-  for (const { e_s, name, sender } of commandOutcomes(of)) if (sender) acts.push({ e_s, words: `${sender}: sent ${name}` });
+  for (const { e_s, name, sender } of commandOutcomes(of))
+    if (sender) acts.push({ e_s, words: `${sender}: sent ${name}` });
   for (const { item } of of.report.notes) {
-    if (item.case === 'note') acts.push({ e_s: of.e_sOf(item.value.at), words: `${item.value.by || 'someone'} wrote “${item.value.text}”` });
+    if (item.case === 'note')
+      acts.push({ e_s: of.e_sOf(item.value.at), words: `${item.value.by || 'someone'} wrote “${item.value.text}”` });
   }
   return acts.filter((act) => Number.isFinite(act.e_s)).sort((a, b) => a.e_s - b.e_s);
 }
@@ -159,36 +186,62 @@ function faultFacts(of: Recorded): { facts: Fact[]; shares: number[] } {
     const felt_s = fault.station_outage ? e_s - (of.report.run?.lightTimeS ?? 0) : e_s; // on Earth, where the station is
     const first = acts.find((act) => act.e_s >= felt_s);
     shares.push(promptness(first && first.e_s - felt_s));
-    return [{ of: 'fault', e_s: felt_s, text: `${faultWords(fault)}; ${first ? `${duration(first.e_s - felt_s)} later: ${first.words}` : 'nobody did anything afterwards'}` }];
+    return [
+      {
+        of: 'fault',
+        e_s: felt_s,
+        text: `${faultWords(fault)}; ${first ? `${duration(first.e_s - felt_s)} later: ${first.words}` : 'nobody did anything afterwards'}`,
+      },
+    ];
   });
   return { facts, shares };
 }
 
 function alarmFacts(raised: readonly Raised[]): Fact[] {
   return raised.map(({ name, limit, e_s, acknowledged }) => ({
-    of: 'alarm', e_s, text: `${inWords(name)} ${limit}; ${acknowledged ? `acknowledged ${duration(acknowledged.after_s)} later by ${acknowledged.by}` : 'never acknowledged'}`,
+    of: 'alarm',
+    e_s,
+    text: `${inWords(name)} ${limit}; ${acknowledged ? `acknowledged ${duration(acknowledged.after_s)} later by ${acknowledged.by}` : 'never acknowledged'}`,
   }));
 }
 
 function commandFacts(commands: readonly CommandOutcome[], isHazardous: (command: string) => boolean): Fact[] {
   const sentBy = (theirs: readonly CommandOutcome[], whose: string): Fact => {
     const many = (how: CommandOutcome['how']) => theirs.filter((command) => command.how === how).length;
-    return { of: 'commands', text: `${count(theirs.length, 'command')} ${whose}: ${many('done')} carried out, ${many('failed')} failed, ${many('cancelled')} cancelled, ${many('not known')} not known` };
+    return {
+      of: 'commands',
+      text: `${count(theirs.length, 'command')} ${whose}: ${many('done')} carried out, ${many('failed')} failed, ${many('cancelled')} cancelled, ${many('not known')} not known`,
+    };
   };
   const scripted = commands.filter((command) => !command.sender);
   return [
-    sentBy(commands.filter((command) => command.sender), 'of people'), ...(scripted.length > 0 ? [sentBy(scripted, 'of the scenario’s script')] : []),
-    ...commands.filter((command) => command.how === 'failed' || command.how === 'cancelled').map((command) => ({
-      of: 'command', e_s: command.e_s, text: `${command.number} ${command.name}${isHazardous(command.name) ? ', hazardous' : ''}${command.sender ? `, by ${command.sender}` : ''}: ${command.why}`,
-    })),
+    sentBy(
+      commands.filter((command) => command.sender),
+      'of people',
+    ),
+    ...(scripted.length > 0 ? [sentBy(scripted, 'of the scenario’s script')] : []),
+    ...commands
+      .filter((command) => command.how === 'failed' || command.how === 'cancelled')
+      .map((command) => ({
+        of: 'command',
+        e_s: command.e_s,
+        text: `${command.number} ${command.name}${isHazardous(command.name) ? ', hazardous' : ''}${command.sender ? `, by ${command.sender}` : ''}: ${command.why}`,
+      })),
   ];
 }
 
 function dataFacts(report: AsFlownReport): Fact[] {
-  const total = (key: 'realtime' | 'identical' | 'differs' | 'missingInRecording') => (report.proof?.streams ?? []).reduce((sum, row) => sum + Number(row[key]), 0);
-  const frames = (report.proof?.counters ?? []).reduce((sum, row) => sum + Number(row.missingFrames) + Number(row.badCrc), 0);
+  const total = (key: 'realtime' | 'identical' | 'differs' | 'missingInRecording') =>
+    (report.proof?.streams ?? []).reduce((sum, row) => sum + Number(row[key]), 0);
+  const frames = (report.proof?.counters ?? []).reduce(
+    (sum, row) => sum + Number(row.missingFrames) + Number(row.badCrc),
+    0,
+  );
   return [
-    { of: 'data', text: `${count(total('realtime'), 'packet')} heard live: ${total('missingInRecording')} missing in the recording, ${total('differs')} differ from it; ${count(frames, 'frame')} lost on the way` },
+    {
+      of: 'data',
+      text: `${count(total('realtime'), 'packet')} heard live: ${total('missingInRecording')} missing in the recording, ${total('differs')} differ from it; ${count(frames, 'frame')} lost on the way`,
+    },
     { of: 'data', text: `${count(Number(report.tonesDecoded), 'tone')} decoded, ${Number(report.tonesErased)} lost` },
   ];
 }
@@ -196,7 +249,9 @@ function dataFacts(report: AsFlownReport): Fact[] {
 export function score(of: Recorded): Score {
   const { report, landed } = of;
   const all = report.timepoints.length;
-  const missing = report.timepoints.filter((row) => row.recordedES === undefined && row.realtimeES === undefined && row.toneES === undefined);
+  const missing = report.timepoints.filter(
+    (row) => row.recordedES === undefined && row.realtimeES === undefined && row.toneES === undefined,
+  );
   const raised = raisedAlarms(of);
   const commands = commandOutcomes(of);
   const faults = faultFacts(of);
@@ -204,8 +259,25 @@ export function score(of: Recorded): Score {
   const facts: Fact[] = [
     { of: 'landing', text: of.outcome, ...(landed && { e_s: landed.e_s }) },
     ...(landed ? [{ of: 'landing', text: landed.words }] : []),
-    ...(landed?.miss_m !== undefined ? [{ of: 'landing', text: `${(landed.miss_m / 1000).toFixed(1)} km from the target, by the vehicle’s own navigation` }] : []),
-    { of: 'timepoints', text: `${all - missing.length} of ${all} are known to have fired${missing.length > 0 ? `; not: ${missing.slice(0, 6).map((row) => inWords(row.name)).join(', ')}${missing.length > 6 ? ' …' : ''}` : ''}` },
+    ...(landed?.miss_m !== undefined
+      ? [
+          {
+            of: 'landing',
+            text: `${(landed.miss_m / 1000).toFixed(1)} km from the target, by the vehicle’s own navigation`,
+          },
+        ]
+      : []),
+    {
+      of: 'timepoints',
+      text: `${all - missing.length} of ${all} are known to have fired${
+        missing.length > 0
+          ? `; not: ${missing
+              .slice(0, 6)
+              .map((row) => inWords(row.name))
+              .join(', ')}${missing.length > 6 ? ' …' : ''}`
+          : ''
+      }`,
+    },
     ...dataFacts(report),
     ...alarmFacts(raised),
     ...faults.facts,
@@ -213,10 +285,46 @@ export function score(of: Recorded): Score {
   ];
   const terms: Term[] = [
     { name: 'landing', most: WORTH.landing, share: report.run?.outcome === 'touchdown' ? 1 : 0, why: of.outcome },
-    ...(all > 0 ? [{ name: 'timepoints', most: WORTH.timepoints, share: (all - missing.length) / all, why: `${all - missing.length} of ${all}` }] : []),
-    ...(faults.shares.length > 0 ? [{ name: 'faults', most: WORTH.faults, share: mean(faults.shares), why: `${count(faults.shares.length, 'fault')}, by the first reaction` }] : []),
-    ...(raised.length > 0 ? [{ name: 'alarms', most: WORTH.alarms, share: mean(raised.map((one) => promptness(one.acknowledged?.after_s))), why: `${count(raised.length, 'alarm')}, by the acknowledgement` }] : []),
-    ...(judged.length > 0 ? [{ name: 'commands', most: WORTH.commands, share: judged.filter((command) => command.how === 'done').length / judged.length, why: `${judged.filter((command) => command.how === 'done').length} of ${judged.length} of people were carried out` }] : []),
+    ...(all > 0
+      ? [
+          {
+            name: 'timepoints',
+            most: WORTH.timepoints,
+            share: (all - missing.length) / all,
+            why: `${all - missing.length} of ${all}`,
+          },
+        ]
+      : []),
+    ...(faults.shares.length > 0
+      ? [
+          {
+            name: 'faults',
+            most: WORTH.faults,
+            share: mean(faults.shares),
+            why: `${count(faults.shares.length, 'fault')}, by the first reaction`,
+          },
+        ]
+      : []),
+    ...(raised.length > 0
+      ? [
+          {
+            name: 'alarms',
+            most: WORTH.alarms,
+            share: mean(raised.map((one) => promptness(one.acknowledged?.after_s))),
+            why: `${count(raised.length, 'alarm')}, by the acknowledgement`,
+          },
+        ]
+      : []),
+    ...(judged.length > 0
+      ? [
+          {
+            name: 'commands',
+            most: WORTH.commands,
+            share: judged.filter((command) => command.how === 'done').length / judged.length,
+            why: `${judged.filter((command) => command.how === 'done').length} of ${judged.length} of people were carried out`,
+          },
+        ]
+      : []),
   ];
   const most = terms.reduce((sum, term) => sum + term.most, 0);
   return { facts, terms, sum: (100 * terms.reduce((sum, term) => sum + term.most * term.share, 0)) / most };
@@ -229,11 +337,16 @@ export const RULE = `Our own rule, no verdict on people: each term that there wa
 export function scoreText(title: string, of: Score, interventions: readonly Intervention[]): string {
   const at = (e_s: number | undefined) => (e_s === undefined ? '' : `${fromEntry(e_s, { tenths: true })} `);
   return [
-    title, '',
-    ...of.facts.map((fact) => `${fact.of}: ${at(fact.e_s)}${fact.text}`), '',
-    ...interventions.flatMap(({ e_s, note }) => (note ? [`instructor's note: ${at(e_s)}${note.by || 'unsigned'}: ${note.text}`] : [])),
+    title,
+    '',
+    ...of.facts.map((fact) => `${fact.of}: ${at(fact.e_s)}${fact.text}`),
+    '',
+    ...interventions.flatMap(({ e_s, note }) =>
+      note ? [`instructor's note: ${at(e_s)}${note.by || 'unsigned'}: ${note.text}`] : [],
+    ),
     `score: ${of.sum.toFixed(0)} of 100`,
     ...of.terms.map((term) => `  ${term.name}: ${termWords(term)} (${term.why})`),
-    RULE, '',
+    RULE,
+    '',
   ].join('\n');
 }

@@ -13,10 +13,21 @@ import { PaceBar, Rehearsal, changePace, togglePause } from './view';
 
 describe('the pace', () => {
   it('steps up to as fast as it goes, and down to one', () => {
-    expect([nextPace(1, 1), nextPace(1000, 1), nextPace(0, 1), nextPace(0, -1), nextPace(1, -1), nextPace(3, 1)]).toEqual([2, 0, 0, 1000, 1, 5]);
+    expect([
+      nextPace(1, 1),
+      nextPace(1000, 1),
+      nextPace(0, 1),
+      nextPace(0, -1),
+      nextPace(1, -1),
+      nextPace(3, 1),
+    ]).toEqual([2, 0, 0, 1000, 1, 5]);
   });
   it('is told when it is not reached', () => {
-    expect([attainedText(100, 99), attainedText(100, 42), attainedText(0, 512)]).toEqual(['', 'reaches 42×', 'reaches 512×']);
+    expect([attainedText(100, 99), attainedText(100, 42), attainedText(0, 512)]).toEqual([
+      '',
+      'reaches 42×',
+      'reaches 512×',
+    ]);
   });
 });
 
@@ -24,12 +35,19 @@ describe('a rehearsal', () => {
   const server = aServer();
   let root: HTMLElement;
   let heard: ToWorker[];
-  const shown = (run = aRun()) => act(() => {
-    heard = [];
-    runs.value = [run];
-    useForTest(aStore([], run), aDictionary, (message) => void heard.push(message));
-    render(<><PaceBar /><Rehearsal /></>, root);
-  });
+  const shown = (run = aRun()) =>
+    act(() => {
+      heard = [];
+      runs.value = [run];
+      useForTest(aStore([], run), aDictionary, (message) => void heard.push(message));
+      render(
+        <>
+          <PaceBar />
+          <Rehearsal />
+        </>,
+        root,
+      );
+    });
   const button = (id: string) => root.querySelector<HTMLButtonElement>(`[data-testid="${id}"]`);
   beforeEach(() => {
     root = document.createElement('div');
@@ -51,7 +69,11 @@ describe('a rehearsal', () => {
       button('start-rehearsal')?.click();
       await new Promise((resolve) => setTimeout(resolve, 20));
     });
-    expect([root.querySelector('[data-testid="rehearsal-problem"]')?.textContent, store.value?.id, watched.value]).toEqual(['✖ run 2 is going on', 1, 1]);
+    expect([
+      root.querySelector('[data-testid="rehearsal-problem"]')?.textContent,
+      store.value?.id,
+      watched.value,
+    ]).toEqual(['✖ run 2 is going on', 1, 1]);
     server.routes['POST /rehearsals'] = { status: 201, json: {} };
     await act(async () => {
       button('start-rehearsal')?.click();
@@ -77,24 +99,38 @@ describe('a rehearsal', () => {
       shown(aRun({ state: 'interrupted', lastSeq: 4711n }));
       act(() => button('continue-1')?.click());
       const bar = button('catching-up');
-      expect([bar?.querySelector('progress')?.hasAttribute('value'), bar?.textContent]).toEqual([false, expect.stringContaining('through its 4711 items')]);
+      expect([bar?.querySelector('progress')?.hasAttribute('value'), bar?.textContent]).toEqual([
+        false,
+        expect.stringContaining('through its 4711 items'),
+      ]);
       if (leave) {
         act(() => bar?.querySelector('button')?.click());
-        expect([button('catching-up'), root.textContent]).toEqual([null, expect.stringContaining('catches up by itself')]);
+        expect([button('catching-up'), root.textContent]).toEqual([
+          null,
+          expect.stringContaining('catches up by itself'),
+        ]);
       }
       await act(async () => {
         await new Promise((resolve) => setTimeout(resolve, 10));
         answer({ status: 201, json: {} });
         await new Promise((resolve) => setTimeout(resolve, 20));
       });
-      expect([heard.map((each) => each.type), root.textContent?.includes('catches up by itself')]).toEqual([leave ? [] : ['watch'], false]);
+      expect([heard.map((each) => each.type), root.textContent?.includes('catches up by itself')]).toEqual([
+        leave ? [] : ['watch'],
+        false,
+      ]);
     }
   });
   it('is not ended, continued or started from a past view, and says nothing there of what came later', () => {
-    const clicks = () => root.querySelectorAll<HTMLButtonElement>('button').forEach((each) => !each.disabled && act(() => each.click()));
+    const clicks = () =>
+      root.querySelectorAll<HTMLButtonElement>('button').forEach((each) => !each.disabled && act(() => each.click()));
     shown(aRun({ lastSeq: 4711n }));
     expect(root.querySelector('[data-run="1"]')?.textContent).toContain('4711');
-    for (const [state, replayed] of [['running', false], ['interrupted', false], ['running', true]] as const) {
+    for (const [state, replayed] of [
+      ['running', false],
+      ['interrupted', false],
+      ['running', true],
+    ] as const) {
       act(() => {
         pastRange.value = { from: -100, to: 0 };
         if (replayed) replay.value = { pace: 1, playing: false };
@@ -103,7 +139,11 @@ describe('a rehearsal', () => {
       const row = root.querySelector('[data-run="1"]')?.textContent;
       expect(row).toContain('◧ past');
       for (const now of [state, '4711', 'hit the ground']) expect(row).not.toContain(now);
-      expect([button('stop-rehearsal'), root.querySelector('[data-testid="instructor"]'), button('start-rehearsal')?.disabled]).toEqual([null, null, true]);
+      expect([
+        button('stop-rehearsal'),
+        root.querySelector('[data-testid="instructor"]'),
+        button('start-rehearsal')?.disabled,
+      ]).toEqual([null, null, true]);
       expect(root.textContent).toContain('from a past view nothing is started or ended');
       clicks();
       clicks();
@@ -113,7 +153,11 @@ describe('a rehearsal', () => {
   });
   it('is never offered beside a real vehicle: no instructor, no end, no pace', () => {
     shown(aRun({ venue: 'downlink' }));
-    expect([root.querySelector('[data-testid="instructor"]'), button('stop-rehearsal'), root.textContent?.includes('a real landing is followed')]).toEqual([null, null, true]);
+    expect([
+      root.querySelector('[data-testid="instructor"]'),
+      button('stop-rehearsal'),
+      root.textContent?.includes('a real landing is followed'),
+    ]).toEqual([null, null, true]);
     changePace(1);
     togglePause();
     expect(heard).toEqual([]);
@@ -124,12 +168,17 @@ describe('a rehearsal', () => {
     shown(aRun({ state: 'interrupted' }));
     expect(button('continue-1')?.textContent).toBe('continue');
     shown(aRun({ state: 'interrupted', venue: 'downlink' }));
-    expect([button('continue-1'), root.querySelector('[data-run="1"]')?.textContent?.includes('▲ interrupted')]).toEqual([null, true]);
+    expect([
+      button('continue-1'),
+      root.querySelector('[data-run="1"]')?.textContent?.includes('▲ interrupted'),
+    ]).toEqual([null, true]);
   });
   it('gives those who may not rehearse nothing to press, and its keys do nothing', () => {
     act(() => void (access.value = { state: 'in', user: 'eve', role: 'observer', rights: ['watch'] }));
     shown();
-    expect([...root.querySelectorAll<HTMLButtonElement>('button, select, input')].filter((each) => !each.disabled)).toEqual([]);
+    expect(
+      [...root.querySelectorAll<HTMLButtonElement>('button, select, input')].filter((each) => !each.disabled),
+    ).toEqual([]);
     expect(root.textContent).toContain('need the right to rehearse; you are eve, observer');
     changePace(1);
     togglePause();

@@ -18,12 +18,14 @@ import './style.css';
 export function changePace(direction: 1 | -1): void {
   if (replay.value) return changeReplayPace(direction);
   const run = store.value;
-  if (run && modeNow() === 'rehearsal' && mayRehearse()) control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
+  if (run && modeNow() === 'rehearsal' && mayRehearse())
+    control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
 }
 export function togglePause(): void {
   if (replay.value) return playOrHold();
   const run = store.value;
-  if (run && modeNow() === 'rehearsal' && mayRehearse()) control({ action: 'pause', pause: run.run.state !== 'paused' });
+  if (run && modeNow() === 'rehearsal' && mayRehearse())
+    control({ action: 'pause', pause: run.run.state !== 'paused' });
 }
 
 export function PaceBar() {
@@ -31,16 +33,36 @@ export function PaceBar() {
   if (!run?.going || modeNow() !== 'rehearsal') return null;
   const paused = run.run.state === 'paused';
   const attained = <span class="attained">{paused ? 'paused' : attainedText(run.run.pace, run.run.attainedPace)}</span>;
-  if (!mayRehearse()) return <div class="pace-bar" data-testid="pace-bar"><span>{paceText(run.run.pace)}</span>{attained}</div>;
+  if (!mayRehearse())
+    return (
+      <div class="pace-bar" data-testid="pace-bar">
+        <span>{paceText(run.run.pace)}</span>
+        {attained}
+      </div>
+    );
   return (
     <div class="pace-bar" role="group" aria-label="pace of the rehearsal" data-testid="pace-bar">
-      <button type="button" onClick={togglePause} data-testid="pause" title="key p">{paused ? '▶ go on' : '❚❚ pause'}</button>
-      <button type="button" onClick={() => changePace(-1)} aria-label="slower" title="key −">−</button>
-      <select aria-label="pace" data-testid="pace" value={String(run.run.pace)}
-        onChange={(event) => control({ action: 'pace', pace: Number(event.currentTarget.value) })}>
-        {[...new Set([...PACES, run.run.pace])].map((pace) => <option key={pace} value={String(pace)}>{paceText(pace)}</option>)}
+      <button type="button" onClick={togglePause} data-testid="pause" title="key p">
+        {paused ? '▶ go on' : '❚❚ pause'}
+      </button>
+      <button type="button" onClick={() => changePace(-1)} aria-label="slower" title="key −">
+        −
+      </button>
+      <select
+        aria-label="pace"
+        data-testid="pace"
+        value={String(run.run.pace)}
+        onChange={(event) => control({ action: 'pace', pace: Number(event.currentTarget.value) })}
+      >
+        {[...new Set([...PACES, run.run.pace])].map((pace) => (
+          <option key={pace} value={String(pace)}>
+            {paceText(pace)}
+          </option>
+        ))}
       </select>
-      <button type="button" onClick={() => changePace(1)} aria-label="faster" title="key +">+</button>
+      <button type="button" onClick={() => changePace(1)} aria-label="faster" title="key +">
+        +
+      </button>
       {attained}
     </div>
   );
@@ -77,11 +99,17 @@ function CatchingUp() {
   const items = runs.value.find((each) => Number(each.run) === run)?.lastSeq;
   return (
     <p role="status" data-testid="catching-up">
-      <progress aria-label={`run ${run} is flown again`} /> run {run} is flown again{items !== undefined && ` through its ${String(items)} items`}, each held against the archive; then it goes on{' '}
-      <button type="button" onClick={() => {
-        starting.value = undefined;
-        left.value = `Run ${run} catches up by itself, and stands in the list as running once it goes on.`;
-      }}>leave it alone</button>
+      <progress aria-label={`run ${run} is flown again`} /> run {run} is flown again
+      {items !== undefined && ` through its ${String(items)} items`}, each held against the archive; then it goes on{' '}
+      <button
+        type="button"
+        onClick={() => {
+          starting.value = undefined;
+          left.value = `Run ${run} catches up by itself, and stands in the list as running once it goes on.`;
+        }}
+      >
+        leave it alone
+      </button>
     </p>
   );
 }
@@ -93,7 +121,11 @@ export function EndRun({ run, name, words }: { run: number; name: string; words:
   const mine = `${name} ${run}`;
   const sure = ending.value === mine;
   return (
-    <button type="button" class={sure ? 'danger' : ''} data-testid={name} onBlur={() => (ending.value = '')}
+    <button
+      type="button"
+      class={sure ? 'danger' : ''}
+      data-testid={name}
+      onBlur={() => (ending.value = '')}
       onKeyDown={(event) => {
         if (event.key !== 'Escape' || !sure) return;
         ending.value = '';
@@ -102,7 +134,10 @@ export function EndRun({ run, name, words }: { run: number; name: string; words:
       onClick={() => {
         if (sure) control({ action: 'stop' }, run);
         ending.value = sure ? '' : mine;
-      }}>{sure ? `▲ press again: run ${run} ends for everyone` : words}</button>
+      }}
+    >
+      {sure ? `▲ press again: run ${run} ends for everyone` : words}
+    </button>
   );
 }
 
@@ -116,26 +151,84 @@ export function Rehearsal() {
   const blocked = !allowed || past !== undefined || going !== undefined || starting.value !== undefined;
   return (
     <div class="table-box" data-testid="rehearsal">
-      <form class="table-tools" onSubmit={(event) => {
-        event.preventDefault();
-        if (!badSeed && !blocked) void begin({ scenario: scenario.value, seed: seed.value, pace: 1 });
-      }}>
-        <label>scenario <select value={scenario.value} data-testid="scenario" disabled={!allowed} onChange={(event) => (scenario.value = event.currentTarget.value)}>
-          {names.map((each) => <option key={each.name} value={each.name} title={each.title}>{each.name}</option>)}
-        </select></label>
-        <label>seed <input class="seed" value={seed.value} inputMode="numeric" disabled={!allowed} aria-invalid={badSeed} onInput={(event) => (seed.value = event.currentTarget.value)} /></label>
-        <button type="submit" disabled={badSeed || blocked} data-testid="start-rehearsal">start a rehearsal</button>
-        {going && allowed && !past && !isReal(going) && <EndRun run={Number(going.run)} name="stop-rehearsal" words={`end run ${going.run}`} />}
-        <span>{!allowed ? `${STATUS.missing.shape} ${whyNotRehearse('starting and ending')}` : past ? `${STATUS.missing.shape} from a past view nothing is started or ended; Esc leaves it` : badSeed ? '✖ a seed is a whole number' : starting.value ? '… starting' : going ? (isReal(going) ? 'a real landing is followed; none is rehearsed beside it' : 'one is going on; end it to start another') : names.find((each) => each.name === scenario.value)?.title}</span>
+      <form
+        class="table-tools"
+        onSubmit={(event) => {
+          event.preventDefault();
+          if (!badSeed && !blocked) void begin({ scenario: scenario.value, seed: seed.value, pace: 1 });
+        }}
+      >
+        <label>
+          scenario{' '}
+          <select
+            value={scenario.value}
+            data-testid="scenario"
+            disabled={!allowed}
+            onChange={(event) => (scenario.value = event.currentTarget.value)}
+          >
+            {names.map((each) => (
+              <option key={each.name} value={each.name} title={each.title}>
+                {each.name}
+              </option>
+            ))}
+          </select>
+        </label>
+        <label>
+          seed{' '}
+          <input
+            class="seed"
+            value={seed.value}
+            inputMode="numeric"
+            disabled={!allowed}
+            aria-invalid={badSeed}
+            onInput={(event) => (seed.value = event.currentTarget.value)}
+          />
+        </label>
+        <button type="submit" disabled={badSeed || blocked} data-testid="start-rehearsal">
+          start a rehearsal
+        </button>
+        {going && allowed && !past && !isReal(going) && (
+          <EndRun run={Number(going.run)} name="stop-rehearsal" words={`end run ${going.run}`} />
+        )}
+        <span>
+          {!allowed
+            ? `${STATUS.missing.shape} ${whyNotRehearse('starting and ending')}`
+            : past
+              ? `${STATUS.missing.shape} from a past view nothing is started or ended; Esc leaves it`
+              : badSeed
+                ? '✖ a seed is a whole number'
+                : starting.value
+                  ? '… starting'
+                  : going
+                    ? isReal(going)
+                      ? 'a real landing is followed; none is rehearsed beside it'
+                      : 'one is going on; end it to start another'
+                    : names.find((each) => each.name === scenario.value)?.title}
+        </span>
       </form>
       <CatchingUp />
-      {refused.value && <p role="alert" class="status-alarm" data-testid="rehearsal-problem">✖ {refused.value}</p>}
+      {refused.value && (
+        <p role="alert" class="status-alarm" data-testid="rehearsal-problem">
+          ✖ {refused.value}
+        </p>
+      )}
       {going && run?.going && !isReal(run.run) && !past && <InstructorDesk />}
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
       <div class="table-scroll" tabIndex={0} aria-label="runs">
         <Review />
         <table data-testid="run-list">
-          <thead><tr><th>run</th><th>scenario</th><th class="number">seed</th><th>state</th><th>outcome</th><th>started</th><th class="number">items</th><th>show</th></tr></thead>
+          <thead>
+            <tr>
+              <th>run</th>
+              <th>scenario</th>
+              <th class="number">seed</th>
+              <th>state</th>
+              <th>outcome</th>
+              <th>started</th>
+              <th class="number">items</th>
+              <th>show</th>
+            </tr>
+          </thead>
           <tbody>
             {runs.value.map((each) => {
               const shown = run?.id === Number(each.run);
@@ -143,17 +236,34 @@ export function Rehearsal() {
               const now = shown && run ? run.run : each;
               return (
                 <tr key={String(each.run)} class={shown ? 'shown' : ''} data-run={String(each.run)} data-state={state}>
-                  <td class="number">{String(each.run)}</td><td>{each.scenario}</td><td class="number">{String(each.seed)}</td>
-                  <td>{state === 'past' ? '◧ ' : state === 'interrupted' ? '▲ ' : ''}{state}</td><td>{state === 'past' ? '—' : outcomeWords(now.outcome, state)}</td>
-                  <td>{each.started}</td><td class="number">{state === 'past' ? '—' : String(now.lastSeq)}</td>
+                  <td class="number">{String(each.run)}</td>
+                  <td>{each.scenario}</td>
+                  <td class="number">{String(each.seed)}</td>
                   <td>
-                    {shown ? '◀ shown ' : (
-                      <button type="button" onClick={() => watch(isGoing(each) ? 0 : Number(each.run))}>show</button>
+                    {state === 'past' ? '◧ ' : state === 'interrupted' ? '▲ ' : ''}
+                    {state}
+                  </td>
+                  <td>{state === 'past' ? '—' : outcomeWords(now.outcome, state)}</td>
+                  <td>{each.started}</td>
+                  <td class="number">{state === 'past' ? '—' : String(now.lastSeq)}</td>
+                  <td>
+                    {shown ? (
+                      '◀ shown '
+                    ) : (
+                      <button type="button" onClick={() => watch(isGoing(each) ? 0 : Number(each.run))}>
+                        show
+                      </button>
                     )}
                     {state === 'interrupted' && canContinue(each) && (
-                      <button type="button" disabled={blocked} data-testid={`continue-${String(each.run)}`}
+                      <button
+                        type="button"
+                        disabled={blocked}
+                        data-testid={`continue-${String(each.run)}`}
                         title="flown again up to its last item, then it goes on"
-                        onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}>{continued() === Number(each.run) ? 'catching up…' : 'continue'}</button>
+                        onClick={() => void begin({ continue_run: Number(each.run), pace: 1 })}
+                      >
+                        {continued() === Number(each.run) ? 'catching up…' : 'continue'}
+                      </button>
                     )}
                   </td>
                 </tr>

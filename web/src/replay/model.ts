@@ -18,7 +18,12 @@ export function boundsOf(run: RunStore): Bounds {
 }
 
 /** Where it is `seconds` later; it stops at the end. */
-export function advanced(at_e_s: number, seconds: number, pace: number, end_e_s: number): { at: number; ended: boolean } {
+export function advanced(
+  at_e_s: number,
+  seconds: number,
+  pace: number,
+  end_e_s: number,
+): { at: number; ended: boolean } {
   const at = Math.min(end_e_s, at_e_s + seconds * pace);
   return { at, ended: at >= end_e_s };
 }
@@ -61,7 +66,8 @@ export function playOrHold(): void {
 export function changeReplayPace(direction: 1 | -1): void {
   const now = replay.value;
   if (!now) return;
-  const pace = direction > 0 ? REPLAY_PACES.find((each) => each > now.pace) : REPLAY_PACES.findLast((each) => each < now.pace);
+  const pace =
+    direction > 0 ? REPLAY_PACES.find((each) => each > now.pace) : REPLAY_PACES.findLast((each) => each < now.pace);
   if (pace !== undefined) replay.value = { ...now, pace };
 }
 

@@ -7,13 +7,18 @@ import { signal } from '@preact/signals';
  * `answer`: all that it said, where that is JSON.
  */
 export class Refused extends Error {
-  constructor(readonly status: number, words: string, readonly answer?: unknown) {
+  constructor(
+    readonly status: number,
+    words: string,
+    readonly answer?: unknown,
+  ) {
     super(words);
   }
 }
 
 /** Whether it may have been done all the same: without an answer, and where the server, or what stands before it, failed in the middle. */
-export const isOpen = (error: unknown): boolean => !(error instanceof Refused) || error.status === 0 || error.status >= 500;
+export const isOpen = (error: unknown): boolean =>
+  !(error instanceof Refused) || error.status === 0 || error.status >= 500;
 
 /** Counts answers that say: log in. */
 export const turnedAway = signal(0);
@@ -29,15 +34,24 @@ export function giveUpReads(): void {
 }
 
 /** `within_ms`: Infinity for what takes as long as it takes. */
-export async function call<T>(method: 'GET' | 'POST' | 'PATCH' | 'DELETE', path: string, body?: object, within_ms = ANSWER_WITHIN_MS): Promise<T> {
+export async function call<T>(
+  method: 'GET' | 'POST' | 'PATCH' | 'DELETE',
+  path: string,
+  body?: object,
+  within_ms = ANSWER_WITHIN_MS,
+): Promise<T> {
   const lost = (what: string) => new Refused(0, method === 'GET' ? what : `${what}: whether it was taken is not known`);
   let response: Response;
   let text: string;
   try {
     response = await fetch(`/api/v1${path}`, {
-      method, credentials: 'same-origin', cache: 'no-store',
+      method,
+      credentials: 'same-origin',
+      cache: 'no-store',
       ...(body && { headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) }),
-      ...(Number.isFinite(within_ms) && { signal: AbortSignal.any([AbortSignal.timeout(within_ms), ...(method === 'GET' ? [reads.signal] : [])]) }),
+      ...(Number.isFinite(within_ms) && {
+        signal: AbortSignal.any([AbortSignal.timeout(within_ms), ...(method === 'GET' ? [reads.signal] : [])]),
+      }),
     });
     text = await response.text(); // an answer may break off after its head
   } catch (error) {

@@ -7,9 +7,12 @@ const server = aServer();
 
 it('a page begins to listen though the server does not say who it is', async () => {
   const listening = vi.fn();
-  vi.stubGlobal('Worker', class {
-    postMessage = listening;
-  });
+  vi.stubGlobal(
+    'Worker',
+    class {
+      postMessage = listening;
+    },
+  );
   vi.useFakeTimers();
   server.routes['GET /session'] = () => new Promise(() => undefined);
   server.routes['GET /dictionary'] = { json: { channels: [], commands: [], tones: [] } };

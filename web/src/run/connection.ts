@@ -7,7 +7,10 @@ import { Refused, call, turnedAway } from './api';
 import { notify, store } from './shown';
 
 export const stream = signal<{ state: StreamState; attempt: number; gaps: number; serverVersion: string }>({
-  state: 'connecting', attempt: 0, gaps: 0, serverVersion: '',
+  state: 'connecting',
+  attempt: 0,
+  gaps: 0,
+  serverVersion: '',
 });
 export const isLost = computed(() => stream.value.state === 'lost');
 
@@ -95,7 +98,11 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
     setTimeout(() => {
       if (!requests.delete(request)) return;
       if (!intent.dryRun) unanswered.set(request, intent.command ?? `${intent.action} of command ${intent.number}`);
-      reject(new OutcomeUnknown(`no answer came in ${ANSWER_WITHIN_MS / 1000} s: whether it was taken is not known; the history below will say`));
+      reject(
+        new OutcomeUnknown(
+          `no answer came in ${ANSWER_WITHIN_MS / 1000} s: whether it was taken is not known; the history below will say`,
+        ),
+      );
     }, ANSWER_WITHIN_MS);
     post({ type: 'command', request, run: store.value?.id ?? 0, intent });
   });
@@ -104,7 +111,11 @@ export function sendCommand(intent: CommandIntent): Promise<CommandReply> {
 /** The connection is gone, and with it every answer that was to come. */
 export function giveUpCommands(): void {
   for (const request of requests.values()) {
-    request.reject(new OutcomeUnknown('the connection was lost before an answer came: whether it was taken is not known; the history below will say'));
+    request.reject(
+      new OutcomeUnknown(
+        'the connection was lost before an answer came: whether it was taken is not known; the history below will say',
+      ),
+    );
   }
   requests.clear();
 }
@@ -118,7 +129,10 @@ export function takeAnswer(message: Extract<FromWorker, { type: 'reply' | 'not_s
       requests.delete(request);
       const { accepted, command, reason } = message.reply;
       const late = unanswered.get(request);
-      if (late !== undefined) notify(`${late}: the answer has come late. ${accepted ? `It was taken${command > 0n ? ` as #${command}` : ''}.` : `It was refused: ${reason}; nothing was sent.`}`);
+      if (late !== undefined)
+        notify(
+          `${late}: the answer has come late. ${accepted ? `It was taken${command > 0n ? ` as #${command}` : ''}.` : `It was refused: ${reason}; nothing was sent.`}`,
+        );
       unanswered.delete(request);
       break;
     }

@@ -24,15 +24,19 @@ async function refine(): Promise<void> {
     if (!run || !span) break;
     const [from, to] = [run.entrySclk + span.from, run.entrySclk + span.to];
     const names = plottedChannels();
-    const questions = Array.from({ length: Math.ceil(names.length / CHANNELS_A_QUESTION) }, (_, i) => names.slice(i * CHANNELS_A_QUESTION, (i + 1) * CHANNELS_A_QUESTION));
+    const questions = Array.from({ length: Math.ceil(names.length / CHANNELS_A_QUESTION) }, (_, i) =>
+      names.slice(i * CHANNELS_A_QUESTION, (i + 1) * CHANNELS_A_QUESTION),
+    );
     try {
-      await Promise.all(questions.map(async (some) => {
-        const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS, live));
-        if (store.peek() !== run) return;
-        performance.mark('aeolis-detail');
-        // Live samples that came while the answer was on its way are newer than it, and stay.
-        for (const column of columnsOf(list)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
-      }));
+      await Promise.all(
+        questions.map(async (some) => {
+          const list = await ask<SeriesAnswer[]>('series', seriesPath(run.id, some, from, to, POINTS, live));
+          if (store.peek() !== run) return;
+          performance.mark('aeolis-detail');
+          // Live samples that came while the answer was on its way are newer than it, and stay.
+          for (const column of columnsOf(list)) run.addRange([column], from, Math.min(to, column.sclk.at(-1) ?? to));
+        }),
+      );
     } catch {
       // What is held stays; the header says when there is no connection.
     }

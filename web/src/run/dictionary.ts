@@ -1,8 +1,6 @@
 // The mission's words, as the API tells them, with the look-ups that the panels need.
 import { LAYOUT } from '../layout';
-import type {
-  DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone,
-} from '../gen/aeolis/v1/run_pb';
+import type { DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone } from '../gen/aeolis/v1/run_pb';
 
 export class Dictionary {
   readonly channels: DictionaryChannel[];

@@ -15,13 +15,22 @@ export interface FirstLook {
 }
 
 /** The run that will be shown, if `wanted` (0: whichever goes on, else the newest) is one; only what was asked for at its address, or the layout's plots. */
-export async function firstLook(runs: readonly RunState[], wanted: number, named: readonly string[]): Promise<FirstLook | undefined> {
+export async function firstLook(
+  runs: readonly RunState[],
+  wanted: number,
+  named: readonly string[],
+): Promise<FirstLook | undefined> {
   const run = runs.find((each) => Number(each.run) === wanted) ?? runs.find(isGoing) ?? runs[0];
   if (!run) return undefined;
   const names = named.length > 0 ? named : LAYOUT.plots.map((plot) => plot.channel[0]);
   try {
-    const response = await fetch(`/api/v1/runs/${run.run}/channels?names=${names.map(encodeURIComponent).join(',')}&points=${POINTS}&format=protobuf`, { credentials: 'same-origin' });
-    return response.ok ? { run: Number(run.run), columns: columnsOf(readSeriesList(new Uint8Array(await response.arrayBuffer()))) } : undefined;
+    const response = await fetch(
+      `/api/v1/runs/${run.run}/channels?names=${names.map(encodeURIComponent).join(',')}&points=${POINTS}&format=protobuf`,
+      { credentials: 'same-origin' },
+    );
+    return response.ok
+      ? { run: Number(run.run), columns: columnsOf(readSeriesList(new Uint8Array(await response.arrayBuffer()))) }
+      : undefined;
   } catch {
     return undefined;
   }
@@ -35,7 +44,13 @@ let asked: FirstAnswers | undefined;
 
 export function askFirst(): void {
   const runs = askRuns();
-  asked = { runs, look: runs.then((all) => firstLook(all, wantedRun(), namedChannels()), () => undefined) };
+  asked = {
+    runs,
+    look: runs.then(
+      (all) => firstLook(all, wantedRun(), namedChannels()),
+      () => undefined,
+    ),
+  };
 }
 
 /** What was asked before; once that was taken, it is asked anew. */

@@ -5,23 +5,51 @@ import { allLimitsText, contextAt, isWorst, limitsIn, limitsOver, limitsText, ou
 const speed = aDictionary.pick(['speed_mps'])!;
 const altitude = aDictionary.pick(['altitude_m'])!;
 /** Late cruise to SCLK 800, then range control to 850, then landed. */
-const flown = aStore([samples(700, { 1: 0 }), samples(799, { 1: 0 }), samples(800, { 1: 4 }), samples(849, { 1: 4 }), samples(850, { 1: 9 }), samples(899, { 1: 9 })]);
+const flown = aStore([
+  samples(700, { 1: 0 }),
+  samples(799, { 1: 0 }),
+  samples(800, { 1: 4 }),
+  samples(849, { 1: 4 }),
+  samples(850, { 1: 9 }),
+  samples(899, { 1: 9 }),
+]);
 
 describe('limits', () => {
   it('of a context hold in it and nowhere else; where none holds, those without one', () => {
     const at = (sclk: number, value: number) => outside(limitsIn(speed, contextAt(flown, aDictionary, sclk)), value);
-    expect([at(799, 100), at(800, 100), at(840, 130), at(850, 130), at(850, 7000)]).toEqual([undefined, 'watch', 'distress', undefined, 'watch']);
+    expect([at(799, 100), at(800, 100), at(840, 130), at(850, 130), at(850, 7000)]).toEqual([
+      undefined,
+      'watch',
+      'distress',
+      undefined,
+      'watch',
+    ]);
     expect(outside(limitsIn(speed, undefined), 100)).toBeUndefined();
   });
   it('of a plot are stretches, each with its context; a change of state that changes no limit is none', () => {
-    expect(limitsOver(flown, aDictionary, speed, 650, 900).map(({ from_sclk, to_sclk, context, limits }) => [from_sclk, to_sclk, context, limits.map((limit) => limit.above)])).toEqual([
-      [650, 800, undefined, [6000]], [800, 850, 'range_control', [90, 120]], [850, 900, 'landed', [6000]],
+    expect(
+      limitsOver(flown, aDictionary, speed, 650, 900).map(({ from_sclk, to_sclk, context, limits }) => [
+        from_sclk,
+        to_sclk,
+        context,
+        limits.map((limit) => limit.above),
+      ]),
+    ).toEqual([
+      [650, 800, undefined, [6000]],
+      [800, 850, 'range_control', [90, 120]],
+      [850, 900, 'landed', [6000]],
     ]);
     expect(limitsOver(flown, aDictionary, altitude, 650, 900)).toHaveLength(1);
     expect(limitsOver(flown, aDictionary, aDictionary.pick(['next_desired_sclk'])!, 650, 900)).toEqual([]);
   });
   it('of distress have the colour of alarms', () => {
-    expect(['watch', 'warning', 'distress', 'critical', 'severe'].map(isWorst)).toEqual([false, false, true, true, true]);
+    expect(['watch', 'warning', 'distress', 'critical', 'severe'].map(isWorst)).toEqual([
+      false,
+      false,
+      true,
+      true,
+      true,
+    ]);
   });
   it('are listed as they hold now, and all of them with their context', () => {
     expect(limitsText(limitsIn(speed, 'range_control'))).toBe('watch > 90; distress > 120');

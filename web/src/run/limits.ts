@@ -23,8 +23,9 @@ export function limitsIn(channel: DictionaryChannel, context: string | undefined
 
 /** The severity of the worst of `limits` that is passed. */
 export function outside(limits: readonly AlarmLimit[], value: number): string | undefined {
-  return limits.findLast((limit) =>
-    (limit.below !== undefined && value < limit.below) || (limit.above !== undefined && value > limit.above))?.severity;
+  return limits.findLast(
+    (limit) => (limit.below !== undefined && value < limit.below) || (limit.above !== undefined && value > limit.above),
+  )?.severity;
 }
 
 export interface Stretch {
@@ -35,10 +36,18 @@ export interface Stretch {
 }
 
 /** Which limits held when, within [from, to]. */
-export function limitsOver(run: RunStore, words: Dictionary, channel: DictionaryChannel, from_sclk: number, to_sclk: number): Stretch[] {
+export function limitsOver(
+  run: RunStore,
+  words: Dictionary,
+  channel: DictionaryChannel,
+  from_sclk: number,
+  to_sclk: number,
+): Stretch[] {
   if (channel.limits.length === 0 || !(from_sclk < to_sclk)) return [];
   const all: Stretch[] = [];
-  for (const at of channel.limits.some((limit) => limit.context !== '') ? changesOfContext(run, words, from_sclk, to_sclk) : [from_sclk]) {
+  for (const at of channel.limits.some((limit) => limit.context !== '')
+    ? changesOfContext(run, words, from_sclk, to_sclk)
+    : [from_sclk]) {
     const context = contextAt(run, words, at);
     const limits = limitsIn(channel, context);
     const last = all.at(-1);
@@ -55,7 +64,11 @@ function changesOfContext(run: RunStore, words: Dictionary, from_sclk: number, t
   const changes = new Set([from_sclk]);
   for (const series of phase ? [run.live.get(phase.id), run.recorded.get(phase.id)] : []) {
     if (!series) continue;
-    for (let i = Math.max(1, series.firstAfter(from_sclk)); i < series.length && (series.sclk[i] as number) < to_sclk; ++i) {
+    for (
+      let i = Math.max(1, series.firstAfter(from_sclk));
+      i < series.length && (series.sclk[i] as number) < to_sclk;
+      ++i
+    ) {
       if (series.value[i] !== series.value[i - 1]) changes.add(series.sclk[i] as number);
     }
   }
@@ -77,8 +90,12 @@ function boundsText(limit: AlarmLimit): string {
 /** All of a channel, each context by its name. */
 export function allLimitsText(channel: DictionaryChannel): string {
   const contexts = [...new Set(channel.limits.map((limit) => limit.context))];
-  return contexts.map((context) => {
-    const words = limitsText(channel.limits.filter((limit) => limit.context === context));
-    return contexts.length === 1 && context === '' ? words : `${context === '' ? 'else' : `in ${context.replaceAll('_', ' ')}`}: ${words}`;
-  }).join('\n');
+  return contexts
+    .map((context) => {
+      const words = limitsText(channel.limits.filter((limit) => limit.context === context));
+      return contexts.length === 1 && context === ''
+        ? words
+        : `${context === '' ? 'else' : `in ${context.replaceAll('_', ' ')}`}: ${words}`;
+    })
+    .join('\n');
 }

@@ -2,7 +2,10 @@
 export class Pace {
   private next = -Infinity;
 
-  constructor(private readonly every_ms: number, private readonly least_ms: number) {}
+  constructor(
+    private readonly every_ms: number,
+    private readonly least_ms: number,
+  ) {}
 
   /** How long it is still to wait; none: 0. */
   wait(now_ms: number): number {

@@ -10,7 +10,10 @@ import { store } from './shown';
 
 const asked: Extract<ToWorker, { type: 'ask' }>[] = [];
 const passes = (ms: number) => act(async () => void (await vi.advanceTimersByTimeAsync(ms)));
-const answer = async (of: { ask: number }, what: { ok: true; value: unknown } | { ok: false; status: number; error: string }) => {
+const answer = async (
+  of: { ask: number },
+  what: { ok: true; value: unknown } | { ok: false; status: number; error: string },
+) => {
   onMessage({ type: 'answer', ask: of.ask, ...what } as never);
   await passes(0);
 };
@@ -35,7 +38,11 @@ it('a report of a run that is over is asked for until it has come, once, and of 
   const one = store.value;
   await act(() => void (store.value = aStore([], aRun({ run: 2n }))));
   await answer(asked[1]!, { ok: true, value: 1 }); // of the run of before
-  expect([store.value === one, asked.map((each) => each.path), place.innerText]).toEqual([false, ['/runs/1/proof', '/runs/1/proof', '/runs/2/proof'], 'asking']);
+  expect([store.value === one, asked.map((each) => each.path), place.innerText]).toEqual([
+    false,
+    ['/runs/1/proof', '/runs/1/proof', '/runs/2/proof'],
+    'asking',
+  ]);
   await answer(asked[2]!, { ok: true, value: 2 });
   await passes(5000);
   expect([asked.length, place.innerText]).toEqual([3, '2']);

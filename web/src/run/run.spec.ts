@@ -28,7 +28,10 @@ describe('a series', () => {
   it('stays bounded and keeps the extremes', () => {
     const series = new Series();
     const count = 200_000;
-    series.append(Float64Array.from({ length: count }, (_, i) => i), Float64Array.from({ length: count }, (_, i) => (i === 777 ? 1e6 : 0)));
+    series.append(
+      Float64Array.from({ length: count }, (_, i) => i),
+      Float64Array.from({ length: count }, (_, i) => (i === 777 ? 1e6 : 0)),
+    );
     expect(series.length).toBeLessThanOrEqual(65536);
     expect(Math.max(...series.value.slice(0, series.length))).toBe(1e6);
     expect(series.sclk[series.length - 1]).toBe(count - 1);
@@ -44,11 +47,21 @@ describe('a series', () => {
 describe('a run', () => {
   it('shows an event once that came live and again with the recording', () => {
     const same = { id: 5, name: 'X', text: 'x', sclk: 990 };
-    const store = aStore([event(same), event({ ...same, source: 2, duplicate: true }), event({ id: 6, name: 'Y', sclk: 980, source: 2 })]);
-    expect(store.events.map((row) => [row.fact.name, row.live, row.recorded])).toEqual([['Y', false, true], ['X', true, true]]);
+    const store = aStore([
+      event(same),
+      event({ ...same, source: 2, duplicate: true }),
+      event({ id: 6, name: 'Y', sclk: 980, source: 2 }),
+    ]);
+    expect(store.events.map((row) => [row.fact.name, row.live, row.recorded])).toEqual([
+      ['Y', false, true],
+      ['X', true, true],
+    ]);
   });
   it('keeps both ways by which a firing is known', () => {
-    const store = aStore([firing({ timepoint: 1, name: 'a', firedSclk: 950 }), firing({ timepoint: 1, name: 'a', firedSclk: 950, source: 2 })]);
+    const store = aStore([
+      firing({ timepoint: 1, name: 'a', firedSclk: 950 }),
+      firing({ timepoint: 1, name: 'a', firedSclk: 950, source: 2 }),
+    ]);
     const pair = store.firings.get(1);
     expect([pair?.live?.firedSclk, pair?.recorded?.firedSclk]).toEqual([950, 950]);
   });
@@ -59,7 +72,10 @@ describe('a run', () => {
     expect(store.latest(3, 800)).toBeUndefined();
   });
   it('collects the stages of a command under its number', () => {
-    const store = aStore([stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok', arguments: 'a=1' }), stage({ command: 1n, stage: 'radiated', status: 'ok' })]);
+    const store = aStore([
+      stage({ command: 1n, name: 'NO_OP', stage: 'queued', status: 'ok', arguments: 'a=1' }),
+      stage({ command: 1n, stage: 'radiated', status: 'ok' }),
+    ]);
     expect([...(store.commands.get(1)?.stages.keys() ?? [])]).toEqual(['queued', 'radiated']);
     expect(store.commands.get(1)?.arguments).toBe('a=1');
   });
@@ -82,7 +98,15 @@ describe('times', () => {
     expect(fromEntry(NaN)).toBe('E —');
   });
   it('reads what people type', () => {
-    expect(['E+3:20', '-120', '200.5', '4:28', 'e−1:00', '1:02:03', ''].map(readFromEntry)).toEqual([200, -120, 200.5, 268, -60, 3723, undefined]);
+    expect(['E+3:20', '-120', '200.5', '4:28', 'e−1:00', '1:02:03', ''].map(readFromEntry)).toEqual([
+      200,
+      -120,
+      200.5,
+      268,
+      -60,
+      3723,
+      undefined,
+    ]);
     expect(readFromEntry('soon')).toBeUndefined();
   });
   it('says durations', () => {

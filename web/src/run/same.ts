@@ -1,4 +1,5 @@
 // Whether two words of a run are of one run. Its number alone says nothing: each archive counts from 1.
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 
-export const isSameRun = (a: RunState, b: RunState): boolean => a.run === b.run && a.started === b.started && a.seed === b.seed;
+export const isSameRun = (a: RunState, b: RunState): boolean =>
+  a.run === b.run && a.started === b.started && a.seed === b.seed;

@@ -15,8 +15,10 @@ const soon = () => vi.advanceTimersByTimeAsync(0);
 
 describe('a server that does not answer', () => {
   let sent: { request: number; intent: CommandIntent }[];
-  const answer = (request: number, fields: { accepted: boolean; command?: bigint; reason?: string; dryRun?: boolean }) =>
-    onMessage({ type: 'reply', reply: create(CommandReplySchema, { request: BigInt(request), ...fields }) });
+  const answer = (
+    request: number,
+    fields: { accepted: boolean; command?: bigint; reason?: string; dryRun?: boolean },
+  ) => onMessage({ type: 'reply', reply: create(CommandReplySchema, { request: BigInt(request), ...fields }) });
   beforeEach(() => {
     vi.useFakeTimers();
     sent = [];
@@ -41,14 +43,20 @@ describe('a server that does not answer', () => {
   it('leaves a command not known, sends nothing again whatever is pressed, and is put right by an answer that comes late', async () => {
     for (const [late, words] of [
       [{ accepted: true, command: 7n }, 'NO_OP: the answer has come late. It was taken as #7.'],
-      [{ accepted: false, reason: 'no pass' }, 'NO_OP: the answer has come late. It was refused: no pass; nothing was sent.'],
+      [
+        { accepted: false, reason: 'no pass' },
+        'NO_OP: the answer has come late. It was refused: no pass; nothing was sent.',
+      ],
     ] as const) {
       const request = await send();
       const before = sent.length;
       await vi.advanceTimersByTimeAsync(29_900);
       expect(step.value).toBe('sending');
       await vi.advanceTimersByTimeAsync(200);
-      expect([message.value?.good, message.value?.text]).toEqual([false, 'NO_OP: no answer came in 30 s: whether it was taken is not known; the history below will say']);
+      expect([message.value?.good, message.value?.text]).toEqual([
+        false,
+        'NO_OP: no answer came in 30 s: whether it was taken is not known; the history below will say',
+      ]);
       void forward();
       void forward();
       await soon();
@@ -70,11 +78,15 @@ describe('a server that does not answer', () => {
 
 describe('a run', () => {
   const one = { started: '2026-01-01T10:00:00Z', seed: 1n };
-  const state = (now: 'live' | 'catching_up' | 'lost') => onMessage({ type: 'stream', state: now, attempt: 0, gaps: 0, serverVersion: '' });
+  const state = (now: 'live' | 'catching_up' | 'lost') =>
+    onMessage({ type: 'stream', state: now, attempt: 0, gaps: 0, serverVersion: '' });
   let heard: ToWorker[];
   beforeEach(() => {
     vi.spyOn(location, 'reload').mockImplementation(() => undefined);
-    vi.stubGlobal('fetch', vi.fn(async () => new Response('{}')));
+    vi.stubGlobal(
+      'fetch',
+      vi.fn(async () => new Response('{}')),
+    );
     sessionStorage.clear();
     dismissNotice();
     heard = [];
@@ -85,7 +97,12 @@ describe('a run', () => {
     vi.unstubAllGlobals();
   });
   const posted = () => vi.mocked(fetch).mock.calls.filter(([, how]) => how?.method !== 'GET');
-  const all = () => Promise.allSettled([sendCommand({ command: 'NO_OP' }), change('/runs/1/notes', { text: 'x' })].map((sent) => sent.catch((error: Error) => Promise.reject(error.message))));
+  const all = () =>
+    Promise.allSettled(
+      [sendCommand({ command: 'NO_OP' }), change('/runs/1/notes', { text: 'x' })].map((sent) =>
+        sent.catch((error: Error) => Promise.reject(error.message)),
+      ),
+    );
   it('is another one though it has the number of the one that is shown, if it was started at another time or with another seed', async () => {
     const [shown, told] = [store.value, vi.mocked(location.reload)];
     onMessage({ type: 'run', run: aRun({ ...one, pace: 7 }), fresh: false });
@@ -93,9 +110,15 @@ describe('a run', () => {
     const others: Partial<RunState>[] = [{ started: '2026-01-02T10:00:00Z' }, { seed: 2n }];
     for (const [i, other] of others.entries()) {
       state('live');
-      onMessage({ type: 'run', run: aRun({ ...one, ...other, scenario: 'tones_only', $typeName: undefined } as never), fresh: false });
+      onMessage({
+        type: 'run',
+        run: aRun({ ...one, ...other, scenario: 'tones_only', $typeName: undefined } as never),
+        fresh: false,
+      });
       expect([told.mock.calls.length, store.value === shown, shown?.run.scenario]).toEqual([i + 1, true, 'nominal']);
-      expect(sessionStorage.getItem('aeolis-left')).toBe('The server has another archive now: run 1, nominal, which was shown here, is not in it.');
+      expect(sessionStorage.getItem('aeolis-left')).toBe(
+        'The server has another archive now: run 1, nominal, which was shown here, is not in it.',
+      );
       control({ action: 'stop' });
       await all();
       expect([heard, posted()]).toEqual([[], []]);
@@ -105,11 +128,17 @@ describe('a run', () => {
     expect(told).toHaveBeenCalledTimes(3);
   });
   it('is sent nothing while the server has not said that it still has it: no command, no pace, no end, no note', async () => {
-    for (const [now, words] of [['catching_up', 'catching up: nothing was sent'], ['lost', 'not connected: nothing was sent']] as const) {
+    for (const [now, words] of [
+      ['catching_up', 'catching up: nothing was sent'],
+      ['lost', 'not connected: nothing was sent'],
+    ] as const) {
       state(now);
       control({ action: 'pace', pace: 100 });
       control({ action: 'stop' });
-      expect(await all()).toEqual([{ status: 'rejected', reason: words }, { status: 'rejected', reason: words }]);
+      expect(await all()).toEqual([
+        { status: 'rejected', reason: words },
+        { status: 'rejected', reason: words },
+      ]);
       expect([heard, posted(), notices.value.at(-1)?.text]).toEqual([[], [], words]);
     }
     state('live');
@@ -118,7 +147,11 @@ describe('a run', () => {
   });
   it('of it nothing is asked from when the connection broke until the server that came back has said that it has it', async () => {
     const asked: string[] = [];
-    useForTest(aStore([], aRun(one)), aDictionary, (message) => void (message.type === 'ask' && asked.push(message.path)));
+    useForTest(
+      aStore([], aRun(one)),
+      aDictionary,
+      (message) => void (message.type === 'ask' && asked.push(message.path)),
+    );
     const askAll = async () => {
       asked.length = vi.mocked(fetch).mock.calls.length = 0;
       void ask('packets', '/runs/1/packets').catch(() => undefined);
@@ -138,20 +171,35 @@ describe('a run', () => {
     expect(await askAll(), 'the same').toEqual(every);
   });
   it('waits for no answer over a connection that is lost, so that what asks again can', async () => {
-    vi.stubGlobal('fetch', vi.fn((_path: string, { signal }: RequestInit) => new Promise((_, reject) => signal?.addEventListener('abort', () => reject(signal.reason as Error)))));
+    vi.stubGlobal(
+      'fetch',
+      vi.fn(
+        (_path: string, { signal }: RequestInit) =>
+          new Promise((_, reject) => signal?.addEventListener('abort', () => reject(signal.reason as Error))),
+      ),
+    );
     state('live');
     const said = read('/runs/1/alarms').catch((error: Error) => error.message);
     state('lost');
     expect(await said).toBe('no answer came');
   });
   it('is left at once when the server that came back refuses it and has no such run', async () => {
-    vi.stubGlobal('fetch', vi.fn(async () => new Response(JSON.stringify({ runs: [] }))));
+    vi.stubGlobal(
+      'fetch',
+      vi.fn(async () => new Response(JSON.stringify({ runs: [] }))),
+    );
     const left = vi.mocked(location.reload);
-    for (const [now, times] of [['live', 0], ['lost', 1]] as const) {
+    for (const [now, times] of [
+      ['live', 0],
+      ['lost', 1],
+    ] as const) {
       state(now);
       onMessage({ type: 'refusal', reason: 'no run 1' });
       await new Promise((resolve) => setTimeout(resolve));
-      expect([vi.mocked(fetch).mock.calls.filter(([path]) => path === '/api/v1/runs').length, left.mock.calls.length], now).toEqual([times, times]);
+      expect(
+        [vi.mocked(fetch).mock.calls.filter(([path]) => path === '/api/v1/runs').length, left.mock.calls.length],
+        now,
+      ).toEqual([times, times]);
     }
   });
   it('that begins while the past of another is looked at is told once, and shown when who looks comes back', () => {
@@ -162,7 +210,11 @@ describe('a run', () => {
     const next = aRun({ run: 2n, started: '2026-01-01T12:00:00Z', seed: 2n });
     for (let i = 0; i < 2; ++i) onMessage({ type: 'run', run: next, fresh: true });
     const words = 'Run 2, nominal, has begun; Esc leaves the past of run 1 for it.';
-    expect([store.value === shown, notices.value.map((notice) => notice.text), runs.value[0]?.run]).toEqual([true, [words], 2n]);
+    expect([store.value === shown, notices.value.map((notice) => notice.text), runs.value[0]?.run]).toEqual([
+      true,
+      [words],
+      2n,
+    ]);
     dismissNotice();
     onMessage({ type: 'run', run: next, fresh: false });
     expect(notices.value).toEqual([]);
@@ -170,10 +222,22 @@ describe('a run', () => {
     expect([store.value, pastRange.value, heard.at(-1)]).toEqual([undefined, undefined, { type: 'watch', run: 0 }]);
   });
   it('that is over is not going again by an answer from before its end; one that was cut off may go on', async () => {
-    for (const [held, polled, then] of [['finished', 'running', 'finished'], ['interrupted', 'running', 'running'], ['interrupted', 'interrupted', 'interrupted']]) {
+    for (const [held, polled, then] of [
+      ['finished', 'running', 'finished'],
+      ['interrupted', 'running', 'running'],
+      ['interrupted', 'interrupted', 'interrupted'],
+    ]) {
       useForTest(aStore([], aRun({ ...one, state: held })), aDictionary);
       runs.value = [];
-      vi.stubGlobal('fetch', vi.fn(async () => new Response(JSON.stringify({ runs: [{ run: '1', started: one.started, seed: '1', state: polled, last_seq: '0' }] }))));
+      vi.stubGlobal(
+        'fetch',
+        vi.fn(
+          async () =>
+            new Response(
+              JSON.stringify({ runs: [{ run: '1', started: one.started, seed: '1', state: polled, last_seq: '0' }] }),
+            ),
+        ),
+      );
       await refreshRuns();
       expect([runs.value[0]?.state, store.value?.run.state]).toEqual([then, then]);
     }

@@ -12,7 +12,21 @@ import { wantedRun } from './address';
 import { firstAnswers } from './first_look';
 import type { FirstLook } from './first_look';
 import { isSameRun } from './same';
-import { anchors, asHeard, dictionary, notify, pastRange, plottedChannels, replay, runs, scenarios, store, tick, timepoints, watched } from './shown';
+import {
+  anchors,
+  asHeard,
+  dictionary,
+  notify,
+  pastRange,
+  plottedChannels,
+  replay,
+  runs,
+  scenarios,
+  store,
+  tick,
+  timepoints,
+  watched,
+} from './shown';
 import { askDictionary, askRuns, isGoing } from './start';
 import { RunStore } from './store';
 
@@ -40,7 +54,10 @@ const SESSION_MS = 5000; // ours: a stream by which the server does not know thi
 const wholeHistory = new WeakSet<RunStore>(); // what of it has come needs no first look any more
 
 /** What is looked at stays until the new run is there, or the one that was cut off has caught up. Throws the server's words. */
-export async function startRehearsal(order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number }, isWaitedFor = () => true): Promise<void> {
+export async function startRehearsal(
+  order: { scenario: string; seed: string; pace: number } | { continue_run: number; pace: number },
+  isWaitedFor = () => true,
+): Promise<void> {
   await call('POST', '/rehearsals', order, Infinity); // one that was cut off is flown again as far as it had come before the answer is there
   if (isWaitedFor()) watch(0);
 }
@@ -65,7 +82,8 @@ const askedLive = new WeakSet<RunStore>();
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
   post({ type: 'refresh_history', all: !of.going, live: false });
-  if (asHeard.value) post({ type: 'refresh_history', all: true, live: true }); // the answer above replaces the one of live alone
+  if (asHeard.value)
+    post({ type: 'refresh_history', all: true, live: true }); // the answer above replaces the one of live alone
   else askedLive.delete(of);
 }
 
@@ -126,7 +144,10 @@ function takeOtherArchive(): void {
   const run = store.value;
   inDoubt.value = true;
   stream.value = { ...stream.value, state: 'catching_up' };
-  sessionStorage.setItem(LEFT, `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`);
+  sessionStorage.setItem(
+    LEFT,
+    `The server has another archive now${run ? `: run ${run.id}, ${run.run.scenario}, which was shown here, is not in it` : ''}.`,
+  );
   const url = new URL(location.href);
   url.searchParams.delete('run');
   history.replaceState(null, '', url);
@@ -176,7 +197,8 @@ export async function refreshRuns(): Promise<void> {
   try {
     const all = await askRuns();
     const isOther = (run: RunState) => all.some((each) => each.run === run.run && !isSameRun(each, run));
-    if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run))) return takeOtherArchive();
+    if (before.some(isOther) || (shown && shown === store.value && !all.some((each) => each.run === shown.run.run)))
+      return takeOtherArchive();
     if (doubted && shown) inDoubt.value = false; // it is among them
     const held = store.value;
     // What is over stays over: an answer from before its end may come after it. One that was cut off may go on.
@@ -242,8 +264,13 @@ export async function begin(): Promise<void> {
   }
   const chosen = runs.value.some((run) => Number(run.run) === wanted)
     ? wanted
-    : runs.value.some(isGoing) ? 0 : Number(runs.value[0]?.run ?? 0);
-  if (wanted > 0 && chosen !== wanted) notify(`Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`);
+    : runs.value.some(isGoing)
+      ? 0
+      : Number(runs.value[0]?.run ?? 0);
+  if (wanted > 0 && chosen !== wanted)
+    notify(
+      `Run ${wanted} is not in this archive; what is shown is ${chosen === 0 ? 'the run that goes on' : chosen > 0 ? `run ${chosen}` : 'nothing'}.`,
+    );
   watched.value = chosen;
   knowing.catch((error: unknown) => notify(`the server does not say who you are: ${wordsFor(error)}`));
   const words = dictionary.value as Dictionary;
@@ -261,7 +288,9 @@ export async function begin(): Promise<void> {
   startWorker();
   post({ type: 'open', run: chosen, packets: Object.fromEntries(words.packets), plotted, others });
   ask<ScenarioList>('scenarios', '/scenarios').then(
-    (list) => (scenarios.value = list.scenarios), () => undefined);
+    (list) => (scenarios.value = list.scenarios),
+    () => undefined,
+  );
   let wasIn = true;
   effect(() => {
     const isIn = access.value.state !== 'out';
@@ -292,7 +321,11 @@ export async function begin(): Promise<void> {
 }
 
 /** For tests of views: a page without a worker, or with one that only `hears`; what it would say is given to onMessage. */
-export function useForTest(run: RunStore | undefined, words: Dictionary | undefined, hears?: (message: ToWorker) => void): void {
+export function useForTest(
+  run: RunStore | undefined,
+  words: Dictionary | undefined,
+  hears?: (message: ToWorker) => void,
+): void {
   sendBy(hears && ({ postMessage: hears } as Worker));
   stream.value = { ...stream.value, state: 'live' };
   inDoubt.value = false;

@@ -66,7 +66,8 @@ export function dismissNotice(id?: number): void {
 
 /** SCLK up to which things are shown: the end of the past view, else all. */
 export const cutoff = computed(() =>
-  pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity);
+  pastRange.value && store.value ? store.value.entrySclk + pastRange.value.to : Infinity,
+);
 
 /** A replay: the past view whose end moves on. `pastRange` is then what has been replayed so far. */
 export const replay = signal<{ pace: number; playing: boolean } | undefined>(undefined);
@@ -94,6 +95,12 @@ export function lookAtPast(range: { from: number; to: number }, recorded: boolea
 
 /** What is drawn over time: its history comes finer. */
 export function plottedChannels(): string[] {
-  const picks = [...namedChannels().map((name) => [name]), ...LAYOUT.plots.map((plot) => plot.channel), LAYOUT.altitude, LAYOUT.speed, LAYOUT.phase];
+  const picks = [
+    ...namedChannels().map((name) => [name]),
+    ...LAYOUT.plots.map((plot) => plot.channel),
+    LAYOUT.altitude,
+    LAYOUT.speed,
+    LAYOUT.phase,
+  ];
   return [...new Set(picks.map((names) => dictionary.value?.pick(names)?.name).filter((name) => name !== undefined))];
 }

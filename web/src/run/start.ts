@@ -18,11 +18,13 @@ const typedNames = new Map<string, string>(); // a dictionary has few names, tho
 
 function typedName(name: string): string {
   let found = typedNames.get(name);
-  if (found === undefined) typedNames.set(name, (found = name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase())));
+  if (found === undefined)
+    typedNames.set(name, (found = name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase())));
   return found;
 }
 
-export const askDictionary = async (): Promise<DictionaryReply> => typed(await call('GET', '/dictionary'), new Set(['value'])) as DictionaryReply;
+export const askDictionary = async (): Promise<DictionaryReply> =>
+  typed(await call('GET', '/dictionary'), new Set(['value'])) as DictionaryReply;
 
 export const isGoing = (run: RunState) => ['waiting', 'running', 'paused'].includes(run.state);
 

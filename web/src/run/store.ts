@@ -1,7 +1,15 @@
 // All that the page holds of one run. Filled by the stream; read by every panel. One store a run: another run, another
 // store, so that nothing of one can be seen in the other.
 import type {
-  Alarm, Clocks, CommandStage, Event, Explanation, LinkChange, TimepointFiring, Tone, Unit,
+  Alarm,
+  Clocks,
+  CommandStage,
+  Event,
+  Explanation,
+  LinkChange,
+  TimepointFiring,
+  Tone,
+  Unit,
 } from '../gen/aeolis/v1/items_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import { SOURCE_RECORDED } from '../stream/columns';
@@ -66,7 +74,10 @@ const later = (a: string, b: string): string => (a > b ? a : b);
 
 /** Channels as they were heard: each is looked at only when it is asked for. */
 class HeardSeries extends Map<number, Series> {
-  constructor(private readonly all: ReadonlyMap<number, Series>, private readonly heard: (channel: number, series: Series | undefined) => Series | undefined) {
+  constructor(
+    private readonly all: ReadonlyMap<number, Series>,
+    private readonly heard: (channel: number, series: Series | undefined) => Series | undefined,
+  ) {
     super();
   }
   override get(channel: number): Series | undefined {
@@ -113,7 +124,10 @@ export class RunStore {
   /** Counts changes of anything. */
   version = 0;
 
-  constructor(public run: RunState, private readonly isDrawn: (channel: number) => boolean = () => true) {
+  constructor(
+    public run: RunState,
+    private readonly isDrawn: (channel: number) => boolean = () => true,
+  ) {
     this.clocks = run.clocks;
   }
 
@@ -167,7 +181,9 @@ export class RunStore {
   }
   /** Tones that had been decided by then. */
   tonesBy(cutoff: number): readonly ToneRow[] {
-    return cutoff === Infinity ? this.tones : this.tones.filter(({ fact, ert }) => fact.sclk <= cutoff && this.knownBy(ert, cutoff));
+    return cutoff === Infinity
+      ? this.tones
+      : this.tones.filter(({ fact, ert }) => fact.sclk <= cutoff && this.knownBy(ert, cutoff));
   }
   /**
    * The same run as it had been heard when the vehicle was heard at `cutoff`: without what only the recording told, and without what an
@@ -176,10 +192,17 @@ export class RunStore {
   asHeardBy(cutoff: number, packetOf: (channel: number) => string | undefined): RunStore {
     if (this.heard?.version === this.version && this.heard.cutoff === cutoff) return this.heard.run;
     const until_s = cutoff === Infinity ? Infinity : this.ertOf(cutoff);
-    const was = <T extends Twin>(rows: readonly T[]) => rows.filter((row) => row.live && !(row.heard_s > until_s)).map((row) => ({ ...row, recorded: false }));
-    const firings = [...this.firings].flatMap(([id, { name, live: told, heard_s = NaN }]) => (told && !(heard_s > until_s) ? [[id, { name, live: told, heard_s }] as const] : []));
+    const was = <T extends Twin>(rows: readonly T[]) =>
+      rows.filter((row) => row.live && !(row.heard_s > until_s)).map((row) => ({ ...row, recorded: false }));
+    const firings = [...this.firings].flatMap(([id, { name, live: told, heard_s = NaN }]) =>
+      told && !(heard_s > until_s) ? [[id, { name, live: told, heard_s }] as const] : [],
+    );
     const run = Object.assign(Object.create(this) as RunStore, {
-      recorded: new Map<number, Series>(), live: this.liveBy(cutoff, packetOf), firings: new Map<number, FiringPair>(firings), events: was(this.events), explanations: was(this.explanations),
+      recorded: new Map<number, Series>(),
+      live: this.liveBy(cutoff, packetOf),
+      firings: new Map<number, FiringPair>(firings),
+      events: was(this.events),
+      explanations: was(this.explanations),
     });
     this.heard = { version: this.version, cutoff, run };
     return run;
@@ -190,7 +213,11 @@ export class RunStore {
     const underWay = new Map<string, { key: string; instants: Set<number> }>();
     for (const [packet, { sclk, heard }] of this.late) {
       const which = sclk.flatMap((at, i) => (at <= cutoff && (heard[i] as number) > cutoff ? [i] : []));
-      if (which.length > 0) underWay.set(packet, { key: `${which[0]} ${which.at(-1)} ${which.length}`, instants: new Set(which.map((i) => sclk[i] as number)) });
+      if (which.length > 0)
+        underWay.set(packet, {
+          key: `${which[0]} ${which.at(-1)} ${which.length}`,
+          instants: new Set(which.map((i) => sclk[i] as number)),
+        });
     }
     if (underWay.size === 0) return this.live;
     const heard = (channel: number, series: Series | undefined): Series | undefined => {
@@ -221,7 +248,9 @@ export class RunStore {
 
   /** Seconds between the samples that are held of a channel, on average; the series that has more of them counts. */
   spacing(id: number): number {
-    const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) => (series && series.length > 1 ? [(series.newestSclk - (series.sclk[0] as number)) / (series.length - 1)] : []));
+    const spacings = [this.live.get(id), this.recorded.get(id)].flatMap((series) =>
+      series && series.length > 1 ? [(series.newestSclk - (series.sclk[0] as number)) / (series.length - 1)] : [],
+    );
     return spacings.length === 0 ? 0 : Math.min(...spacings);
   }
 
@@ -272,7 +301,7 @@ export class RunStore {
     if (item.kind === 'event' || item.kind === 'unit') this.newestErt = later(this.newestErt, item.fact.ert);
     if (item.kind === 'event' || item.kind === 'tone') this.sawSclk(item.fact.sclk);
     if (ABOUT_ALARMS.has(item.kind) || this.isAboutLoss(item)) ++this.alarmsVersion;
-    if (item.kind as string === 'note') ++this.notesVersion;
+    if ((item.kind as string) === 'note') ++this.notesVersion;
     switch (item.kind) {
       case 'event':
         this.addTwin(this.events, item, item.fact.ert, (a, b) => a.id === b.id && a.text === b.text);
@@ -315,7 +344,10 @@ export class RunStore {
 
   /** Keeps `rows` in order of SCLK. What came live and again with the recording is one row that was seen twice. */
   private addTwin<T extends { sclk: number; source: number; duplicate: boolean }>(
-    rows: (Known<T> & Twin)[], item: Known<T>, ert: string, same: (a: T, b: T) => boolean,
+    rows: (Known<T> & Twin)[],
+    item: Known<T>,
+    ert: string,
+    same: (a: T, b: T) => boolean,
   ): void {
     const recorded = item.fact.source === SOURCE_RECORDED;
     const heard_s = recorded ? NaN : secondsOfDayOfYear(ert);
@@ -343,7 +375,8 @@ export class RunStore {
   private addStage(stage: CommandStage): void {
     const number = Number(stage.command);
     let row = this.commands.get(number);
-    if (!row) this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
+    if (!row)
+      this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
     if (stage.name) row.name = stage.name;
     if (stage.arguments) row.arguments = stage.arguments;
     row.stages.set(stage.stage, [...(row.stages.get(stage.stage) ?? []), stage]);
@@ -378,12 +411,16 @@ export class RunStore {
     const [sclk, heard] = [late.sclk.splice(0, half), late.heard.splice(0, half)];
     const before = this.lateForgotten.get(packet);
     this.lateForgotten.set(packet, {
-      units: (before?.units ?? 0) + half, from: Math.min(before?.from ?? Infinity, ...sclk), heard: Math.max(before?.heard ?? -Infinity, heard.at(-1) as number),
+      units: (before?.units ?? 0) + half,
+      from: Math.min(before?.from ?? Infinity, ...sclk),
+      heard: Math.max(before?.heard ?? -Infinity, heard.at(-1) as number),
     });
   }
 
   /** Packets of which it is not told any more what was still under way at `cutoff`: samples that were may be shown as heard then. */
   notTold(cutoff: number): { packet: string; units: number }[] {
-    return [...this.lateForgotten].flatMap(([packet, { units, from, heard }]) => (from <= cutoff && heard > cutoff ? [{ packet, units }] : []));
+    return [...this.lateForgotten].flatMap(([packet, { units, from, heard }]) =>
+      from <= cutoff && heard > cutoff ? [{ packet, units }] : [],
+    );
   }
 }

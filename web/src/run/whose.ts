@@ -12,5 +12,7 @@ export function landedSclk(run: RunStore | undefined): number {
 
 /** Whose value of `channel` that at `sclk` is; undefined: the vehicle's. */
 export function whoseAt(run: RunStore | undefined, channel: string, sclk: number): string | undefined {
-  return (LAYOUT.afterLanding.channels as readonly string[]).includes(channel) && sclk > landedSclk(run) ? LAYOUT.afterLanding.whose : undefined;
+  return (LAYOUT.afterLanding.channels as readonly string[]).includes(channel) && sclk > landedSclk(run)
+    ? LAYOUT.afterLanding.whose
+    : undefined;
 }

@@ -59,7 +59,8 @@ export function plotSpan(store: RunStore | undefined): Span {
 
 export function zoom(store: RunStore | undefined, factor: number, around?: number): void {
   const { from, to } = spanNow(store);
-  const middle = around ?? (fixedRange() ? (from + to) / 2 : Math.min(to, Math.max(from, store?.seenE ?? (from + to) / 2)));
+  const middle =
+    around ?? (fixedRange() ? (from + to) / 2 : Math.min(to, Math.max(from, store?.seenE ?? (from + to) / 2)));
   const width = Math.min(86400 * 3, Math.max(0.5, (to - from) * factor));
   const part = (middle - from) / (to - from);
   look(middle - width * part, middle + width * (1 - part));

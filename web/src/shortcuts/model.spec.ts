@@ -32,13 +32,22 @@ it('a letter acts on a slider and on a box to tick as anywhere, not in what take
   lookAtPast({ from: -100, to: 0 }, false);
   expect([press('w', { type: 'range' }), withRecording.value]).toEqual([true, true]);
   expect([press('w', { type: 'checkbox' }), withRecording.value]).toEqual([true, false]);
-  expect([press('ArrowLeft', { type: 'range' }), press('w', { type: 'search' }), press('w', {}, 'select'), withRecording.value]).toEqual([false, false, false, false]);
+  expect([
+    press('ArrowLeft', { type: 'range' }),
+    press('w', { type: 'search' }),
+    press('w', {}, 'select'),
+    withRecording.value,
+  ]).toEqual([false, false, false, false]);
   press('Escape', { type: 'range' });
   expect(pastRange.value).toBeUndefined();
 });
 it('Esc takes back what is armed from wherever the focus is, before it closes anything; what is only reviewed after that', () => {
   useForTest(aStore(), aDictionary);
-  for (const [type, tag] of [['search', 'input'], ['range', 'input'], ['', 'button']] as const) {
+  for (const [type, tag] of [
+    ['search', 'input'],
+    ['range', 'input'],
+    ['', 'button'],
+  ] as const) {
     [step.value, stage.value, helpShown.value] = ['armed', 'armed', true];
     press('Escape', { type }, tag);
     expect([step.value, stage.value, helpShown.value], type).toEqual(['review', 'review', true]);

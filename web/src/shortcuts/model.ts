@@ -13,7 +13,18 @@ import { focusTones } from '../tones/view';
 import { choice, pan, zoom } from '../run/window';
 
 export const helpShown = signal(false);
-export type Tab = 'channels' | 'packets' | 'verdicts' | 'links' | 'flown' | 'recorded' | 'rehearsal' | 'campaigns' | 'alarms' | 'notes' | 'users';
+export type Tab =
+  | 'channels'
+  | 'packets'
+  | 'verdicts'
+  | 'links'
+  | 'flown'
+  | 'recorded'
+  | 'rehearsal'
+  | 'campaigns'
+  | 'alarms'
+  | 'notes'
+  | 'users';
 export const tab = signal<Tab>('channels');
 export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'channels', title: 'Channels', key: 'c', words: 'channels: values, ages, limits' },
@@ -22,17 +33,30 @@ export const TABS: { id: Tab; title: string; key: string; words: string }[] = [
   { id: 'packets', title: 'Packets', key: 'k', words: 'packets: octets and fields' },
   { id: 'verdicts', title: 'Verdicts', key: 'v', words: 'verdicts: live against recorded' },
   { id: 'links', title: 'Links', key: 'l', words: 'links: states, silences, counters' },
-  { id: 'flown', title: 'As flown', key: 'f', words: 'as flown: every timepoint and event by plan, prediction at entry, tone, UHF and recording' },
+  {
+    id: 'flown',
+    title: 'As flown',
+    key: 'f',
+    words: 'as flown: every timepoint and event by plan, prediction at entry, tone, UHF and recording',
+  },
   { id: 'recorded', title: 'Range', key: 'r', words: 'a recorded range, in every panel' },
   { id: 'rehearsal', title: 'Runs', key: 's', words: 'runs, and starting a rehearsal' },
-  { id: 'campaigns', title: 'Campaigns', key: 'd', words: 'campaigns of dispersed landings: start, watch the ellipse fill' },
+  {
+    id: 'campaigns',
+    title: 'Campaigns',
+    key: 'd',
+    words: 'campaigns of dispersed landings: start, watch the ellipse fill',
+  },
   { id: 'users', title: 'Users', key: 'u', words: 'users, tokens, audit: for administrators' },
 ];
 
 export function focusPanel(which: Tab): void {
   tab.value = which;
   requestAnimationFrame(() =>
-    document.querySelector<HTMLElement>(`[data-testid="panel-data"] .table-box :is(input, select, button, [tabindex])`)?.focus());
+    document
+      .querySelector<HTMLElement>(`[data-testid="panel-data"] .table-box :is(input, select, button, [tabindex])`)
+      ?.focus(),
+  );
 }
 
 function toggleTheme(): void {
@@ -58,7 +82,12 @@ export interface Shortcut {
 }
 
 export const SHORTCUTS: Shortcut[] = [
-  { keys: ['/'], shown: '/', words: 'command line: type words, Tab completes, Enter goes on, Esc back', act: () => openCommandLine() },
+  {
+    keys: ['/'],
+    shown: '/',
+    words: 'command line: type words, Tab completes, Enter goes on, Esc back',
+    act: () => openCommandLine(),
+  },
   { keys: ['+', '='], shown: '+', words: 'faster', act: () => changePace(1) },
   { keys: ['-', '−'], shown: '−', words: 'slower', act: () => changePace(-1) },
   { keys: ['p'], shown: 'p', words: 'pause and go on', act: togglePause },
@@ -71,19 +100,36 @@ export const SHORTCUTS: Shortcut[] = [
   { keys: ['['], shown: '[', words: 'zoom out', act: () => zoom(store.value, 2) },
   { keys: ['ArrowLeft'], shown: '←', words: 'earlier', act: () => pan(store.value, -0.25) },
   { keys: ['ArrowRight'], shown: '→', words: 'later', act: () => pan(store.value, 0.25) },
-  { keys: ['Shift+ArrowLeft'], shown: 'Shift ←', words: 'cursor in plots, tones and timeline: earlier', act: () => stepCursor(-1) },
+  {
+    keys: ['Shift+ArrowLeft'],
+    shown: 'Shift ←',
+    words: 'cursor in plots, tones and timeline: earlier',
+    act: () => stepCursor(-1),
+  },
   { keys: ['Shift+ArrowRight'], shown: 'Shift →', words: 'cursor: later', act: () => stepCursor(1) },
-  { keys: ['.'], shown: '.', words: 'next timepoint: state, offsets, why it fired or has not', act: () => stepTimepoint(1) },
+  {
+    keys: ['.'],
+    shown: '.',
+    words: 'next timepoint: state, offsets, why it fired or has not',
+    act: () => stepTimepoint(1),
+  },
   { keys: [','], shown: ',', words: 'timepoint before', act: () => stepTimepoint(-1) },
   { keys: ['h'], shown: 'h', words: 'anchors: parent, offset, what defined each', act: toggleAnchors },
   { keys: ['o'], shown: 'o', words: 'tones: ← → choose a symbol, its evidence and spectrum', act: focusTones },
-  { keys: ['e'], shown: 'e', words: 'search the events', act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus() },
+  {
+    keys: ['e'],
+    shown: 'e',
+    words: 'search the events',
+    act: () => document.querySelector<HTMLElement>('[data-testid="event-search"]')?.focus(),
+  },
   ...TABS.map(({ id, key, words }) => ({ keys: [key], shown: key, words, act: () => focusPanel(id) })),
   { keys: ['g'], shown: 'g', words: 'the guide for a first landing', act: toggleGuide },
   { keys: ['t'], shown: 't', words: 'dark or light', act: toggleTheme },
   { keys: ['?'], shown: '?', words: 'these keys', act: () => (helpShown.value = !helpShown.value) },
   {
-    keys: ['Escape'], shown: 'Esc', words: 'close what is open, or leave a past view',
+    keys: ['Escape'],
+    shown: 'Esc',
+    words: 'close what is open, or leave a past view',
     act: () => {
       if (takeBackArmed()) return;
       if (helpShown.value) helpShown.value = false;

@@ -1,20 +1,49 @@
 import { SHORTCUTS, TABS, helpShown } from './model';
 import './style.css';
 
-const PANELS = ['timeline', 'descent', 'phases', 'tones', 'plots', 'events', 'waiting', 'commands', ...TABS.map((tab) => tab.id)];
+const PANELS = [
+  'timeline',
+  'descent',
+  'phases',
+  'tones',
+  'plots',
+  'events',
+  'waiting',
+  'commands',
+  ...TABS.map((tab) => tab.id),
+];
 
 /** In a corner and not over what matters: the landing goes on. */
 export function Help() {
   if (!helpShown.value) return null;
   return (
     <aside class="help" data-testid="help" aria-label="keys">
-      <h2>Keys <button type="button" class="quiet" onClick={() => (helpShown.value = false)}>close <kbd>Esc</kbd></button></h2>
+      <h2>
+        Keys{' '}
+        <button type="button" class="quiet" onClick={() => (helpShown.value = false)}>
+          close <kbd>Esc</kbd>
+        </button>
+      </h2>
       <dl>
         {SHORTCUTS.map((each) => (
-          <div key={each.shown}><dt><kbd>{each.shown}</kbd></dt><dd>{each.words}</dd></div>
+          <div key={each.shown}>
+            <dt>
+              <kbd>{each.shown}</kbd>
+            </dt>
+            <dd>{each.words}</dd>
+          </div>
         ))}
       </dl>
-      <p>For further monitors, a panel alone: {PANELS.map((panel) => <><a key={panel} href={`?panel=${panel}`} target="_blank" rel="noopener">{panel}</a> </>)}</p>
+      <p>
+        For further monitors, a panel alone:{' '}
+        {PANELS.map((panel) => (
+          <>
+            <a key={panel} href={`?panel=${panel}`} target="_blank" rel="noopener">
+              {panel}
+            </a>{' '}
+          </>
+        ))}
+      </p>
     </aside>
   );
 }

@@ -55,8 +55,12 @@ export class ColumnCollector {
       });
     }
     const taken: BatchOfFacts = {
-      run: this.run, completeThrough: this.completeThrough, facts: this.facts, columns,
-      thinned: this.thinned, clocks: this.clocks,
+      run: this.run,
+      completeThrough: this.completeThrough,
+      facts: this.facts,
+      columns,
+      thinned: this.thinned,
+      clocks: this.clocks,
     };
     this.columns = new Map();
     this.facts = [];

@@ -1,7 +1,15 @@
 // What the page and its worker tell each other. Everything here is plain data that can be posted.
 // Sequence and run numbers are JavaScript numbers: exact up to 2^53.
 import type {
-  Alarm, Clocks, CommandStage, Event, Explanation, LinkChange, TimepointFiring, Tone, Unit,
+  Alarm,
+  Clocks,
+  CommandStage,
+  Event,
+  Explanation,
+  LinkChange,
+  TimepointFiring,
+  Tone,
+  Unit,
 } from '../gen/aeolis/v1/items_pb';
 import type { CommandReply, RunState } from '../gen/aeolis/v1/run_pb';
 
@@ -50,12 +58,17 @@ export type FromWorker =
   | { type: 'answer'; ask: number; ok: true; value: unknown }
   | { type: 'answer'; ask: number; ok: false; error: string; status: number }; // 0: no answer came
 
-export type ControlAction =
-  | { action: 'pause'; pause: boolean }
-  | { action: 'pace'; pace: number }
-  | { action: 'stop' };
+export type ControlAction = { action: 'pause'; pause: boolean } | { action: 'pace'; pace: number } | { action: 'stop' };
 
-export type Question = 'timepoints' | 'scenarios' | 'series' | 'packets' | 'recording' | 'proof' | 'report' | 'commands';
+export type Question =
+  | 'timepoints'
+  | 'scenarios'
+  | 'series'
+  | 'packets'
+  | 'recording'
+  | 'proof'
+  | 'report'
+  | 'commands';
 
 /** What a controller wants of the uplink, as CommandRequest has it: a command, or an action on one that waits. What is left out is not asked. */
 export interface CommandIntent {

@@ -8,8 +8,30 @@ const registryOf = (file: DescFile): Registry => createRegistry(file, ...file.de
 const messagesOf = (registry: Registry) => [...registry].filter((type) => type.kind === 'message');
 const enumsOf = (registry: Registry) => [...registry].filter((type) => type.kind === 'enum');
 /** As the wire and JSON have it. */
-const formOf = ({ name, jsonName, number, fieldKind, scalar, message, enum: values, presence, oneof, proto }: DescField) =>
-  ({ name, jsonName, number, fieldKind, scalar, message: message?.typeName, values: values?.typeName, presence, oneof: oneof?.name, label: proto.label, packed: proto.options?.packed });
+const formOf = ({
+  name,
+  jsonName,
+  number,
+  fieldKind,
+  scalar,
+  message,
+  enum: values,
+  presence,
+  oneof,
+  proto,
+}: DescField) => ({
+  name,
+  jsonName,
+  number,
+  fieldKind,
+  scalar,
+  message: message?.typeName,
+  values: values?.typeName,
+  presence,
+  oneof: oneof?.name,
+  label: proto.label,
+  packed: proto.options?.packed,
+});
 
 const whole = registryOf(file_aeolis_v1_stream);
 const spoken = registryOf(file_of_the_worker);
@@ -28,7 +50,10 @@ describe('the worker’s part of the schema', () => {
       expect([...here.keys()], message.typeName).toEqual([]);
     }
     for (const { typeName, values } of enumsOf(spoken)) {
-      expect(values.map(({ name, number }) => [name, number]), typeName).toEqual(whole.getEnum(typeName)?.values.map(({ name, number }) => [name, number]));
+      expect(
+        values.map(({ name, number }) => [name, number]),
+        typeName,
+      ).toEqual(whole.getEnum(typeName)?.values.map(({ name, number }) => [name, number]));
     }
     expect(missing).toEqual(['RehearsalControl.start', 'RehearsalControl.inject', 'RehearsalControl.note']);
   });
@@ -36,6 +61,8 @@ describe('the worker’s part of the schema', () => {
   it('has no scenario and no dictionary: the page asks for these by HTTP, and every octet of it is part of the script', () => {
     const names = messagesOf(spoken).map(({ name }) => name);
     expect(names).toContain('Batch');
-    expect(names.filter((name) => /^(Scenario|Dictionary.*|EntryState|FaultInjection|StartRehearsal)$/.test(name))).toEqual([]);
+    expect(
+      names.filter((name) => /^(Scenario|Dictionary.*|EntryState|FaultInjection|StartRehearsal)$/.test(name)),
+    ).toEqual([]);
   });
 });

@@ -15,7 +15,8 @@ export class SequenceCheck {
       ++this.gaps;
       return 'gap';
     }
-    const repeats = firstSeq !== undefined && firstSeq <= this.completeThrough && completeThrough <= this.completeThrough;
+    const repeats =
+      firstSeq !== undefined && firstSeq <= this.completeThrough && completeThrough <= this.completeThrough;
     this.completeThrough = Math.max(this.completeThrough, completeThrough);
     return repeats ? 'repeats' : 'continues';
   }

@@ -3,14 +3,26 @@ import { describe, expect, it } from 'vitest';
 import { ChannelSeriesListSchema } from '../gen/aeolis/v1/run_pb';
 import { readSeriesList } from './series_answer';
 
-const octetsOf = (channels: object[]) => toBinary(ChannelSeriesListSchema, create(ChannelSeriesListSchema, { channels }));
+const octetsOf = (channels: object[]) =>
+  toBinary(ChannelSeriesListSchema, create(ChannelSeriesListSchema, { channels }));
 
 describe('samples in Protobuf', () => {
   it('keep every bit, with their name, unit and count', () => {
     const sclk = [0.1, 397501174.984375, 1e300];
     const value = [NaN, -0, 5e-324];
-    const [series] = readSeriesList(octetsOf([{ id: 300, name: 'höhe', unit: 'm', samples: 5_000_000_000n, thinned: true, sclk, value, source: [1, 1, 1] }]));
-    expect(series).toEqual({ id: 300, name: 'höhe', unit: 'm', samples: 5_000_000_000, thinned: true, columns: [{ id: 300, recorded: false, sclk: Float64Array.from(sclk), value: Float64Array.from(value) }] });
+    const [series] = readSeriesList(
+      octetsOf([
+        { id: 300, name: 'höhe', unit: 'm', samples: 5_000_000_000n, thinned: true, sclk, value, source: [1, 1, 1] },
+      ]),
+    );
+    expect(series).toEqual({
+      id: 300,
+      name: 'höhe',
+      unit: 'm',
+      samples: 5_000_000_000,
+      thinned: true,
+      columns: [{ id: 300, recorded: false, sclk: Float64Array.from(sclk), value: Float64Array.from(value) }],
+    });
   });
   it('come apart by real time and recording, each in its order', () => {
     const [series] = readSeriesList(octetsOf([{ id: 7, sclk: [1, 2, 3], value: [10, 20, 30], source: [1, 2, 1] }]));
@@ -25,7 +37,8 @@ describe('samples in Protobuf', () => {
   });
   it('that are cut off anywhere, or are something else, are refused', () => {
     const whole = octetsOf([{ id: 1, name: 'a', sclk: [1, 2], value: [3, 4], source: [1, 1] }]);
-    for (let length = 1; length < whole.length; ++length) expect(() => readSeriesList(whole.subarray(0, length)), String(length)).toThrow('samples');
+    for (let length = 1; length < whole.length; ++length)
+      expect(() => readSeriesList(whole.subarray(0, length)), String(length)).toThrow('samples');
     expect(() => readSeriesList(octetsOf([{ id: 1, sclk: [1, 2], value: [3] }]))).toThrow('2 times, 1 values');
     expect(() => readSeriesList(new TextEncoder().encode('{"error":"no"}'))).toThrow();
   });

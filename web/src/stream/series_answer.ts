@@ -22,7 +22,9 @@ const NONE = new Uint8Array();
 
 /** Throws on octets that are no such list. */
 export function readSeriesList(octets: Uint8Array): SeriesAnswer[] {
-  return fieldsOf(octets).filter(({ number }) => number === CHANNELS).map(({ part }) => readSeries(part));
+  return fieldsOf(octets)
+    .filter(({ number }) => number === CHANNELS)
+    .map(({ part }) => readSeries(part));
 }
 
 export const columnsOf = (list: readonly SeriesAnswer[]): Column[] => list.flatMap((series) => series.columns);
@@ -34,7 +36,11 @@ function readSeries(octets: Uint8Array): SeriesAnswer {
   const text = (of: number) => new TextDecoder().decode(part(of));
   const id = number(ID);
   return {
-    id, name: text(NAME), unit: text(UNIT), samples: number(SAMPLES), thinned: number(THINNED) !== 0,
+    id,
+    name: text(NAME),
+    unit: text(UNIT),
+    samples: number(SAMPLES),
+    thinned: number(THINNED) !== 0,
     columns: bySource(id, doubles(part(SCLK)), doubles(part(VALUE)), part(SOURCE)), // a source takes an octet
   };
 }
@@ -43,7 +49,8 @@ function readSeries(octets: Uint8Array): SeriesAnswer {
 const doubles = (part: Uint8Array) => new Float64Array(part.slice().buffer);
 
 function bySource(id: number, sclk: Float64Array, value: Float64Array, source: Uint8Array): Column[] {
-  if (value.length !== sclk.length || source.length !== sclk.length) throw new Error(`samples of channel ${id}: ${sclk.length} times, ${value.length} values, ${source.length} sources`);
+  if (value.length !== sclk.length || source.length !== sclk.length)
+    throw new Error(`samples of channel ${id}: ${sclk.length} times, ${value.length} values, ${source.length} sources`);
   const recorded = source.reduce((count, each) => count + (each === SOURCE_RECORDED ? 1 : 0), 0);
   if (sclk.length === 0) return [];
   if (recorded === 0 || recorded === sclk.length) return [{ id, recorded: recorded > 0, sclk, value }];
@@ -69,13 +76,14 @@ function fieldsOf(octets: Uint8Array): { number: number; value: number; part: Ui
   while (at < octets.length) {
     const key = varint();
     const [number, type] = [key >>> 3, key & 7];
-    if (type === 1 || type === 5) { // of a later schema: passed over
+    if (type === 1 || type === 5) {
+      // of a later schema: passed over
       at += type === 1 ? 8 : 4;
       continue;
     }
     if (type !== 0 && type !== 2) throw new Error(`samples: field ${number} of the answer has type ${type}`);
     const value = varint();
-    const part = type === 2 ? octets.subarray(at, at += value) : NONE;
+    const part = type === 2 ? octets.subarray(at, (at += value)) : NONE;
     if (at > octets.length) throw new Error('samples: the answer is cut off');
     fields.push({ number, value, part });
   }

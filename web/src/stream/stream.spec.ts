@@ -8,17 +8,27 @@ import { SequenceCheck, backoffSeconds } from './sequence';
 describe('the stream', () => {
   it('makes one column of many samples, recording and real time apart', () => {
     const collector = new ColumnCollector();
-    const octets = toBinary(BatchSchema, aBatch([samples(1, { 3: 10, 4: 20 }), samples(2, { 3: 11 }), samples(1, { 3: 10 }, 2)]));
+    const octets = toBinary(
+      BatchSchema,
+      aBatch([samples(1, { 3: 10, 4: 20 }), samples(2, { 3: 11 }), samples(1, { 3: 10 }, 2)]),
+    );
     collector.add(fromBinary(BatchSchema, octets));
     const taken = collector.take();
     expect(taken.columns.map((c) => [c.id, c.recorded, [...c.sclk], [...c.value]])).toEqual([
-      [3, false, [1, 2], [10, 11]], [4, false, [1], [20]], [3, true, [1], [10]],
+      [3, false, [1, 2], [10, 11]],
+      [4, false, [1], [20]],
+      [3, true, [1], [10]],
     ]);
     expect(collector.empty).toBe(true);
   });
 
   it('says undefined for a channel that its packet left out', () => {
-    const collector = new ColumnCollector(new Map([[3, [3, 4]], [4, [3, 4]]]));
+    const collector = new ColumnCollector(
+      new Map([
+        [3, [3, 4]],
+        [4, [3, 4]],
+      ]),
+    );
     collector.add(aBatch([samples(5, { 3: 1 })]));
     expect(collector.take().columns.find((column) => column.id === 4)?.value[0]).toBeNaN();
   });

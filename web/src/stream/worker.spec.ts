@@ -40,10 +40,17 @@ beforeEach(async () => {
   vi.useFakeTimers();
   vi.resetModules();
   [said.length, sockets.length] = [0, 0];
-  const page = { location: { origin: 'http://console' }, postMessage: (message: FromWorker) => said.push(message), onmessage: (_event: { data: ToWorker }) => undefined };
+  const page = {
+    location: { origin: 'http://console' },
+    postMessage: (message: FromWorker) => said.push(message),
+    onmessage: (_event: { data: ToWorker }) => undefined,
+  };
   vi.stubGlobal('self', page);
   vi.stubGlobal('WebSocket', FakeSocket);
-  vi.stubGlobal('fetch', vi.fn((path: string) => (path === '/healthz' ? healthz() : new Promise(() => undefined))));
+  vi.stubGlobal(
+    'fetch',
+    vi.fn((path: string) => (path === '/healthz' ? healthz() : new Promise(() => undefined))),
+  );
   await import('./worker');
   page.onmessage({ data: { type: 'open', run: 0, packets: {}, plotted: [], others: [] } });
 });
@@ -81,7 +88,12 @@ it('leaves the socket in peace where silence is in order, as long as the server 
   sockets[0]?.opens();
   sockets[0]?.welcome('running');
   const before = sockets[0]?.sent;
-  for (const silent of [aRun('paused'), aRun('finished'), aRun('running', 'downlink'), { ...aRun('running'), archiveFault: 'a.db: disk full' }]) {
+  for (const silent of [
+    aRun('paused'),
+    aRun('finished'),
+    aRun('running', 'downlink'),
+    { ...aRun('running'), archiveFault: 'a.db: disk full' },
+  ]) {
     sockets[0]?.says({ case: 'runState', value: silent });
     await passes(60);
   }
@@ -89,12 +101,19 @@ it('leaves the socket in peace where silence is in order, as long as the server 
 });
 
 it('takes samples up where their subscription is welcomed: what comes before lacks them, and history is asked for only then', async () => {
-  const batch = (afterSeq: bigint, completeThrough: bigint) => sockets[0]?.says({ case: 'batch', value: { run: 1n, afterSeq, completeThrough, items: [{ seq: completeThrough }] } });
+  const batch = (afterSeq: bigint, completeThrough: bigint) =>
+    sockets[0]?.says({
+      case: 'batch',
+      value: { run: 1n, afterSeq, completeThrough, items: [{ seq: completeThrough }] },
+    });
   const history = () => vi.mocked(fetch).mock.calls.filter(([path]) => String(path).includes('/channels')).length;
-  const through = () => said.flatMap((message) => (message.type === 'batch' ? [message.batch.completeThrough] : [])).at(-1);
+  const through = () =>
+    said.flatMap((message) => (message.type === 'batch' ? [message.batch.completeThrough] : [])).at(-1);
   vi.resetModules(); // anew, with something plotted
   await import('./worker');
-  (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({ data: { type: 'open', run: 0, packets: {}, plotted: ['altitude_m'], others: [] } });
+  (self as unknown as { onmessage: (event: { data: ToWorker }) => void }).onmessage({
+    data: { type: 'open', run: 0, packets: {}, plotted: ['altitude_m'], others: [] },
+  });
   const socket = sockets.at(-1);
   sockets[0] = socket as FakeSocket;
   socket?.opens();

@@ -7,7 +7,13 @@
 import { create, fromBinary, fromJson, toBinary } from '@bufbuild/protobuf';
 import type { DescMessage, MessageInitShape } from '@bufbuild/protobuf';
 import {
-  AsFlownReportSchema, CommandListSchema, PacketListSchema, ProofReportSchema, RecordingSummarySchema, ScenarioListSchema, TimepointListSchema,
+  AsFlownReportSchema,
+  CommandListSchema,
+  PacketListSchema,
+  ProofReportSchema,
+  RecordingSummarySchema,
+  ScenarioListSchema,
+  TimepointListSchema,
 } from '../gen/worker/aeolis/v1/run_pb';
 import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
 import type { Batch } from '../gen/worker/aeolis/v1/stream_pb';
@@ -29,7 +35,10 @@ const LOOKS = 3; // ours: of a silence of fifteen seconds
 const LOOK_EVERY_MS = 1000;
 const MAX_RATE_HZ = 20; // as fast as the page draws; history has the rest
 
-const post = (message: FromWorker, columns: Column[] = []) => self.postMessage(message, { transfer: columns.flatMap(({ sclk, value }) => [sclk.buffer, value.buffer] as ArrayBuffer[]) });
+const post = (message: FromWorker, columns: Column[] = []) =>
+  self.postMessage(message, {
+    transfer: columns.flatMap(({ sclk, value }) => [sclk.buffer, value.buffer] as ArrayBuffer[]),
+  });
 
 const apiUrl = new URL('/api/v1', self.location.origin).href;
 const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
@@ -79,8 +88,10 @@ function subscribe(): void {
   welcomed = !send({
     case: 'subscribe',
     value: {
-      run: BigInt(exact ? currentRun || wantedRun : wantedRun), afterSeq: BigInt(check.completeThrough),
-      allChannels: step === 'samples', maxRateHz: MAX_RATE_HZ,
+      run: BigInt(exact ? currentRun || wantedRun : wantedRun),
+      afterSeq: BigInt(check.completeThrough),
+      allChannels: step === 'samples',
+      maxRateHz: MAX_RATE_HZ,
     },
   });
 }
@@ -130,11 +141,15 @@ async function watchSilence(): Promise<void> {
   if (!its || performance.now() < lookAt_ms) return;
   lookAt_ms = Infinity;
   ++looks;
-  const answers = await fetch('/healthz', { cache: 'no-store', signal: AbortSignal.timeout(SILENT_MS) }).then(() => true, () => false);
+  const answers = await fetch('/healthz', { cache: 'no-store', signal: AbortSignal.timeout(SILENT_MS) }).then(
+    () => true,
+    () => false,
+  );
   if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
   lookAt_ms = performance.now() + SILENT_MS;
   // A real venue is silent when nothing comes, and a rehearsal waits while its archive takes nothing.
-  const speaks = state === 'live' && known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
+  const speaks =
+    state === 'live' && known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
   if (answers && !(speaks && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
@@ -271,23 +286,36 @@ async function fetchHistory(all = true, live = false): Promise<void> {
   const run = currentRun;
   if (run === 0) return;
   try {
-    for (const [names, points] of [[plotted, PLOTTED_POINTS], [all ? others : [], OTHER_POINTS]] as const) {
+    for (const [names, points] of [
+      [plotted, PLOTTED_POINTS],
+      [all ? others : [], OTHER_POINTS],
+    ] as const) {
       for (let i = 0; i < names.length; i += CHANNELS_A_QUESTION) {
         const some = names.slice(i, i + CHANNELS_A_QUESTION);
-        const columns = columnsOf(await askSeries(`/runs/${run}/channels?names=${some.map(encodeURIComponent).join(',')}&points=${points}&format=protobuf${live ? '&source=realtime' : ''}`));
+        const columns = columnsOf(
+          await askSeries(
+            `/runs/${run}/channels?names=${some.map(encodeURIComponent).join(',')}&points=${points}&format=protobuf${live ? '&source=realtime' : ''}`,
+          ),
+        );
         if (run !== currentRun) return;
         post({ type: 'history', run, names: some, columns }, columns);
       }
     }
   } catch (error) {
-    if ((error as Error).name === 'AbortError') historyDue = true; // once there is a connection
+    if ((error as Error).name === 'AbortError')
+      historyDue = true; // once there is a connection
     else post({ type: 'trouble', words: `history: ${error instanceof Error ? error.message : String(error)}` });
   }
 }
 
 const ANSWERS: Record<Exclude<Question, 'series'>, DescMessage> = {
-  timepoints: TimepointListSchema, scenarios: ScenarioListSchema, packets: PacketListSchema, recording: RecordingSummarySchema, proof: ProofReportSchema,
-  report: AsFlownReportSchema, commands: CommandListSchema,
+  timepoints: TimepointListSchema,
+  scenarios: ScenarioListSchema,
+  packets: PacketListSchema,
+  recording: RecordingSummarySchema,
+  proof: ProofReportSchema,
+  report: AsFlownReportSchema,
+  commands: CommandListSchema,
 };
 
 /** The answer, once it has begun; throws the server's words with its status. */
@@ -304,7 +332,8 @@ async function get(path: string): Promise<Response> {
   throw Object.assign(new Error(error || `${response.status} ${response.statusText}`), { status: response.status });
 }
 
-const ask = async (schema: DescMessage, path: string) => fromJson(schema, await (await get(path)).json(), { ignoreUnknownFields: true });
+const ask = async (schema: DescMessage, path: string) =>
+  fromJson(schema, await (await get(path)).json(), { ignoreUnknownFields: true });
 const askSeries = async (path: string) => readSeriesList(new Uint8Array(await (await get(path)).arrayBuffer()));
 
 async function answer(question: Question, path: string): Promise<{ value: unknown; columns?: Column[] }> {
@@ -340,7 +369,12 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
       void fetchHistory(message.all, message.live);
       break;
     case 'command':
-      if (!send({ case: 'command', value: { ...message.intent, run: BigInt(message.run), request: BigInt(message.request) } })) {
+      if (
+        !send({
+          case: 'command',
+          value: { ...message.intent, run: BigInt(message.run), request: BigInt(message.request) },
+        })
+      ) {
         post({ type: 'not_sent', request: message.request });
       }
       break;
@@ -352,9 +386,14 @@ self.onmessage = (event: MessageEvent<ToWorker>) => {
     case 'ask':
       answer(message.question, message.path).then(
         ({ value, columns }) => post({ type: 'answer', ask: message.ask, ok: true, value }, columns),
-        (error: unknown) => post({
-          type: 'answer', ask: message.ask, ok: false, error: error instanceof Error ? error.message : String(error), status: (error as { status?: number }).status ?? 0,
-        }),
+        (error: unknown) =>
+          post({
+            type: 'answer',
+            ask: message.ask,
+            ok: false,
+            error: error instanceof Error ? error.message : String(error),
+            status: (error as { status?: number }).status ?? 0,
+          }),
       );
       break;
   }

@@ -2,7 +2,15 @@
 import { create } from '@bufbuild/protobuf';
 import type { MessageInitShape } from '@bufbuild/protobuf';
 import {
-  ClocksSchema, CommandStageSchema, EventSchema, ExplanationSchema, ItemSchema, LinkChangeSchema, TimepointFiringSchema, ToneSchema, UnitSchema,
+  ClocksSchema,
+  CommandStageSchema,
+  EventSchema,
+  ExplanationSchema,
+  ItemSchema,
+  LinkChangeSchema,
+  TimepointFiringSchema,
+  ToneSchema,
+  UnitSchema,
 } from '../gen/aeolis/v1/items_pb';
 import type { Item } from '../gen/aeolis/v1/items_pb';
 import { DictionaryReplySchema, RunStateSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
@@ -15,59 +23,158 @@ export const ENTRY_SCLK = 1000;
 
 export function aRun(fields: MessageInitShape<typeof RunStateSchema> = {}) {
   return create(RunStateSchema, {
-    run: 1n, scenario: 'nominal', venue: 'rehearsal', state: 'running', pace: 1, entrySclk: ENTRY_SCLK, startSclk: 0,
-    clocks: create(ClocksSchema, { sclk: 900, seenSclk: 900, eS: -100, ert: '2012-219T05:00:00.0', scet: '2012-219T05:00:00.0' }),
+    run: 1n,
+    scenario: 'nominal',
+    venue: 'rehearsal',
+    state: 'running',
+    pace: 1,
+    entrySclk: ENTRY_SCLK,
+    startSclk: 0,
+    clocks: create(ClocksSchema, {
+      sclk: 900,
+      seenSclk: 900,
+      eS: -100,
+      ert: '2012-219T05:00:00.0',
+      scet: '2012-219T05:00:00.0',
+    }),
     ...fields,
   });
 }
 
-export const aDictionary = new Dictionary(create(DictionaryReplySchema, {
-  channels: [
-    { id: 1, name: 'edl_phase', packet: 'Status', labels: [{ value: 0n, label: 'late_cruise' }, { value: 4n, label: 'range_control' }, { value: 9n, label: 'landed' }], expectedRateHz: 1 },
-    { id: 2, name: 'next_desired_sclk', packet: 'Status', unit: 's', expectedRateHz: 1 },
-    { id: 3, name: 'altitude_m', alias: 'GNC-0101', packet: 'Navigation', unit: 'm', limits: [{ severity: 'warning', above: 200000 }], expectedRateHz: 8 },
-    { id: 4, name: 'speed_mps', alias: 'GNC-0102', packet: 'Navigation', unit: 'm/s', expectedRateHz: 8, limits: [
-      { severity: 'watch', above: 6000 }, { severity: 'watch', above: 90, context: 'range_control' }, { severity: 'distress', above: 120, context: 'range_control' },
-    ] },
-    { id: 5, name: 'parameters_received', packet: 'Status' },
-  ],
-  commands: [
-    { opcode: 1, name: 'NO_OP', significance: 'none' },
-    {
-      opcode: 2, name: 'EDL_SET_PARAMETERS', significance: 'none',
-      arguments: [
-        { name: 'solution_id', integer: true, min: 1, max: 65535 },
-        { name: 'parachute_speed_mps', unit: 'm/s', min: 380, max: 430, defaultValue: 405 },
-      ],
-    },
-    { opcode: 3, name: 'EDL_DO_EDL', significance: 'critical', reasonForWarning: 'Starts the timeline', preconditions: ['parameters received'], conditions: [{ channel: 5, comparison: '==', value: 1 }] },
-    { opcode: 4, name: 'EDL_SET_TIMEPOINT_OFFSET', significance: 'none', arguments: [{ name: 'timepoint', integer: true }] },
-  ],
-  tones: [{ id: 7, name: 'entry', meaning: 'Entry interface' }],
-}));
+export const aDictionary = new Dictionary(
+  create(DictionaryReplySchema, {
+    channels: [
+      {
+        id: 1,
+        name: 'edl_phase',
+        packet: 'Status',
+        labels: [
+          { value: 0n, label: 'late_cruise' },
+          { value: 4n, label: 'range_control' },
+          { value: 9n, label: 'landed' },
+        ],
+        expectedRateHz: 1,
+      },
+      { id: 2, name: 'next_desired_sclk', packet: 'Status', unit: 's', expectedRateHz: 1 },
+      {
+        id: 3,
+        name: 'altitude_m',
+        alias: 'GNC-0101',
+        packet: 'Navigation',
+        unit: 'm',
+        limits: [{ severity: 'warning', above: 200000 }],
+        expectedRateHz: 8,
+      },
+      {
+        id: 4,
+        name: 'speed_mps',
+        alias: 'GNC-0102',
+        packet: 'Navigation',
+        unit: 'm/s',
+        expectedRateHz: 8,
+        limits: [
+          { severity: 'watch', above: 6000 },
+          { severity: 'watch', above: 90, context: 'range_control' },
+          { severity: 'distress', above: 120, context: 'range_control' },
+        ],
+      },
+      { id: 5, name: 'parameters_received', packet: 'Status' },
+    ],
+    commands: [
+      { opcode: 1, name: 'NO_OP', significance: 'none' },
+      {
+        opcode: 2,
+        name: 'EDL_SET_PARAMETERS',
+        significance: 'none',
+        arguments: [
+          { name: 'solution_id', integer: true, min: 1, max: 65535 },
+          { name: 'parachute_speed_mps', unit: 'm/s', min: 380, max: 430, defaultValue: 405 },
+        ],
+      },
+      {
+        opcode: 3,
+        name: 'EDL_DO_EDL',
+        significance: 'critical',
+        reasonForWarning: 'Starts the timeline',
+        preconditions: ['parameters received'],
+        conditions: [{ channel: 5, comparison: '==', value: 1 }],
+      },
+      {
+        opcode: 4,
+        name: 'EDL_SET_TIMEPOINT_OFFSET',
+        significance: 'none',
+        arguments: [{ name: 'timepoint', integer: true }],
+      },
+    ],
+    tones: [{ id: 7, name: 'entry', meaning: 'Entry interface' }],
+  }),
+);
 
 export const aPlan = [
-  create(TimepointRowSchema, { id: 0, name: 'coolant_vent', anchor: 'entry', desiredOffsetS: -826, minimumOffsetS: 0, plannedES: -826 }),
-  create(TimepointRowSchema, { id: 1, name: 'entry_interface', anchor: 'entry', desiredOffsetS: 0, minimumOffsetS: 0, plannedES: 0 }),
-  create(TimepointRowSchema, { id: 2, name: 'parachute_deploy', anchor: 'parachute', desiredOffsetS: 0, minimumOffsetS: 0, note: 'GNC says when' }),
+  create(TimepointRowSchema, {
+    id: 0,
+    name: 'coolant_vent',
+    anchor: 'entry',
+    desiredOffsetS: -826,
+    minimumOffsetS: 0,
+    plannedES: -826,
+  }),
+  create(TimepointRowSchema, {
+    id: 1,
+    name: 'entry_interface',
+    anchor: 'entry',
+    desiredOffsetS: 0,
+    minimumOffsetS: 0,
+    plannedES: 0,
+  }),
+  create(TimepointRowSchema, {
+    id: 2,
+    name: 'parachute_deploy',
+    anchor: 'parachute',
+    desiredOffsetS: 0,
+    minimumOffsetS: 0,
+    note: 'GNC says when',
+  }),
 ];
 
 let seq = 0;
 export function item(value: Item['item']): Item {
   return create(ItemSchema, { seq: BigInt(++seq), item: value });
 }
-export const event = (fields: MessageInitShape<typeof EventSchema>) => item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) });
-export const tone = (fields: MessageInitShape<typeof ToneSchema>) => item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ...fields }) });
+export const event = (fields: MessageInitShape<typeof EventSchema>) =>
+  item({ case: 'event', value: create(EventSchema, { source: 1, level: 'ACTIVITY_HI', ...fields }) });
+export const tone = (fields: MessageInitShape<typeof ToneSchema>) =>
+  item({ case: 'tone', value: create(ToneSchema, { likelihood: 1, ...fields }) });
 export const firing = (fields: MessageInitShape<typeof TimepointFiringSchema>) =>
-  item({ case: 'timepoint', value: create(TimepointFiringSchema, { source: 1, verdict: 'completed', triggeredSclk: fields.firedSclk ?? 0, ...fields }) });
-export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) => item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
-export const link = (fields: MessageInitShape<typeof LinkChangeSchema>) => item({ case: 'link', value: create(LinkChangeSchema, fields) });
-export const stage = (fields: MessageInitShape<typeof CommandStageSchema>) => item({ case: 'commandStage', value: create(CommandStageSchema, fields) });
-export const unit = (fields: MessageInitShape<typeof UnitSchema>) => item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) });
-export const samples = (sclk: number, values: Record<number, number>, source = 1) => item({
-  case: 'samples',
-  value: { $typeName: 'aeolis.v1.Samples', sclk, ids: Object.keys(values).map(Number), values: Object.values(values), source, thinned: false },
-});
+  item({
+    case: 'timepoint',
+    value: create(TimepointFiringSchema, {
+      source: 1,
+      verdict: 'completed',
+      triggeredSclk: fields.firedSclk ?? 0,
+      ...fields,
+    }),
+  });
+export const explanation = (fields: MessageInitShape<typeof ExplanationSchema>) =>
+  item({ case: 'explanation', value: create(ExplanationSchema, { source: 1, ...fields }) });
+export const link = (fields: MessageInitShape<typeof LinkChangeSchema>) =>
+  item({ case: 'link', value: create(LinkChangeSchema, fields) });
+export const stage = (fields: MessageInitShape<typeof CommandStageSchema>) =>
+  item({ case: 'commandStage', value: create(CommandStageSchema, fields) });
+export const unit = (fields: MessageInitShape<typeof UnitSchema>) =>
+  item({ case: 'unit', value: create(UnitSchema, { source: 1, link: 'uhf_live', ...fields }) });
+export const samples = (sclk: number, values: Record<number, number>, source = 1) =>
+  item({
+    case: 'samples',
+    value: {
+      $typeName: 'aeolis.v1.Samples',
+      sclk,
+      ids: Object.keys(values).map(Number),
+      values: Object.values(values),
+      source,
+      thinned: false,
+    },
+  });
 
 export function aBatch(items: Item[], completeThrough = seq) {
   return create(BatchSchema, { run: 1n, completeThrough: BigInt(completeThrough), items });

@@ -1,7 +1,11 @@
 // A server of a few routes for tests: answers what is put in, keeps what was asked.
 import { afterEach, beforeEach, vi } from 'vitest';
 
-interface Said { status?: number; json?: unknown; octets?: Uint8Array | ReadableStream }
+interface Said {
+  status?: number;
+  json?: unknown;
+  octets?: Uint8Array | ReadableStream;
+}
 type Answer = Said | (() => Said | Promise<Said>);
 
 export interface FakeServer {
@@ -17,7 +21,11 @@ export function aServer(): FakeServer {
     server.asked = [];
     vi.stubGlobal('fetch', async (url: string, options: RequestInit = {}) => {
       const [method, path] = [options.method ?? 'GET', url.replace(/^.*\/api\/v1/, '')];
-      server.asked.push({ method, path, body: options.body === undefined ? undefined : JSON.parse(String(options.body)) });
+      server.asked.push({
+        method,
+        path,
+        body: options.body === undefined ? undefined : JSON.parse(String(options.body)),
+      });
       const found = server.routes[`${method} ${path}`];
       if (!found) return new Response('{"error":"no such route"}', { status: 404 });
       const { status = 200, json, octets } = typeof found === 'function' ? await found() : found;

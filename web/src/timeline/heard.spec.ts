@@ -10,6 +10,19 @@ it('what was heard is worked out once for all who ask, and anew once something c
   expect(heardOf(store, aPlan, 400).size).toBe(0);
   expect(heardOf(aStore(), aPlan, Infinity).size).toBe(0);
   expect(heardOf(store, [...aPlan], Infinity)).toEqual(heard);
-  store.add({ run: 1, completeThrough: 9, facts: [{ kind: 'timepoint', seq: 9, fact: { ...store.firings.get(0)!.live!, timepoint: 1, name: 'entry_interface', firedSclk: 900 } }], columns: [], thinned: false, clocks: undefined });
+  store.add({
+    run: 1,
+    completeThrough: 9,
+    facts: [
+      {
+        kind: 'timepoint',
+        seq: 9,
+        fact: { ...store.firings.get(0)!.live!, timepoint: 1, name: 'entry_interface', firedSclk: 900 },
+      },
+    ],
+    columns: [],
+    thinned: false,
+    clocks: undefined,
+  });
   expect([...heardOf(store, aPlan, Infinity).keys()]).toEqual([0, 1]);
 });

@@ -16,7 +16,15 @@ export interface Heard {
 
 export const BELIEVED = 0.5; // ours: a tone that is likelier than all others together
 
-let last: { store: RunStore; version: number; plan: readonly TimepointRow[]; cutoff: number; heard: ReadonlyMap<number, Heard> } | undefined;
+let last:
+  | {
+      store: RunStore;
+      version: number;
+      plan: readonly TimepointRow[];
+      cutoff: number;
+      heard: ReadonlyMap<number, Heard>;
+    }
+  | undefined;
 
 /** By number of the timepoint: UHF and recording say it, else a tone that only one timepoint asks for. Six views ask at each tick, and are answered once. */
 export function heardOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): ReadonlyMap<number, Heard> {
@@ -32,15 +40,26 @@ function hear(store: RunStore, plan: readonly TimepointRow[], cutoff: number): M
   const asked = new Map<string, number>();
   for (const row of plan) asked.set(row.tone, (asked.get(row.tone) ?? 0) + 1);
   const first = new Map<string, number>();
-  for (const { fact } of store.tonesBy(cutoff)) if (fact.tone !== undefined && fact.likelihood >= BELIEVED && !first.has(fact.name)) first.set(fact.name, fact.sclk);
+  for (const { fact } of store.tonesBy(cutoff))
+    if (fact.tone !== undefined && fact.likelihood >= BELIEVED && !first.has(fact.name))
+      first.set(fact.name, fact.sclk);
   for (const row of plan) {
     const pair = store.firings.get(row.id);
-    for (const [by, firing] of [['uhf', pair?.live], ['recording', pair?.recorded]] as const) {
+    for (const [by, firing] of [
+      ['uhf', pair?.live],
+      ['recording', pair?.recorded],
+    ] as const) {
       if (!firing || firing.firedSclk > cutoff || heard.has(row.id)) continue;
-      heard.set(row.id, { by, triggered_sclk: firing.triggeredSclk, fired_sclk: firing.firedSclk, verdict: firing.verdict });
+      heard.set(row.id, {
+        by,
+        triggered_sclk: firing.triggeredSclk,
+        fired_sclk: firing.firedSclk,
+        verdict: firing.verdict,
+      });
     }
     const began = row.tone !== '' && asked.get(row.tone) === 1 ? first.get(row.tone) : undefined;
-    if (began !== undefined && !heard.has(row.id)) heard.set(row.id, { by: 'tone', triggered_sclk: began, fired_sclk: began, verdict: '' });
+    if (began !== undefined && !heard.has(row.id))
+      heard.set(row.id, { by: 'tone', triggered_sclk: began, fired_sclk: began, verdict: '' });
   }
   return heard;
 }

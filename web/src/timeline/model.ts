@@ -41,7 +41,14 @@ export function isImportant(name: string): boolean {
 
 export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: number): Lanes {
   const lanes: Lanes = {
-    plan: [], tones: [], live: [], recorded: [], heardByTone: [], toneOutages: [], liveOutages: [], relay: store.run.relayProgress,
+    plan: [],
+    tones: [],
+    live: [],
+    recorded: [],
+    heardByTone: [],
+    toneOutages: [],
+    liveOutages: [],
+    relay: store.run.relayProgress,
   };
   const entry = store.entrySclk;
   for (const row of plan) {
@@ -61,7 +68,11 @@ export function lanesOf(store: RunStore, plan: readonly TimepointRow[], cutoff: 
   for (const { fact } of store.tonesBy(cutoff)) {
     if (fact.tone !== undefined && fact.tone !== before) {
       lanes.tones.push({
-        e_s: fact.sclk - entry, id: fact.tone, name: fact.meaning || fact.name, important: false, bad: false,
+        e_s: fact.sclk - entry,
+        id: fact.tone,
+        name: fact.meaning || fact.name,
+        important: false,
+        bad: false,
       });
     }
     before = fact.tone ?? before;
@@ -105,15 +116,31 @@ export function shortReason(words: string): string {
 }
 
 /** How many are known to have fired, and how many of them only by their tone. */
-export function firedCount(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { all: number; byTone: number } {
+export function firedCount(
+  store: RunStore,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+): { all: number; byTone: number } {
   const heard = [...heardOf(store, plan, cutoff).values()];
   return { all: heard.length, byTone: heard.filter((each) => each.by === 'tone').length };
 }
 
-const VERDICTS = { completed: 'fired', replied: 'fired', no_operation: 'fired', timed_out: 'timed out', failed: 'failed' } as const;
+const VERDICTS = {
+  completed: 'fired',
+  replied: 'fired',
+  no_operation: 'fired',
+  timed_out: 'timed out',
+  failed: 'failed',
+} as const;
 
 /** "passed": nothing told of it, and one after it has fired. */
-export type PointState = (typeof VERDICTS)[keyof typeof VERDICTS] | 'passed' | 'waiting for reply' | 'next' | 'pending' | 'undefined';
+export type PointState =
+  | (typeof VERDICTS)[keyof typeof VERDICTS]
+  | 'passed'
+  | 'waiting for reply'
+  | 'next'
+  | 'pending'
+  | 'undefined';
 
 export interface PointDetail {
   row: TimepointRow;
@@ -130,7 +157,13 @@ export interface PointDetail {
 }
 
 /** Why a timepoint fired or has not. */
-export function pointDetail(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], id: number, cutoff: number): PointDetail | undefined {
+export function pointDetail(
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  id: number,
+  cutoff: number,
+): PointDetail | undefined {
   const row = plan.find((candidate) => candidate.id === id);
   if (!row) return undefined;
   const pair = store.firings.get(id);
@@ -140,23 +173,36 @@ export function pointDetail(store: RunStore, dictionary: Dictionary, plan: reado
   const known = heard.get(id);
   const e_s = (sclk: number | undefined) => (sclk === undefined ? undefined : sclk - store.entrySclk);
   return {
-    row, state: stateOf(store, dictionary, plan, row, heard, cutoff), by: known?.by, verdict: known?.verdict ?? '',
-    firedLive_e_s: e_s(live?.firedSclk), firedRecorded_e_s: e_s(recorded?.firedSclk),
+    row,
+    state: stateOf(store, dictionary, plan, row, heard, cutoff),
+    by: known?.by,
+    verdict: known?.verdict ?? '',
+    firedLive_e_s: e_s(live?.firedSclk),
+    firedRecorded_e_s: e_s(recorded?.firedSclk),
     tone_e_s: known?.by === 'tone' ? e_s(known.triggered_sclk) : undefined,
     triggered_e_s: known?.by === 'tone' ? undefined : e_s(known?.triggered_sclk),
-    why: store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row))?.fact,
+    why: store.explanations.findLast(
+      ({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && speaksOf(fact, row),
+    )?.fact,
   };
 }
 
 function stateOf(
-  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], row: TimepointRow, heard: ReadonlyMap<number, Heard>, cutoff: number,
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  row: TimepointRow,
+  heard: ReadonlyMap<number, Heard>,
+  cutoff: number,
 ): PointState {
   const known = heard.get(row.id);
   if (known) return VERDICTS[known.verdict as keyof typeof VERDICTS] ?? 'fired';
   const [at, last] = [plan.indexOf(row), lastHeard(plan, heard)];
   if (at <= last) return 'passed';
   if (at === last + 1) return awaitsReply(store, dictionary, row, cutoff) ? 'waiting for reply' : 'next';
-  return row.anchor !== '' && row.plannedES === undefined && !predecessorAnchored(plan, at, last) ? 'undefined' : 'pending';
+  return row.anchor !== '' && row.plannedES === undefined && !predecessorAnchored(plan, at, last)
+    ? 'undefined'
+    : 'pending';
 }
 
 /** An anchor is found once a timepoint that hangs from it has been triggered. */
@@ -168,11 +214,20 @@ function predecessorAnchored(plan: readonly TimepointRow[], at: number, last: nu
 function awaitsReply(store: RunStore, dictionary: Dictionary, row: TimepointRow, cutoff: number): boolean {
   const [index, state] = [dictionary.pick(LAYOUT.currentTimepoint), dictionary.pick(LAYOUT.timepointState)];
   const [now, told] = [index && store.latest(index.id, cutoff), state && store.latest(state.id, cutoff)];
-  return state !== undefined && now?.value === row.id && told !== undefined && dictionary.label(state, told.value) === 'waiting_reply';
+  return (
+    state !== undefined &&
+    now?.value === row.id &&
+    told !== undefined &&
+    dictionary.label(state, told.value) === 'waiting_reply'
+  );
 }
 
 /** The first timepoint, in the order of the timeline, after the last one known to have fired. */
-export function nextTimepoint(store: RunStore, plan: readonly TimepointRow[], cutoff: number): TimepointRow | undefined {
+export function nextTimepoint(
+  store: RunStore,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+): TimepointRow | undefined {
   return plan[lastHeard(plan, heardOf(store, plan, cutoff)) + 1];
 }
 

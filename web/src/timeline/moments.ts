@@ -16,14 +16,26 @@ export interface Moment {
 }
 
 /** Those of the plan that is shown, in their order. */
-export function momentsOf(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number): Moment[] {
+export function momentsOf(
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+): Moment[] {
   const last = lastHeard(plan, heardOf(store, plan, cutoff));
   return LAYOUT.moments.flatMap(({ name, before, plain, predicted_e_s }) => {
     const at = plan.findIndex((row) => row.name === before);
     if (at < 0) return [];
-    const told = store.events.find(({ fact }) => fact.name.toLowerCase() === name && fact.sclk <= cutoff)?.fact.sclk
-      ?? store.tonesBy(cutoff).find(({ fact }) => fact.name === name && fact.likelihood >= BELIEVED)?.fact.sclk;
+    const told =
+      store.events.find(({ fact }) => fact.name.toLowerCase() === name && fact.sclk <= cutoff)?.fact.sclk ??
+      store.tonesBy(cutoff).find(({ fact }) => fact.name === name && fact.likelihood >= BELIEVED)?.fact.sclk;
     const predicted = dictionary.reply.mission === LAYOUT.predictedFor && at > last ? predicted_e_s : undefined;
-    return { name, before, plain, e_s: told === undefined ? predicted : told - store.entrySclk, done: told !== undefined || at <= last };
+    return {
+      name,
+      before,
+      plain,
+      e_s: told === undefined ? predicted : told - store.entrySclk,
+      done: told !== undefined || at <= last,
+    };
   });
 }

@@ -10,78 +10,162 @@ import { momentsOf } from './moments';
 
 describe('the timeline', () => {
   it('has no plan for a timepoint whose anchor is undefined', () => {
-    expect(lanesOf(aStore(), aPlan, Infinity).plan.map((mark) => mark.name)).toEqual(['coolant_vent', 'entry_interface']);
+    expect(lanesOf(aStore(), aPlan, Infinity).plan.map((mark) => mark.name)).toEqual([
+      'coolant_vent',
+      'entry_interface',
+    ]);
   });
   it('marks a tone where it begins and not each symbol of it', () => {
-    const store = aStore([tone({ tone: 7, sclk: 700 }), tone({ tone: 7, sclk: 710 }), tone({ sclk: 720 }), tone({ tone: 8, sclk: 730 })]);
+    const store = aStore([
+      tone({ tone: 7, sclk: 700 }),
+      tone({ tone: 7, sclk: 710 }),
+      tone({ sclk: 720 }),
+      tone({ tone: 8, sclk: 730 }),
+    ]);
     expect(lanesOf(store, aPlan, Infinity).tones.map((mark) => mark.e_s)).toEqual([-300, -270]);
   });
   it('names a silence by its reason, and ends it', () => {
     const store = aStore([
-      link({ link: 'uhf_live', up: false, reason: 'plasma', ert: '2012-219T04:59:00.0' }), link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:30.0' }),
+      link({ link: 'uhf_live', up: false, reason: 'plasma', ert: '2012-219T04:59:00.0' }),
+      link({ link: 'uhf_live', up: true, ert: '2012-219T04:59:30.0' }),
     ]);
-    expect(outages(store, 'uhf_live', -100, Infinity)).toEqual([{ from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma' }]);
+    expect(outages(store, 'uhf_live', -100, Infinity)).toEqual([
+      { from: expect.closeTo(-160), to: expect.closeTo(-130), words: 'plasma' },
+    ]);
   });
   it('shows a silence that nothing predicted as an alarm, as its link does', () => {
-    expect(['unexplained: no pass ends now', 'ground fault: the station is silent', 'plasma'].map((reason) => silenceStatus(reason).token)).toEqual(['alarm', 'alarm', 'caution']);
+    expect(
+      ['unexplained: no pass ends now', 'ground fault: the station is silent', 'plasma'].map(
+        (reason) => silenceStatus(reason).token,
+      ),
+    ).toEqual(['alarm', 'alarm', 'caution']);
   });
   it('shows nothing later than the past view', () => {
-    const store = aStore([firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 })]);
+    const store = aStore([
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }),
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+    ]);
     expect(lanesOf(store, aPlan, 600).live.map((mark) => mark.name)).toEqual(['coolant_vent']);
     expect(nextTimepoint(store, aPlan, 600)?.name).toBe('entry_interface');
     expect(nextTimepoint(store, aPlan, Infinity)?.name).toBe('parachute_deploy');
   });
   it('says what state a timepoint is in, each verdict with its own word', () => {
-    const states = (...items: Parameters<typeof aStore>[0] & object) => [0, 1, 2].map((id) => pointDetail(aStore(items), aDictionary, aPlan, id, Infinity)?.state);
+    const states = (...items: Parameters<typeof aStore>[0] & object) =>
+      [0, 1, 2].map((id) => pointDetail(aStore(items), aDictionary, aPlan, id, Infinity)?.state);
     const vent = (verdict: string) => firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500, verdict });
     expect(states(vent('timed_out'))).toEqual(['timed out', 'next', 'undefined']);
-    expect([states(vent('failed'))[0], states(vent('replied'))[0], states(vent('no_operation'))[0]]).toEqual(['failed', 'fired', 'fired']);
-    expect(states(firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }))).toEqual(['passed', 'fired', 'next']);
+    expect([states(vent('failed'))[0], states(vent('replied'))[0], states(vent('no_operation'))[0]]).toEqual([
+      'failed',
+      'fired',
+      'fired',
+    ]);
+    expect(states(firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }))).toEqual([
+      'passed',
+      'fired',
+      'next',
+    ]);
   });
   it('says that a reply is waited for by the vehicle’s own word, of its current timepoint only', () => {
-    const words = new Dictionary(create(DictionaryReplySchema, { channels: [
-      { id: 11, name: 'timepoint_index', packet: 'Timeline' }, { id: 12, name: 'timepoint_state', packet: 'Timeline', labels: [{ value: 0n, label: 'pending' }, { value: 2n, label: 'waiting_reply' }] },
-    ] }));
-    const state = (index: number, told: number) => pointDetail(aStore([samples(899, { 11: index, 12: told })]), words, aPlan, 0, Infinity)?.state;
+    const words = new Dictionary(
+      create(DictionaryReplySchema, {
+        channels: [
+          { id: 11, name: 'timepoint_index', packet: 'Timeline' },
+          {
+            id: 12,
+            name: 'timepoint_state',
+            packet: 'Timeline',
+            labels: [
+              { value: 0n, label: 'pending' },
+              { value: 2n, label: 'waiting_reply' },
+            ],
+          },
+        ],
+      }),
+    );
+    const state = (index: number, told: number) =>
+      pointDetail(aStore([samples(899, { 11: index, 12: told })]), words, aPlan, 0, Infinity)?.state;
     expect([state(0, 2), state(0, 0), state(1, 2)]).toEqual(['waiting for reply', 'next', 'next']);
   });
   it('has of a timepoint what flight said of it, and not what it said of another at that moment', () => {
-    const told = (decision: string, text: string) => explanation({ sclk: 890, decision, verdict: 'fired', text, conditions: [create(ConditionSchema, { quantity: 'speed_mps', value: 404, comparison: '<=', bound: 405, holds: true })] });
-    const store = aStore([firing({ timepoint: 2, name: 'parachute_deploy', firedSclk: 890 }), told('parachute_deploy', 'the mortar'), told('tone', 'a tone')]);
+    const told = (decision: string, text: string) =>
+      explanation({
+        sclk: 890,
+        decision,
+        verdict: 'fired',
+        text,
+        conditions: [
+          create(ConditionSchema, { quantity: 'speed_mps', value: 404, comparison: '<=', bound: 405, holds: true }),
+        ],
+      });
+    const store = aStore([
+      firing({ timepoint: 2, name: 'parachute_deploy', firedSclk: 890 }),
+      told('parachute_deploy', 'the mortar'),
+      told('tone', 'a tone'),
+    ]);
     expect(pointDetail(store, aDictionary, aPlan, 2, Infinity)?.why?.text).toBe('the mortar');
     expect(pointDetail(store, aDictionary, aPlan, 1, Infinity)?.why).toBeUndefined();
   });
   it('counts what tones told where UHF is silent, goes on from there, and says so', () => {
     const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
-    const store = aStore([firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
+    const store = aStore([
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }),
+      tone({ sclk: 890, tone: 29, name: 'entry_interface' }),
+    ]);
     expect(firedCount(store, plan, Infinity)).toEqual({ all: 2, byTone: 1 });
     expect(nextTimepoint(store, plan, Infinity)?.name).toBe('parachute_deploy');
-    expect(pointDetail(store, aDictionary, plan, 1, Infinity)).toMatchObject({ state: 'fired', by: 'tone', tone_e_s: -110, verdict: '' });
+    expect(pointDetail(store, aDictionary, plan, 1, Infinity)).toMatchObject({
+      state: 'fired',
+      by: 'tone',
+      tone_e_s: -110,
+      verdict: '',
+    });
   });
   it('has a timepoint that only its tone told in the lane of tones, by its own number and name', () => {
     const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
-    const store = aStore([tone({ sclk: 174, tone: 28, name: 'coolant_vent' }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
-    expect(lanesOf(store, plan, Infinity).heardByTone).toEqual([{ id: 0, name: 'coolant_vent', e_s: -826, important: true, bad: false }]);
+    const store = aStore([
+      tone({ sclk: 174, tone: 28, name: 'coolant_vent' }),
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+      tone({ sclk: 890, tone: 29, name: 'entry_interface' }),
+    ]);
+    expect(lanesOf(store, plan, Infinity).heardByTone).toEqual([
+      { id: 0, name: 'coolant_vent', e_s: -826, important: true, bad: false },
+    ]);
   });
   it('has the short form of a name where a picture has little room', () => {
     expect(['sufr', 'entry_guidance'].map(shortTitle)).toEqual(['SUFR', 'entry guidance']);
   });
   it('knows a moment between timepoints by event or tone, and as passed once the timepoint after it is', () => {
     const plan = [...aPlan, { ...aPlan[1], id: 9, name: 'sufr', anchor: 'sufr_start' } as (typeof aPlan)[number]];
-    const moments = (...items: Parameters<typeof aStore>[0] & object) => momentsOf(aStore(items), aDictionary, plan, Infinity).map(({ e_s, done }) => [e_s, done]);
-    expect(moments(event({ name: 'PEAK_DECELERATION', sclk: 1080 }))).toEqual([[80, true], [undefined, false]]);
-    expect(moments(tone({ sclk: 1150, tone: 35, name: 'heading_alignment' }))).toEqual([[undefined, false], [150, true]]);
-    expect(moments(firing({ timepoint: 9, name: 'sufr', firedSclk: 1239 }))).toEqual([[undefined, true], [undefined, true]]);
+    const moments = (...items: Parameters<typeof aStore>[0] & object) =>
+      momentsOf(aStore(items), aDictionary, plan, Infinity).map(({ e_s, done }) => [e_s, done]);
+    expect(moments(event({ name: 'PEAK_DECELERATION', sclk: 1080 }))).toEqual([
+      [80, true],
+      [undefined, false],
+    ]);
+    expect(moments(tone({ sclk: 1150, tone: 35, name: 'heading_alignment' }))).toEqual([
+      [undefined, false],
+      [150, true],
+    ]);
+    expect(moments(firing({ timepoint: 9, name: 'sufr', firedSclk: 1239 }))).toEqual([
+      [undefined, true],
+      [undefined, true],
+    ]);
     expect(momentsOf(aStore(), aDictionary, aPlan, Infinity)).toEqual([]);
   });
   it('as it was heard has nothing that only the recording told, and a tone once it was decided', () => {
     const store = aStore([
-      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }), firing({ timepoint: 1, name: 'entry_interface', firedSclk: 600, source: 2 }), samples(600, { 3: 1, 4: 1 }, 2),
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 500 }),
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 600, source: 2 }),
+      samples(600, { 3: 1, 4: 1 }, 2),
       tone({ sclk: 640, tone: 29, name: 'entry_interface', ertEnd: '2012-219T04:55:50.0' }), // SCLK 650
     ]);
     const heard = store.asHeardBy(Infinity, () => undefined);
     expect(lanesOf(store, aPlan, 645).recorded.length).toBe(1);
-    expect([lanesOf(heard, aPlan, 645).recorded.length, firedCount(heard, aPlan, 645).all, heard.latest(3)]).toEqual([0, 1, undefined]);
+    expect([lanesOf(heard, aPlan, 645).recorded.length, firedCount(heard, aPlan, 645).all, heard.latest(3)]).toEqual([
+      0,
+      1,
+      undefined,
+    ]);
     expect([645, 655].map((cutoff) => lanesOf(heard, aPlan, cutoff).tones.length)).toEqual([0, 1]);
     expect(heard.entrySclk).toBe(store.entrySclk);
   });

@@ -41,7 +41,7 @@ export function stepTimepoint(direction: 1 | -1): void {
   const at = plan.findIndex((row) => row.id === selected.value);
   const run = shownRun();
   const next = run && nextTimepoint(run, plan, cutoff.value);
-  const to = at >= 0 ? plan[at + direction] : next ?? plan[plan.length - 1];
+  const to = at >= 0 ? plan[at + direction] : (next ?? plan[plan.length - 1]);
   if (to) select(to.id);
 }
 export function closeDetail(): boolean {
@@ -59,7 +59,10 @@ function shown(run: RunStore | undefined): { from: number; to: number } {
   const span = spanNow(run);
   const all = moved.value ?? [];
   if (all.length === 0 || choice.value !== 'landing') return span;
-  return { from: Math.min(LAYOUT.window.from, ...all.flatMap((each) => [each.from_e_s - 20, each.to_e_s - 20])), to: span.to };
+  return {
+    from: Math.min(LAYOUT.window.from, ...all.flatMap((each) => [each.from_e_s - 20, each.to_e_s - 20])),
+    to: span.to,
+  };
 }
 
 let hits: { x: number; y: number; id: number }[] = [];
@@ -110,29 +113,59 @@ function drawTimeline({ context: c, width: width_px, height: height_px, colours 
   if (lanes.recorded.length === 0 && !pastRange.value) {
     c.fillStyle = colours.dim;
     c.textAlign = 'center';
-    const words = lanes.relay > 0 ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
-      : 'the recording comes down after landing';
+    const words =
+      lanes.relay > 0
+        ? `the recording is coming down: ${Math.round(lanes.relay * 100)} %`
+        : 'the recording comes down after landing';
     c.fillText(words, (GUTTER + width) / 2, y(4) - 0.5);
   }
   marks(lanes.plan, x, y(0), (px, py) => ring(c, px, py, 3.2, colours.dim), true);
   drawPredicted(c, x, y(1), Math.min(run.seenE, pastRange.value?.to ?? Infinity), colours);
   marks(lanes.tones, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), false);
   marks(lanes.heardByTone, x, y(2), (px, py) => box(c, px, py, 3.8, colours.tone), true);
-  marks(lanes.live, x, y(3), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)), true);
-  marks(lanes.recorded, x, y(4), (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : framed(c, px, py, 4, colours.recording)), true);
+  marks(
+    lanes.live,
+    x,
+    y(3),
+    (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : diamond(c, px, py, 5, colours.uhf)),
+    true,
+  );
+  marks(
+    lanes.recorded,
+    x,
+    y(4),
+    (px, py, bad) => (bad ? triangle(c, px, py, colours.caution) : framed(c, px, py, 4, colours.recording)),
+    true,
+  );
   const chosen = hits.filter((hit) => hit.id === selected.value);
   for (const hit of chosen) ring(c, hit.x, hit.y, 8, colours.text);
   labels(c, lanes, x, bottom, width, height, colours);
   cursors(c, pastRange.value?.to ?? run.seenE, run.run.lightTimeS, x, bottom, colours, width - 8, run.going);
-  if (cursor.value !== undefined) flag(c, x(cursor.value), fromEntry(cursor.value, { tenths: true }), colours.accent, colours.page, bottom, width - 8);
+  if (cursor.value !== undefined)
+    flag(
+      c,
+      x(cursor.value),
+      fromEntry(cursor.value, { tenths: true }),
+      colours.accent,
+      colours.page,
+      bottom,
+      width - 8,
+    );
   c.restore();
 }
 
 function drawOutages(
-  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, y: (lane: number) => number, width: number,
+  c: CanvasRenderingContext2D,
+  lanes: Lanes,
+  x: (e: number) => number,
+  y: (lane: number) => number,
+  width: number,
   colours: Surface['colours'],
 ): void {
-  for (const [lane, all] of [[2, lanes.toneOutages], [3, lanes.liveOutages]] as const) {
+  for (const [lane, all] of [
+    [2, lanes.toneOutages],
+    [3, lanes.liveOutages],
+  ] as const) {
     for (const outage of all) {
       const left = Math.max(GUTTER, x(outage.from));
       const right = Math.min(width - 14, x(outage.to));
@@ -157,8 +190,14 @@ function drawOutages(
       c.fillStyle = colour;
       c.textAlign = 'left';
       c.font = `11px ${colours.sans}`;
-      const words = [`${shape} ${outage.words}`, `${shape} ${shortReason(outage.words)}`].find((each) => c.measureText(each).width + 8 <= right - left);
-      c.fillText(words ?? cutOff(c, `${shape} ${shortReason(outage.words)}`, right - left - 8), left + 5, y(lane) + 0.5);
+      const words = [`${shape} ${outage.words}`, `${shape} ${shortReason(outage.words)}`].find(
+        (each) => c.measureText(each).width + 8 <= right - left,
+      );
+      c.fillText(
+        words ?? cutOff(c, `${shape} ${shortReason(outage.words)}`, right - left - 8),
+        left + 5,
+        y(lane) + 0.5,
+      );
       c.restore();
     }
   }
@@ -172,7 +211,13 @@ function cutOff(c: CanvasRenderingContext2D, words: string, room: number): strin
 }
 
 /** What is still to come in the colour of what comes next; behind it, as it was predicted; and where a command in the form would move it. */
-function drawPredicted(c: CanvasRenderingContext2D, x: (e: number) => number, y: number, now_e_s: number, colours: Surface['colours']): void {
+function drawPredicted(
+  c: CanvasRenderingContext2D,
+  x: (e: number) => number,
+  y: number,
+  now_e_s: number,
+  colours: Surface['colours'],
+): void {
   for (const { id, e_s, fired } of predicted.value) {
     const px = x(e_s);
     if (px < GUTTER - 6) continue;
@@ -190,8 +235,11 @@ function drawPredicted(c: CanvasRenderingContext2D, x: (e: number) => number, y:
 }
 
 function marks(
-  all: Mark[], x: (e: number) => number, y: number,
-  shape: (x: number, y: number, bad: boolean) => void, hit: boolean,
+  all: Mark[],
+  x: (e: number) => number,
+  y: number,
+  shape: (x: number, y: number, bad: boolean) => void,
+  hit: boolean,
 ): void {
   for (const mark of all) {
     const px = x(mark.e_s);
@@ -203,18 +251,29 @@ function marks(
 
 /** Names under the lanes, in as many rows as it takes that none covers another. */
 function labels(
-  c: CanvasRenderingContext2D, lanes: Lanes, x: (e: number) => number, top: number, width: number, height: number,
+  c: CanvasRenderingContext2D,
+  lanes: Lanes,
+  x: (e: number) => number,
+  top: number,
+  width: number,
+  height: number,
   colours: Surface['colours'],
 ): void {
   const { from, to } = shown(shownRun());
   const closeUp = to - from <= CLOSE_UP_S;
   const known = new Map<number, { mark: Mark; done: boolean }>();
   for (const mark of lanes.plan) known.set(mark.id, { mark, done: false });
-  for (const { id, name, e_s, fired } of predicted.value) if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
+  for (const { id, name, e_s, fired } of predicted.value)
+    if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
   for (const mark of [...lanes.heardByTone, ...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
   const [run, dict] = [shownRun(), dictionary.value];
-  (run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : []).forEach(({ name, e_s, done }, i) => e_s !== undefined && known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done }));
-  const all = [...known.values()].filter(({ mark }) => mark.important || closeUp).sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
+  (run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : []).forEach(
+    ({ name, e_s, done }, i) =>
+      e_s !== undefined && known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done }),
+  );
+  const all = [...known.values()]
+    .filter(({ mark }) => mark.important || closeUp)
+    .sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);
   const rows: [number, number][][] = Array.from({ length: Math.max(1, Math.floor((height - top - 6) / 15)) }, () => []);
   c.font = `12px ${colours.sans}`;
   c.textAlign = 'center';
@@ -237,15 +296,38 @@ function labels(
 }
 
 function cursors(
-  c: CanvasRenderingContext2D, seen: number, lightTime: number, x: (e: number) => number, bottom: number,
-  colours: Surface['colours'], right: number, going: boolean,
+  c: CanvasRenderingContext2D,
+  seen: number,
+  lightTime: number,
+  x: (e: number) => number,
+  bottom: number,
+  colours: Surface['colours'],
+  right: number,
+  going: boolean,
 ): void {
   const past = pastRange.value; // then both flags stand where they stood
-  if (lightTime > 0) flag(c, x(seen + lightTime), past ? 'then at Mars' : 'at Mars', colours.dim, colours.page, bottom, right);
-  flag(c, x(seen), replay.value ? 'replayed to' : past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now', colours.text, colours.page, bottom, right);
+  if (lightTime > 0)
+    flag(c, x(seen + lightTime), past ? 'then at Mars' : 'at Mars', colours.dim, colours.page, bottom, right);
+  flag(
+    c,
+    x(seen),
+    replay.value ? 'replayed to' : past ? 'end of past view' : !going ? 'end' : lightTime > 0 ? 'seen on Earth' : 'now',
+    colours.text,
+    colours.page,
+    bottom,
+    right,
+  );
 }
 
-function flag(c: CanvasRenderingContext2D, px: number, words: string, colour: string, ink: string, bottom: number, right: number): void {
+function flag(
+  c: CanvasRenderingContext2D,
+  px: number,
+  words: string,
+  colour: string,
+  ink: string,
+  bottom: number,
+  right: number,
+): void {
   if (px < GUTTER - 6 || px > right + 10) return; // a stretch that was zoomed to may end before it
   c.strokeStyle = colour;
   line(c, Math.round(px) + 0.5, TOP - 8, Math.round(px) + 0.5, bottom + 4);
@@ -317,7 +399,9 @@ function timeAt(px: number, width: number): number {
 const within = (px: number, width: number) => (px / grown < GUTTER ? undefined : timeAt(px, width));
 
 const CHOICES: [Choice & string, string, string][] = [
-  ['landing', 'landing', '1'], ['minute', 'last minute', '2'], ['run', 'whole run', '3'],
+  ['landing', 'landing', '1'],
+  ['minute', 'last minute', '2'],
+  ['run', 'whole run', '3'],
 ];
 
 const BY = { uhf: SOURCES.uhf, recording: SOURCES.recording, tone: SOURCES.tone } as const;
@@ -328,7 +412,8 @@ function Conditions({ lines }: { lines: readonly Line[] }) {
     <ul class="point-conditions" aria-label="its conditions">
       {lines.map((line) => (
         <li key={line.words} class={held(line.holds)}>
-          <span title={STATUS[held(line.holds)].word}>{STATUS[held(line.holds)].shape}</span> {line.words} <output>{line.value}</output>
+          <span title={STATUS[held(line.holds)].word}>{STATUS[held(line.holds)].shape}</span> {line.words}{' '}
+          <output>{line.value}</output>
         </li>
       ))}
     </ul>
@@ -347,22 +432,76 @@ function Detail() {
   const at = (e_s: number) => fromEntry(e_s, { tenths: true });
   const isOver = detail.by !== undefined || detail.state === 'passed';
   // Of what has fired, what flight looked at then; of what has not, its conditions as they stand now.
-  const lines = !isOver ? conditions(run, words, timepoints.value, row, cutoff.value, predicted.value) : why?.verdict === 'fired' ? why.conditions.map(conditionLine) : [];
+  const lines = !isOver
+    ? conditions(run, words, timepoints.value, row, cutoff.value, predicted.value)
+    : why?.verdict === 'fired'
+      ? why.conditions.map(conditionLine)
+      : [];
   return (
     <div class="point" data-testid="timepoint-detail">
-      <b>{title(row.name)}</b> <span class={`state state-${detail.state.replaceAll(' ', '-')}`}>{detail.state}{detail.by && `, ${BY[detail.by].shape} ${BY[detail.by].word}`}</span>
-      <button type="button" class="quiet" onClick={() => select(undefined)} aria-label="close">×</button>
+      <b>{title(row.name)}</b>{' '}
+      <span class={`state state-${detail.state.replaceAll(' ', '-')}`}>
+        {detail.state}
+        {detail.by && `, ${BY[detail.by].shape} ${BY[detail.by].word}`}
+      </span>
+      <button type="button" class="quiet" onClick={() => select(undefined)} aria-label="close">
+        ×
+      </button>
       <dl>
-        <dt>desired</dt><dd>{offset(row.desiredOffsetS)} after {row.anchor || 'the one before'}</dd>
-        <dt>minimum</dt><dd>{offset(row.minimumOffsetS)} after the one before</dd>
-        {foreseen && <><dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt><dd>{at(foreseen.e_s)}</dd></>}
-        {row.plannedES !== undefined && <><dt>planned</dt><dd>{at(row.plannedES)}</dd></>}
-        {detail.triggered_e_s !== undefined && <><dt>triggered</dt><dd>{at(detail.triggered_e_s)}</dd></>}
-        {detail.tone_e_s !== undefined && <><dt>its tone began</dt><dd>{at(detail.tone_e_s)}</dd></>}
-        {detail.firedLive_e_s !== undefined && <><dt>fired, by UHF</dt><dd>{at(detail.firedLive_e_s)}</dd></>}
-        {detail.firedRecorded_e_s !== undefined && <><dt>fired, by recording</dt><dd>{at(detail.firedRecorded_e_s)}</dd></>}
-        {ENDS[detail.verdict] && <><dt>how it ended</dt><dd>{ENDS[detail.verdict]}</dd></>}
-        {row.tone && <><dt>tone</dt><dd>{row.tone}</dd></>}
+        <dt>desired</dt>
+        <dd>
+          {offset(row.desiredOffsetS)} after {row.anchor || 'the one before'}
+        </dd>
+        <dt>minimum</dt>
+        <dd>{offset(row.minimumOffsetS)} after the one before</dd>
+        {foreseen && (
+          <>
+            <dt>{foreseen.fired ? 'was predicted' : 'predicted'}</dt>
+            <dd>{at(foreseen.e_s)}</dd>
+          </>
+        )}
+        {row.plannedES !== undefined && (
+          <>
+            <dt>planned</dt>
+            <dd>{at(row.plannedES)}</dd>
+          </>
+        )}
+        {detail.triggered_e_s !== undefined && (
+          <>
+            <dt>triggered</dt>
+            <dd>{at(detail.triggered_e_s)}</dd>
+          </>
+        )}
+        {detail.tone_e_s !== undefined && (
+          <>
+            <dt>its tone began</dt>
+            <dd>{at(detail.tone_e_s)}</dd>
+          </>
+        )}
+        {detail.firedLive_e_s !== undefined && (
+          <>
+            <dt>fired, by UHF</dt>
+            <dd>{at(detail.firedLive_e_s)}</dd>
+          </>
+        )}
+        {detail.firedRecorded_e_s !== undefined && (
+          <>
+            <dt>fired, by recording</dt>
+            <dd>{at(detail.firedRecorded_e_s)}</dd>
+          </>
+        )}
+        {ENDS[detail.verdict] && (
+          <>
+            <dt>how it ended</dt>
+            <dd>{ENDS[detail.verdict]}</dd>
+          </>
+        )}
+        {row.tone && (
+          <>
+            <dt>tone</dt>
+            <dd>{row.tone}</dd>
+          </>
+        )}
       </dl>
       {detail.state === 'passed' && <p>Nothing told of it; one after it has fired, so it is past.</p>}
       <Conditions lines={lines} />
@@ -374,7 +513,11 @@ function Detail() {
 
 /** Flight's own verdicts, in words. */
 const ENDS: Record<string, string> = {
-  completed: 'done; no reply was asked for', replied: 'the reply came', timed_out: 'the reply did not come in time', no_operation: 'nothing was to be done', failed: 'its action could not be done',
+  completed: 'done; no reply was asked for',
+  replied: 'the reply came',
+  timed_out: 'the reply did not come in time',
+  no_operation: 'nothing was to be done',
+  failed: 'its action could not be done',
 };
 
 const ANCHOR_SHAPES = { defined: '✓', predicted: '◌', undefined: '?' } as const;
@@ -384,17 +527,34 @@ function AnchorTree() {
   const lines = anchorLines.value;
   return (
     <div class="point anchors" data-testid="anchors" role="region" aria-label="anchors" tabIndex={0}>
-      <b>Anchors</b> that timepoints hang from <button type="button" class="quiet" onClick={() => (anchorsShown.value = false)} aria-label="close">×</button>
+      <b>Anchors</b> that timepoints hang from{' '}
+      <button type="button" class="quiet" onClick={() => (anchorsShown.value = false)} aria-label="close">
+        ×
+      </button>
       {lines.length === 0 && <p>no anchors have come yet</p>}
       <table>
-        <thead><tr><th>anchor</th><th class="number">offset from parent</th><th class="number">is at</th><th>state, by</th></tr></thead>
+        <thead>
+          <tr>
+            <th>anchor</th>
+            <th class="number">offset from parent</th>
+            <th class="number">is at</th>
+            <th>state, by</th>
+          </tr>
+        </thead>
         <tbody>
           {lines.map((line) => (
             <tr key={line.id} data-anchor={line.name} class={line.state === 'defined' ? '' : 'status-dim'}>
-              <td style={{ paddingLeft: `${line.depth * 14}px` }}>{line.depth > 0 && '└ '}{title(line.name)}</td>
-              <td class="number">{line.parent === '' ? '' : line.offset_s === undefined ? 'undefined' : `${line.offset_s} s`}</td>
+              <td style={{ paddingLeft: `${line.depth * 14}px` }}>
+                {line.depth > 0 && '└ '}
+                {title(line.name)}
+              </td>
+              <td class="number">
+                {line.parent === '' ? '' : line.offset_s === undefined ? 'undefined' : `${line.offset_s} s`}
+              </td>
               <td class="number">{line.e_s === undefined ? '—' : fromEntry(line.e_s, { tenths: true })}</td>
-              <td>{ANCHOR_SHAPES[line.state]} {line.state}: {line.by}</td>
+              <td>
+                {ANCHOR_SHAPES[line.state]} {line.state}: {line.by}
+              </td>
             </tr>
           ))}
         </tbody>
@@ -407,24 +567,49 @@ export function Timeline() {
   const run = runNow();
   const fired = run ? firedCount(run, timepoints.value, cutoff.value) : { all: 0, byTone: 0 };
   return (
-    <Panel name="timeline" title="Timeline" extra={
-      <>
-        <span data-testid="timepoints-fired">{fired.all} of {timepoints.value.length} timepoints fired{fired.byTone > 0 && `, ■ ${fired.byTone} by tone`}</span>
-        <button type="button" aria-pressed={anchorsShown.value} title="key h" onClick={toggleAnchors}>anchors</button>
-        <span class="choices" role="group" aria-label="Stretch of time">
-          {CHOICES.map(([id, words, key]) => (
-            <button type="button" key={id} aria-pressed={choice.value === id} disabled={pastRange.value !== undefined && !replay.value}
-              onClick={() => (choice.value = id)} title={`key ${key}`}>{words}</button>
-          ))}
-          <button type="button" title="key ]" aria-label="zoom in" onClick={() => zoom(run, 0.5)}>+</button>
-          <button type="button" title="key [" aria-label="zoom out" onClick={() => zoom(run, 2)}>−</button>
-          <button type="button" aria-label="earlier" title="key ←" onClick={() => pan(run, -0.25)}>‹</button>
-          <button type="button" aria-label="later" title="key →" onClick={() => pan(run, 0.25)}>›</button>
-        </span>
-      </>
-    }>
+    <Panel
+      name="timeline"
+      title="Timeline"
+      extra={
+        <>
+          <span data-testid="timepoints-fired">
+            {fired.all} of {timepoints.value.length} timepoints fired{fired.byTone > 0 && `, ■ ${fired.byTone} by tone`}
+          </span>
+          <button type="button" aria-pressed={anchorsShown.value} title="key h" onClick={toggleAnchors}>
+            anchors
+          </button>
+          <span class="choices" role="group" aria-label="Stretch of time">
+            {CHOICES.map(([id, words, key]) => (
+              <button
+                type="button"
+                key={id}
+                aria-pressed={choice.value === id}
+                disabled={pastRange.value !== undefined && !replay.value}
+                onClick={() => (choice.value = id)}
+                title={`key ${key}`}
+              >
+                {words}
+              </button>
+            ))}
+            <button type="button" title="key ]" aria-label="zoom in" onClick={() => zoom(run, 0.5)}>
+              +
+            </button>
+            <button type="button" title="key [" aria-label="zoom out" onClick={() => zoom(run, 2)}>
+              −
+            </button>
+            <button type="button" aria-label="earlier" title="key ←" onClick={() => pan(run, -0.25)}>
+              ‹
+            </button>
+            <button type="button" aria-label="later" title="key →" onClick={() => pan(run, 0.25)}>
+              ›
+            </button>
+          </span>
+        </>
+      }
+    >
       <Canvas
-        label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry" testId="timeline-canvas"
+        label="Timepoints by plan, prediction, tone, live UHF and recording, over time from entry"
+        testId="timeline-canvas"
         keyOf={() => {
           const span = shown(shownRun());
           return `${shownRun()?.id} ${withRecording.value} ${tick.value} ${span.from} ${span.to} ${timepoints.value.length} ${cutoff.value} ${selected.value} ${cursor.value} ${JSON.stringify(moved.value)}`;

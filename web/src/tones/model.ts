@@ -17,7 +17,10 @@ export function toneBars(store: RunStore, cutoff: number): ToneBar[] {
     const span = secondsOfDayOfYear(fact.ertEnd) - secondsOfDayOfYear(fact.ertStart);
     const from = fact.sclk - store.entrySclk;
     bars.push({
-      from_e_s: from, to_e_s: from + (span > 0 ? span : SYMBOL_S), tone: fact.tone, likelihood: fact.likelihood,
+      from_e_s: from,
+      to_e_s: from + (span > 0 ? span : SYMBOL_S),
+      tone: fact.tone,
+      likelihood: fact.likelihood,
     });
   }
   return bars;
@@ -29,12 +32,20 @@ export function latestTone(store: RunStore, cutoff: number): Tone | undefined {
 
 /** The symbol at `sclk`, or the newest by `cutoff` where none is chosen or the chosen one came later than that. */
 export function shownTone(store: RunStore, cutoff: number, chosen_sclk: number | undefined): Tone | undefined {
-  const chosen = chosen_sclk === undefined || chosen_sclk > cutoff ? undefined : store.tonesBy(cutoff).find(({ fact }) => fact.sclk === chosen_sclk)?.fact;
+  const chosen =
+    chosen_sclk === undefined || chosen_sclk > cutoff
+      ? undefined
+      : store.tonesBy(cutoff).find(({ fact }) => fact.sclk === chosen_sclk)?.fact;
   return chosen ?? latestTone(store, cutoff);
 }
 
 /** Of the symbol before or after that of `sclk`, its SCLK; undefined after the newest: that is no choice, it moves on. */
-export function neighbour(store: RunStore, cutoff: number, sclk: number | undefined, direction: 1 | -1): number | undefined {
+export function neighbour(
+  store: RunStore,
+  cutoff: number,
+  sclk: number | undefined,
+  direction: 1 | -1,
+): number | undefined {
   const all = store.tonesBy(cutoff).map(({ fact }) => fact.sclk);
   const at = sclk === undefined ? all.length - 1 : all.indexOf(sclk);
   const to = Math.max(0, at + direction);
@@ -44,18 +55,21 @@ export function neighbour(store: RunStore, cutoff: number, sclk: number | undefi
 const OLD_S = 40; // ours: four symbols; by then the next would have come, decoded or not
 
 /** Whether it is not what the vehicle says now, at `seen_sclk`, but the last that was heard of it. */
-export const isOld = (tone: Tone | undefined, seen_sclk: number): boolean => tone !== undefined && seen_sclk - tone.sclk > OLD_S;
+export const isOld = (tone: Tone | undefined, seen_sclk: number): boolean =>
+  tone !== undefined && seen_sclk - tone.sclk > OLD_S;
 
 /** The title in words: what the vehicle says now, or what was heard last and when. */
 export function toneTitle(tone: Tone | undefined, last_e_s?: number): string {
   if (!tone) return 'Tones';
-  const meaning = tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
+  const meaning =
+    tone.tone === undefined ? 'not decoded' : `${tone.tone} · ${tone.meaning || tone.name || 'without a meaning'}`;
   return last_e_s === undefined ? `Tone ${meaning}` : `Last tone, ${fromEntry(last_e_s)}: ${meaning}`;
 }
 
 function lockInWords(tone: Tone): string {
   if (tone.locked) return `■ lock, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
-  if (tone.lock === 'fluctuating' || tone.lock === 'coasting') return `▨ ${tone.lock}, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
+  if (tone.lock === 'fluctuating' || tone.lock === 'coasting')
+    return `▨ ${tone.lock}, ${tone.cN0Dbhz.toFixed(1)} dB-Hz`;
   return '□ no lock';
 }
 

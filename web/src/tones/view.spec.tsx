@@ -4,7 +4,17 @@ import { aStore, tone } from '../testing/fixtures';
 import type { Palette } from '../draw/palette';
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import { drawSpectrum } from './view';
-import { bestTones, isOld, latestTone, neighbour, shownTone, toneBars, toneEvidence, toneSpectrum, toneTitle } from './model';
+import {
+  bestTones,
+  isOld,
+  latestTone,
+  neighbour,
+  shownTone,
+  toneBars,
+  toneEvidence,
+  toneSpectrum,
+  toneTitle,
+} from './model';
 
 describe('tones', () => {
   it('say an erasure as an erasure', () => {
@@ -14,21 +24,49 @@ describe('tones', () => {
     expect(toneEvidence(latestTone(store, Infinity))).toContain('no lock');
   });
   it('give the evidence with the meaning', () => {
-    const store = aStore([tone({ sclk: 700, tone: 7, meaning: 'Entry interface', likelihood: 0.998, runnerUp: 8, runnerUpLikelihood: 0.001, locked: true, cN0Dbhz: 22, model: 'statistical' })]);
+    const store = aStore([
+      tone({
+        sclk: 700,
+        tone: 7,
+        meaning: 'Entry interface',
+        likelihood: 0.998,
+        runnerUp: 8,
+        runnerUpLikelihood: 0.001,
+        locked: true,
+        cN0Dbhz: 22,
+        model: 'statistical',
+      }),
+    ]);
     expect(toneTitle(latestTone(store, Infinity))).toBe('Tone 7 · Entry interface');
-    expect(toneEvidence(latestTone(store, Infinity))).toBe('likelihood 0.998 · next 8 at 0.001 · ■ lock, 22.0 dB-Hz · statistical');
+    expect(toneEvidence(latestTone(store, Infinity))).toBe(
+      'likelihood 0.998 · next 8 at 0.001 · ■ lock, 22.0 dB-Hz · statistical',
+    );
   });
   it('tell of a tone that is long past as the last one, with its time, not as what the vehicle says now', () => {
     const last = tone({ sclk: 700, tone: 7, meaning: 'Entry interface' }).item.value as Tone;
     const lost = tone({ sclk: 700 }).item.value as Tone;
     expect([700, 740, 740.1].map((seen) => isOld(last, seen))).toEqual([false, false, true]);
     expect(isOld(undefined, 900)).toBe(false);
-    expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual(['Last tone, E−05:00: 7 · Entry interface', 'Last tone, E−05:00: not decoded']);
+    expect([toneTitle(last, -300), toneTitle(lost, -300)]).toEqual([
+      'Last tone, E−05:00: 7 · Entry interface',
+      'Last tone, E−05:00: not decoded',
+    ]);
   });
   it('show what a receiver saw, and of a statistical tone no spectrum', () => {
     const spectrum = new Uint8Array(128).fill(60);
     spectrum[21] = 110;
-    const heard = tone({ sclk: 700, tone: 42, locked: false, lock: 'coasting', cN0Dbhz: 20.5, spectrum, best: [{ tone: 42, likelihood: 0.99 }, { tone: 7, likelihood: 0.004 }] });
+    const heard = tone({
+      sclk: 700,
+      tone: 42,
+      locked: false,
+      lock: 'coasting',
+      cN0Dbhz: 20.5,
+      spectrum,
+      best: [
+        { tone: 42, likelihood: 0.99 },
+        { tone: 7, likelihood: 0.004 },
+      ],
+    });
     const store = aStore([heard]);
     const latest = latestTone(store, Infinity);
     expect(toneSpectrum(latest)[21]).toEqual({ tone: 42, level_db: 25 });
@@ -40,17 +78,30 @@ describe('tones', () => {
   it('show the whole spectrum, also above the tones that came, with the number of the runner-up', () => {
     const words: string[] = [];
     const bars: number[] = [];
-    const context = { fillText: (text: string) => words.push(text), fillRect: (_x: number, y: number, _wide: number, high: number) => void (high < 3 && bars.push(y)) };
+    const context = {
+      fillText: (text: string) => words.push(text),
+      fillRect: (_x: number, y: number, _wide: number, high: number) => void (high < 3 && bars.push(y)),
+    };
     const spectrum = new Uint8Array(128).fill(60);
     [spectrum[21], spectrum[61]] = [110, 100];
-    drawSpectrum({ context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette }, tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item.value as Tone, 200);
+    drawSpectrum(
+      { context: context as unknown as CanvasRenderingContext2D, width: 600, colours: {} as Palette },
+      tone({ sclk: 700, tone: 42, runnerUp: 123, spectrum }).item.value as Tone,
+      200,
+    );
     expect([bars.length, Math.min(...bars) > 20, Math.max(...bars) < 200]).toEqual([128, true, true]);
     expect(words).toEqual(expect.arrayContaining(['0', '255', '42', '123']));
   });
   it('can be looked at one by one, and move on with the newest where none is chosen', () => {
     const store = aStore([700, 710, 720].map((sclk) => tone({ sclk, tone: sclk / 10 })));
-    expect([undefined, 720, 710, 700].map((sclk) => neighbour(store, Infinity, sclk, -1))).toEqual([710, 710, 700, 700]);
-    expect([700, 710, undefined].map((sclk) => neighbour(store, Infinity, sclk, 1))).toEqual([710, undefined, undefined]);
+    expect([undefined, 720, 710, 700].map((sclk) => neighbour(store, Infinity, sclk, -1))).toEqual([
+      710, 710, 700, 700,
+    ]);
+    expect([700, 710, undefined].map((sclk) => neighbour(store, Infinity, sclk, 1))).toEqual([
+      710,
+      undefined,
+      undefined,
+    ]);
     expect([undefined, 700, 710].map((sclk) => shownTone(store, Infinity, sclk)?.tone)).toEqual([72, 70, 71]);
     expect(shownTone(store, 705, 710)?.tone).toBe(70);
   });

@@ -45,7 +45,8 @@ function onKey(event: KeyboardEvent): void {
 }
 
 let scale: { from: number; to: number; width: number } | undefined; // of the strip, as it was drawn last
-const timeAt = (px: number) => scale && scale.from + ((px - LEFT) / (scale.width - LEFT - 12)) * (scale.to - scale.from);
+const timeAt = (px: number) =>
+  scale && scale.from + ((px - LEFT) / (scale.width - LEFT - 12)) * (scale.to - scale.from);
 
 function choose(px: number): void {
   const [run, e_s] = [shownRun(), timeAt(px)];
@@ -56,7 +57,11 @@ function choose(px: number): void {
 }
 
 /** What the receiver saw of the symbol that is looked at, beside the strip: all 256 that were weighed, on a scale of their own; the decided one and the runner-up by number. */
-export function drawSpectrum({ context: c, width, colours }: Pick<Surface, 'context' | 'width' | 'colours'>, tone: Tone | undefined, bottom: number): void {
+export function drawSpectrum(
+  { context: c, width, colours }: Pick<Surface, 'context' | 'width' | 'colours'>,
+  tone: Tone | undefined,
+  bottom: number,
+): void {
   const y = (index: number) => bottom - (index / TONES) * (bottom - 22);
   const [left, right] = [width - SPECTRUM + 30, width - 12];
   const numbered = [tone?.tone, tone?.runnerUp].filter((each) => each !== undefined);
@@ -165,20 +170,50 @@ export function Tones() {
   const old = !back && run !== undefined && isOld(tone, Math.min(run.seenSclk, cutoff.value));
   const title = toneTitle(tone, old ? at_e_s : undefined);
   return (
-    <Panel name="tones" title={<span class={`tone-title ${old ? 'tone-old' : ''}`} data-testid="tone-title">{title}</span>} extra={
-      back && <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>newest <kbd>Esc</kbd></button>
-    }>
+    <Panel
+      name="tones"
+      title={
+        <span class={`tone-title ${old ? 'tone-old' : ''}`} data-testid="tone-title">
+          {title}
+        </span>
+      }
+      extra={
+        back && (
+          <button type="button" class="quiet" data-testid="tone-newest" onClick={() => look(undefined)}>
+            newest <kbd>Esc</kbd>
+          </button>
+        )
+      }
+    >
       <p class="tone-evidence" data-testid="tone-evidence">
-        {at_e_s !== undefined && !old && <><b>at {fromEntry(at_e_s)}</b> · </>}{toneEvidence(tone)}{back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
+        {at_e_s !== undefined && !old && (
+          <>
+            <b>at {fromEntry(at_e_s)}</b> ·{' '}
+          </>
+        )}
+        {toneEvidence(tone)}
+        {back && bestTones(tone) !== '' && ` · likeliest ${bestTones(tone)}`}
       </p>
-      <div class="tone-symbols" data-testid="tone-symbols" role="group" aria-label="symbols: ← → choose one" tabIndex={0} onKeyDown={onKey}>
-        <Canvas label={title} testId="tone-canvas" draw={draw} onPoint={choose}
+      <div
+        class="tone-symbols"
+        data-testid="tone-symbols"
+        role="group"
+        aria-label="symbols: ← → choose one"
+        tabIndex={0}
+        onKeyDown={onKey}
+      >
+        <Canvas
+          label={title}
+          testId="tone-canvas"
+          draw={draw}
+          onPoint={choose}
           onHover={(px) => (cursor.value = px === undefined || px < LEFT ? undefined : timeAt(px))}
           keyOf={() => {
             const strip = shownRun();
             const span = plotSpan(strip);
             return `${strip?.id} ${strip?.tones.length} ${Math.round(span.from * 2)} ${Math.round(span.to * 2)} ${cutoff.value} ${chosenSclk()} ${cursor.value}`;
-          }} />
+          }}
+        />
       </div>
     </Panel>
   );

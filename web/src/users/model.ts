@@ -41,11 +41,15 @@ export const busy = signal(false);
 const AUDIT_LIMIT = 100;
 const OFFERED = 20; // ours: names under a field that is being typed in
 
-const auditPage = async (after: number, limit: number) => (await call<{ entries?: AuditEntry[] }>('GET', `/audit?after=${after}&limit=${limit}`)).entries ?? [];
+const auditPage = async (after: number, limit: number) =>
+  (await call<{ entries?: AuditEntry[] }>('GET', `/audit?after=${after}&limit=${limit}`)).entries ?? [];
 
 /** Newest first. The server counts from the oldest on: where the end is, is found by halving, each step one entry by its number. */
 async function auditUpTo(before: number): Promise<AuditEntry[]> {
-  if (before > 0) return (await auditPage(Math.max(0, before - 1 - AUDIT_LIMIT), AUDIT_LIMIT)).filter(({ entry }) => Number(entry) < before).reverse();
+  if (before > 0)
+    return (await auditPage(Math.max(0, before - 1 - AUDIT_LIMIT), AUDIT_LIMIT))
+      .filter(({ entry }) => Number(entry) < before)
+      .reverse();
   const isThere = async (entry: number) => (await auditPage(entry - 1, 1)).length > 0;
   let [low, high] = [0, AUDIT_LIMIT]; // numbered from 1, without a gap
   while (await isThere(high)) [low, high] = [high, high * 2];
@@ -60,7 +64,8 @@ async function auditUpTo(before: number): Promise<AuditEntry[]> {
 export async function refreshUsers(): Promise<void> {
   try {
     const [all, programs, log] = await Promise.all([
-      call<{ users?: User[] }>('GET', '/users'), call<{ tokens?: Token[] }>('GET', '/tokens'),
+      call<{ users?: User[] }>('GET', '/users'),
+      call<{ tokens?: Token[] }>('GET', '/tokens'),
       auditUpTo(Number(auditBefore.value)),
     ]);
     users.value = all.users ?? [];
@@ -98,7 +103,14 @@ const at = (path: string, name: string) => `${path}/${encodeURIComponent(name)}`
 
 /** Names as they are typed, in any case, between commas or spaces; an Error names what the dictionary does not have. */
 function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined): string[] {
-  const names = [...new Set(text.toUpperCase().split(/[\s,;]+/).filter((name) => name !== ''))];
+  const names = [
+    ...new Set(
+      text
+        .toUpperCase()
+        .split(/[\s,;]+/)
+        .filter((name) => name !== ''),
+    ),
+  ];
   const strange = names.filter((name) => known?.command(name) === undefined);
   if (strange.length > 0) throw new Error(`the dictionary has no command ${strange.join(', ')}`);
   return names;
@@ -107,27 +119,41 @@ function commandsOf(text: string, known: Pick<Dictionary, 'command'> | undefined
 /** What may follow of what is being typed: each offer is the whole field with its last word completed. */
 export function offersFor(text: string, all: readonly { name: string }[]): string[] {
   const [, stem = '', begun = ''] = /^([^]*?)([^\s,;]*)$/.exec(text) ?? [];
-  return begun === '' ? [] : all.filter(({ name }) => name.startsWith(begun.toUpperCase())).slice(0, OFFERED).map(({ name }) => stem + name);
+  return begun === ''
+    ? []
+    : all
+        .filter(({ name }) => name.startsWith(begun.toUpperCase()))
+        .slice(0, OFFERED)
+        .map(({ name }) => stem + name);
 }
 
 const listed = (commands: readonly string[]) => (commands.length > 0 ? { commands } : {});
 
 export const addUser = (user: string, role: string, password: string, commands = '') =>
-  change(`${user} is ${role} now`, async () => call('POST', '/users', { user, role, password, ...listed(commandsOf(commands, dictionary.value)) }));
+  change(`${user} is ${role} now`, async () =>
+    call('POST', '/users', { user, role, password, ...listed(commandsOf(commands, dictionary.value)) }),
+  );
 /** Nothing typed: all that the role may send. */
 export const setCommands = (user: string, typed: string) =>
   change(`what ${user} may send is changed`, async () => {
     const commands = commandsOf(typed, dictionary.value);
     await call('PATCH', at('/users', user), commands.length > 0 ? { commands } : { all_commands: true });
   });
-export const setRole = (user: string, role: string) => change(`${user} is ${role} now`, () => call('PATCH', at('/users', user), { role }));
-export const setPassword = (user: string, password: string) => change(`${user} has a new password`, () => call('PATCH', at('/users', user), { password }));
+export const setRole = (user: string, role: string) =>
+  change(`${user} is ${role} now`, () => call('PATCH', at('/users', user), { role }));
+export const setPassword = (user: string, password: string) =>
+  change(`${user} has a new password`, () => call('PATCH', at('/users', user), { password }));
 export const setOwnPassword = (user: string, current: string, password: string) =>
   change('your password is changed', () => call('PATCH', at('/users', user), { current_password: current, password }));
 export const removeUser = (user: string) => change(`${user} is removed`, () => call('DELETE', at('/users', user)));
 export const addToken = (name: string, role: string, commands = '') =>
   change(`the token ${name} is made`, async () => {
-    const made = await call<{ token: string }>('POST', '/tokens', { name, role, ...listed(commandsOf(commands, dictionary.value)) });
+    const made = await call<{ token: string }>('POST', '/tokens', {
+      name,
+      role,
+      ...listed(commandsOf(commands, dictionary.value)),
+    });
     newToken.value = { name, token: made.token };
   });
-export const removeToken = (name: string) => change(`the token ${name} is void`, () => call('DELETE', at('/tokens', name)));
+export const removeToken = (name: string) =>
+  change(`the token ${name} is void`, () => call('DELETE', at('/tokens', name)));

@@ -5,5 +5,9 @@ import type { Verdict } from '../design/status';
 export function Mark({ verdict }: { verdict: string }) {
   const look = verdict in VERDICTS ? VERDICTS[verdict as Verdict] : undefined;
   const status = look ? STATUS[look.status] : STATUS.unknown;
-  return <span class={`status-${status.token}`} title={look?.means}>{status.shape} {look?.words ?? verdict.replaceAll('_', ' ')}</span>;
+  return (
+    <span class={`status-${status.token}`} title={look?.means}>
+      {status.shape} {look?.words ?? verdict.replaceAll('_', ' ')}
+    </span>
+  );
 }

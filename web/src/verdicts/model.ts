@@ -16,9 +16,15 @@ export interface Row {
 
 function rowOf(row: ProofRow): Row {
   return {
-    name: row.name, live: Number(row.realtime), identical: Number(row.identical), differs: Number(row.differs),
-    missing: Number(row.missingInRecording), recorded: Number(row.recorded), neverLive: Number(row.neverSeenLive),
-    notDecoded: Number(row.notDecoded), pending: Number(row.pending),
+    name: row.name,
+    live: Number(row.realtime),
+    identical: Number(row.identical),
+    differs: Number(row.differs),
+    missing: Number(row.missingInRecording),
+    recorded: Number(row.recorded),
+    neverLive: Number(row.neverSeenLive),
+    notDecoded: Number(row.notDecoded),
+    pending: Number(row.pending),
   };
 }
 
@@ -26,13 +32,37 @@ export const trouble = (row: Row) => row.differs + row.missing + row.notDecoded;
 
 /** What is in trouble first, then what there is most of. */
 export function rowsOf(rows: readonly ProofRow[]): Row[] {
-  return rows.map(rowOf).sort((a, b) => trouble(b) - trouble(a) || b.recorded + b.live - a.recorded - a.live || a.name.localeCompare(b.name));
+  return rows
+    .map(rowOf)
+    .sort(
+      (a, b) => trouble(b) - trouble(a) || b.recorded + b.live - a.recorded - a.live || a.name.localeCompare(b.name),
+    );
 }
 
 export function totalOf(rows: readonly Row[]): Row {
-  const total: Row = { name: 'all', live: 0, identical: 0, differs: 0, missing: 0, recorded: 0, neverLive: 0, notDecoded: 0, pending: 0 };
+  const total: Row = {
+    name: 'all',
+    live: 0,
+    identical: 0,
+    differs: 0,
+    missing: 0,
+    recorded: 0,
+    neverLive: 0,
+    notDecoded: 0,
+    pending: 0,
+  };
   for (const row of rows) {
-    for (const key of ['live', 'identical', 'differs', 'missing', 'recorded', 'neverLive', 'notDecoded', 'pending'] as const) total[key] += row[key];
+    for (const key of [
+      'live',
+      'identical',
+      'differs',
+      'missing',
+      'recorded',
+      'neverLive',
+      'notDecoded',
+      'pending',
+    ] as const)
+      total[key] += row[key];
   }
   return total;
 }
@@ -42,14 +72,29 @@ const many = (count: number) => count.toLocaleString('en').replaceAll(',', ' ');
 /** The one sentence. Before the recording is complete, missing means not yet, and nothing is called proven. */
 export function sentence(proof: ProofReport): { status: Status; text: string } {
   const total = totalOf(proof.streams.map(rowOf));
-  if (total.differs > 0) return { status: 'failed', text: `${many(total.differs)} of ${many(total.live)} packets seen live differ from the recording.` };
+  if (total.differs > 0)
+    return {
+      status: 'failed',
+      text: `${many(total.differs)} of ${many(total.live)} packets seen live differ from the recording.`,
+    };
   if (!proof.recordingComplete) {
-    return { status: 'missing', text: total.recorded === 0 ? `${many(total.live)} packets were seen live; the recording has not come yet.`
-      : `${many(total.identical)} of ${many(total.live)} packets seen live are in the recording so far, bit for bit; ${many(total.pending || total.live - total.identical)} wait for the rest of it.` };
+    return {
+      status: 'missing',
+      text:
+        total.recorded === 0
+          ? `${many(total.live)} packets were seen live; the recording has not come yet.`
+          : `${many(total.identical)} of ${many(total.live)} packets seen live are in the recording so far, bit for bit; ${many(total.pending || total.live - total.identical)} wait for the rest of it.`,
+    };
   }
-  if (total.missing > 0) return { status: 'failed', text: `${many(total.missing)} of ${many(total.live)} packets seen live are not in the recording.` };
-  if (total.notDecoded > 0) return { status: 'caution', text: `${many(total.notDecoded)} packets could not be decoded; no other trouble.` };
-  if (total.live === 0) return { status: 'unknown', text: `Nothing was seen live; the recording has ${many(total.recorded)} packets.` };
+  if (total.missing > 0)
+    return {
+      status: 'failed',
+      text: `${many(total.missing)} of ${many(total.live)} packets seen live are not in the recording.`,
+    };
+  if (total.notDecoded > 0)
+    return { status: 'caution', text: `${many(total.notDecoded)} packets could not be decoded; no other trouble.` };
+  if (total.live === 0)
+    return { status: 'unknown', text: `Nothing was seen live; the recording has ${many(total.recorded)} packets.` };
   return { status: 'holds', text: `All ${many(total.live)} packets seen live are in the recording, bit for bit.` };
 }
 

@@ -42,28 +42,59 @@ export interface Waiting {
 }
 
 const RELATIONS: Record<string, string> = { '<=': '≤', '==': '=', '>=': '≥', '!=': '≠' };
-const UNITS: Record<string, string> = { mps2: 'm/s²', mps: 'm/s', dps: '°/s', deg: '°', s: 's', m: 'm', N: 'N', kg: 'kg', Pa: 'Pa', g: 'g' };
+const UNITS: Record<string, string> = {
+  mps2: 'm/s²',
+  mps: 'm/s',
+  dps: '°/s',
+  deg: '°',
+  s: 's',
+  m: 'm',
+  N: 'N',
+  kg: 'kg',
+  Pa: 'Pa',
+  g: 'g',
+};
 
 /** A quantity's name ends in its unit: "speed_mps" is "speed", in m/s. */
 function quantityWords(quantity: string): { words: string; unit: string } {
   const at = quantity.lastIndexOf('_');
   const unit = UNITS[quantity.slice(at + 1)];
-  return unit === undefined || at < 0 ? { words: inWords(quantity), unit: '' } : { words: inWords(quantity.slice(0, at)), unit: ` ${unit}` };
+  return unit === undefined || at < 0
+    ? { words: inWords(quantity), unit: '' }
+    : { words: inWords(quantity.slice(0, at)), unit: ` ${unit}` };
 }
 
-export function conditionLine({ quantity, value, comparison, bound, holds }: Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>): Line {
+export function conditionLine({
+  quantity,
+  value,
+  comparison,
+  bound,
+  holds,
+}: Pick<Condition, 'quantity' | 'value' | 'comparison' | 'bound' | 'holds'>): Line {
   const { words, unit } = quantityWords(quantity);
-  return { words: `${words} ${RELATIONS[comparison] ?? comparison} ${numberText(bound)}${unit}`, value: `${numberText(value)}${unit}`, holds };
+  return {
+    words: `${words} ${RELATIONS[comparison] ?? comparison} ${numberText(bound)}${unit}`,
+    value: `${numberText(value)}${unit}`,
+    holds,
+  };
 }
 
 /** What the vehicle does next that people wait for: the next named moment; where none is left, the next timepoint. */
-function waitedFor(store: RunStore, plan: readonly TimepointRow[], cutoff: number): { main: TimepointRow; first: TimepointRow } | undefined {
+function waitedFor(
+  store: RunStore,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+): { main: TimepointRow; first: TimepointRow } | undefined {
   const first = nextTimepoint(store, plan, cutoff);
   return first && { first, main: plan.slice(plan.indexOf(first)).find((row) => isImportant(row.name)) ?? first };
 }
 
 export function waitingFor(
-  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff: number, predicted: readonly Prediction[] = [],
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  cutoff: number,
+  predicted: readonly Prediction[] = [],
 ): Waiting {
   if (!store.going && cutoff === Infinity) return ended(store);
   const accepted = stepEvidence(store, LAYOUT.firstSteps[LAYOUT.firstSteps.length - 1], cutoff) !== undefined;
@@ -73,29 +104,67 @@ export function waitingFor(
   const waited = waitedFor(store, plan, cutoff);
   if (!waited) {
     return {
-      kind: 'waiting', title: 'The timeline is complete',
-      words: cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1
-        ? `The recording is coming down: ${Math.round(store.run.relayProgress * 100)} %` : 'Every timepoint has fired.',
+      kind: 'waiting',
+      title: 'The timeline is complete',
+      words:
+        cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1
+          ? `The recording is coming down: ${Math.round(store.run.relayProgress * 100)} %`
+          : 'Every timepoint has fired.',
       lines: [],
-      ...(cutoff === Infinity && store.run.relayProgress > 0 && store.run.relayProgress < 1 && { coming: store.run.relayProgress }),
+      ...(cutoff === Infinity &&
+        store.run.relayProgress > 0 &&
+        store.run.relayProgress < 1 && { coming: store.run.relayProgress }),
     };
   }
   const { main, first } = waited;
   const lastWas = last && heard.get(last.id);
   const moment = momentsOf(store, dictionary, plan, cutoff).find((each) => !each.done && each.before === main.name);
   return {
-    kind: 'waiting', title: `Waiting for ${inWords((moment ?? main).name)}`, words: moment?.plain ?? noteWords(main.note),
-    lines: moment ? momentLines(store, dictionary, plan, moment, cutoff) : conditions(store, dictionary, plan, main, cutoff, predicted),
+    kind: 'waiting',
+    title: `Waiting for ${inWords((moment ?? main).name)}`,
+    words: moment?.plain ?? noteWords(main.note),
+    lines: moment
+      ? momentLines(store, dictionary, plan, moment, cutoff)
+      : conditions(store, dictionary, plan, main, cutoff, predicted),
     // By tone nobody tells of what has none: it may have fired.
-    ...(first !== main && !moment && lastWas?.by !== 'tone' && { before: conditions(store, dictionary, plan, first, cutoff, predicted)[0], beforeName: inWords(first.name) }),
-    ...(last && lastWas?.by === 'tone' && { byTone: `${inWords(last.name)}, ${fromEntry(lastWas.triggered_sclk - store.entrySclk)}` }),
+    ...(first !== main &&
+      !moment &&
+      lastWas?.by !== 'tone' && {
+        before: conditions(store, dictionary, plan, first, cutoff, predicted)[0],
+        beforeName: inWords(first.name),
+      }),
+    ...(last &&
+      lastWas?.by === 'tone' && {
+        byTone: `${inWords(last.name)}, ${fromEntry(lastWas.triggered_sclk - store.entrySclk)}`,
+      }),
   };
 }
 
-function momentLines(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], moment: Moment, cutoff: number): Line[] {
+function momentLines(
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  moment: Moment,
+  cutoff: number,
+): Line[] {
   const now = Math.min(store.seenSclk, cutoff);
-  const held = latestHeld(store, (fact) => fact.decision === moment.name, cutoff)?.conditions.map(conditionLine) ?? watched(store, dictionary, plan, moment.name, cutoff);
-  return [...(moment.e_s === undefined ? [] : [timeLine(`predicted at ${fromEntry(moment.e_s)}`, undefined, moment.e_s + store.entrySclk, now, store.entrySclk)]), ...held];
+  const held =
+    latestHeld(store, (fact) => fact.decision === moment.name, cutoff)?.conditions.map(conditionLine) ??
+    watched(store, dictionary, plan, moment.name, cutoff);
+  return [
+    ...(moment.e_s === undefined
+      ? []
+      : [
+          timeLine(
+            `predicted at ${fromEntry(moment.e_s)}`,
+            undefined,
+            moment.e_s + store.entrySclk,
+            now,
+            store.entrySclk,
+          ),
+        ]),
+    ...held,
+  ];
 }
 
 /** A note of the plan as a sentence. */
@@ -106,7 +175,10 @@ export function noteWords(note: string): string {
 
 function ended(store: RunStore): Waiting {
   const run = store.run;
-  const complete = run.relayProgress >= 1 ? 'The recording is complete.' : `${Math.round(run.relayProgress * 100)} % of the recording came down.`;
+  const complete =
+    run.relayProgress >= 1
+      ? 'The recording is complete.'
+      : `${Math.round(run.relayProgress * 100)} % of the recording came down.`;
   return {
     kind: 'ended',
     title: run.outcome === 'touchdown' ? 'Landed' : run.state === 'interrupted' ? 'Interrupted' : 'Ended',
@@ -136,7 +208,12 @@ const lastWord = (store: RunStore, row: CommandRow, stage: string, cutoff: numbe
  * What the vehicle's own status still says against a step that comes next: it would be refused. A status that never came is no
  * reason to wait, for flight decides by what it knows.
  */
-function statusAgainst(store: RunStore, dictionary: Dictionary, step: FirstStep, cutoff = Infinity): Precondition | undefined {
+function statusAgainst(
+  store: RunStore,
+  dictionary: Dictionary,
+  step: FirstStep,
+  cutoff = Infinity,
+): Precondition | undefined {
   const command = dictionary.command(step.command);
   return command && preconditionsOf(command, dictionary, store, cutoff).find((condition) => condition.holds === false);
 }
@@ -157,7 +234,13 @@ export function missingStep(store: RunStore, dictionary: Dictionary, cutoff = In
   const step = steps[number];
   if (!step) return undefined;
   const { state, evidence } = progress(store, step, cutoff);
-  return { number, step, state, evidence, against: number > 0 && state === 'unsent' ? statusAgainst(store, dictionary, step, cutoff) : undefined };
+  return {
+    number,
+    step,
+    state,
+    evidence,
+    against: number > 0 && state === 'unsent' ? statusAgainst(store, dictionary, step, cutoff) : undefined,
+  };
 }
 
 const firstSteps = (dictionary: Dictionary) => LAYOUT.firstSteps.filter((step) => dictionary.command(step.command));
@@ -168,10 +251,16 @@ const ANSWERS = 'It answers by a tone of 10 s, which is decided up to 20 s after
  * That this run can begin no more, and by when it had to: the last of the first steps has not left, and would come later than flight takes it,
  * a light time from now. Said by the clock on top, another light time behind.
  */
-export function tooLate(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], cutoff = Infinity): string | undefined {
+export function tooLate(
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  cutoff = Infinity,
+): string | undefined {
   const step = firstSteps(dictionary).at(-1);
   const first_e_s = plan.find((row) => row.plannedES !== undefined)?.plannedES;
-  if (!step || first_e_s === undefined || !store.entryKnown || progress(store, step, cutoff).state === 'sent') return undefined;
+  if (!step || first_e_s === undefined || !store.entryKnown || progress(store, step, cutoff).state === 'sent')
+    return undefined;
   const latest_e_s = first_e_s - LAYOUT.beginMargin_s - 2 * (store.clocks?.lightTimeS ?? store.run.lightTimeS);
   if (Math.min(store.seenSclk, cutoff) - store.entrySclk < latest_e_s) return undefined;
   return `“${step.words}” had to leave by ${fromEntry(latest_e_s)}: the vehicle refuses it from ${LAYOUT.beginMargin_s} s before its first timepoint.`;
@@ -183,45 +272,77 @@ function beginning(store: RunStore, dictionary: Dictionary, plan: readonly Timep
   const { step, state, evidence, against } = missing;
   const past = cutoff !== Infinity; // then there was something to be pressed
   const late = tooLate(store, dictionary, plan, cutoff);
-  const [title, words] = late !== undefined ? ['Too late for this run', `${late} ${past ? '' : 'End it and start another.'}`]
-    : against ? ['Waiting for the vehicle’s status', `“${step.words}” is refused until it says so.`]
-    : state === 'sent' ? ['Sent. Waiting for the vehicle’s answer', ANSWERS]
-    : state === 'on_ground' ? [`“${step.words}” waits on the ground`, `It has not left yet: it ${evidence}.`]
-    : [past ? `“${step.words}” had not been sent` : `Press / and type “${step.words}”`, `It ${step.why}.`];
+  const [title, words] =
+    late !== undefined
+      ? ['Too late for this run', `${late} ${past ? '' : 'End it and start another.'}`]
+      : against
+        ? ['Waiting for the vehicle’s status', `“${step.words}” is refused until it says so.`]
+        : state === 'sent'
+          ? ['Sent. Waiting for the vehicle’s answer', ANSWERS]
+          : state === 'on_ground'
+            ? [`“${step.words}” waits on the ground`, `It has not left yet: it ${evidence}.`]
+            : [past ? `“${step.words}” had not been sent` : `Press / and type “${step.words}”`, `It ${step.why}.`];
   return {
-    kind: 'begin', title, words,
+    kind: 'begin',
+    title,
+    words,
     ...(late !== undefined && !past && { late: true }),
     ...(state === 'unsent' && !against && !past && late === undefined && { type: step.words }),
-    lines: [...firstSteps(dictionary).map((each) => {
-      const done = stepEvidence(store, each, cutoff);
-      return { words: each.words, value: done ?? progress(store, each, cutoff).evidence, holds: done !== undefined };
-    }), ...(against ? [{ words: against.words, value: against.value, holds: against.holds }] : [])],
+    lines: [
+      ...firstSteps(dictionary).map((each) => {
+        const done = stepEvidence(store, each, cutoff);
+        return { words: each.words, value: done ?? progress(store, each, cutoff).evidence, holds: done !== undefined };
+      }),
+      ...(against ? [{ words: against.words, value: against.value, holds: against.holds }] : []),
+    ],
   };
 }
 
 /** Of a mission whose commands are not here: there is nothing to be pressed, only to be heard. */
 function listening(store: RunStore, dictionary: Dictionary): Waiting {
   return {
-    kind: 'waiting', title: store.unitTotals.size + store.live.size > 0 ? 'Listening' : 'Nothing has come yet', lines: [],
-    words: dictionary.commands.length === 0 ? 'This venue has no commands here.' : 'This venue has none of the commands that begin a landing.',
+    kind: 'waiting',
+    title: store.unitTotals.size + store.live.size > 0 ? 'Listening' : 'Nothing has come yet',
+    lines: [],
+    words:
+      dictionary.commands.length === 0
+        ? 'This venue has no commands here.'
+        : 'This venue has none of the commands that begin a landing.',
   };
 }
 
 /** How far the newest of a step that had been heard of by then has come, with what says so. */
 function progress(store: RunStore, step: FirstStep, cutoff: number): Pick<Missing, 'state' | 'evidence'> {
-  const words = (row: CommandRow) => [...row.stages.keys()].flatMap((stage) => lastWord(store, row, stage, cutoff) ?? []);
+  const words = (row: CommandRow) =>
+    [...row.stages.keys()].flatMap((stage) => lastWord(store, row, stage, cutoff) ?? []);
   const row = [...store.commands.values()].findLast((each) => each.name === step.command && words(each).length > 0);
   const failed = row && words(row).find((word) => word.status === 'failed');
-  if (failed) return { state: 'unsent', evidence: failed.evidence.startsWith('cancelled') ? failed.evidence : `failed: ${failed.evidence}` };
+  if (failed)
+    return {
+      state: 'unsent',
+      evidence: failed.evidence.startsWith('cancelled') ? failed.evidence : `failed: ${failed.evidence}`,
+    };
   if (!row) return { state: 'unsent', evidence: 'to be sent' };
   const released = lastWord(store, row, 'released', cutoff);
   if (released?.status !== 'pending') return { state: 'sent', evidence: 'sent' };
-  return { state: 'on_ground', evidence: released.needsApproval ? 'waits for a second person' : released.held ? 'is held until it is released' : 'waits to leave' };
+  return {
+    state: 'on_ground',
+    evidence: released.needsApproval
+      ? 'waits for a second person'
+      : released.held
+        ? 'is held until it is released'
+        : 'waits to leave',
+  };
 }
 
 /** Of a timepoint that has not fired: its times, then what flight says that it compares, each with its newest value. */
 export function conditions(
-  store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], row: TimepointRow, cutoff: number, predicted: readonly Prediction[],
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  row: TimepointRow,
+  cutoff: number,
+  predicted: readonly Prediction[],
 ): Line[] {
   const now = Math.min(store.seenSclk, cutoff);
   const value = (names: readonly string[], within_s = Infinity): number | undefined => {
@@ -239,7 +360,11 @@ export function conditions(
   const base = row.anchor ? inWords(row.anchor) : 'the one before';
   // An anchor that GNC starts has no time in the plan: what is waited for is the vehicle's own word.
   const declared = row.anchor !== '' && row.desiredOffsetS === 0 && row.plannedES === undefined;
-  const words = declared ? `the vehicle declares “${base}”` : row.anchor === '' && row.desiredOffsetS === 0 ? 'with the one before' : `${offsetWords(row.desiredOffsetS)} ${base}`;
+  const words = declared
+    ? `the vehicle declares “${base}”`
+    : row.anchor === '' && row.desiredOffsetS === 0
+      ? 'with the one before'
+      : `${offsetWords(row.desiredOffsetS)} ${base}`;
   const time = timeLine(words, desired, foreseen && foreseen.e_s + store.entrySclk, now, store.entrySclk);
   const lines: Line[] = [declared && time.holds ? { words, value: 'not yet', holds: false } : time]; // what is declared fires, and is heard of so
   if (itsOwn && row.minimumOffsetS !== undefined && row.minimumOffsetS > 0 && row.anchor !== '') {
@@ -251,22 +376,44 @@ export function conditions(
 }
 
 /** What is compared for the timepoint or moment of this name, as far as it is known; what is old says so, and holds nothing. */
-function watched(store: RunStore, dictionary: Dictionary, plan: readonly TimepointRow[], name: string, cutoff: number): Line[] {
+function watched(
+  store: RunStore,
+  dictionary: Dictionary,
+  plan: readonly TimepointRow[],
+  name: string,
+  cutoff: number,
+): Line[] {
   const now = Math.min(store.seenSclk, cutoff);
   const sample = (channel: string) => {
     const known = dictionary.pick([channel]);
     return known && store.latest(known.id, cutoff);
   };
   return LAYOUT.watches.flatMap((watch): Line[] => {
-    const bound = typeof watch.bound === 'number' ? watch.bound : sample(watch.bound)?.value ?? NaN;
+    const bound = typeof watch.bound === 'number' ? watch.bound : (sample(watch.bound)?.value ?? NaN);
     if (watch.timepoint !== name || Number.isNaN(bound)) return [];
     if ('since' in watch) {
-      const since = heardOf(store, plan, cutoff).get(plan.find((row) => row.name === watch.since)?.id ?? NaN)?.fired_sclk;
-      return since === undefined ? [] : [{ words: `since ${inWords(watch.since)} ≥ ${bound} s`, value: duration(now - since), holds: now - since >= bound }];
+      const since = heardOf(store, plan, cutoff).get(
+        plan.find((row) => row.name === watch.since)?.id ?? NaN,
+      )?.fired_sclk;
+      return since === undefined
+        ? []
+        : [
+            {
+              words: `since ${inWords(watch.since)} ≥ ${bound} s`,
+              value: duration(now - since),
+              holds: now - since >= bound,
+            },
+          ];
     }
     const is = sample(watch.channel);
     if (!is || Number.isNaN(is.value)) return [];
-    const line = conditionLine({ quantity: watch.channel, value: is.value, comparison: watch.comparison, bound, holds: compare(is.value, watch.comparison, bound) });
+    const line = conditionLine({
+      quantity: watch.channel,
+      value: is.value,
+      comparison: watch.comparison,
+      bound,
+      holds: compare(is.value, watch.comparison, bound),
+    });
     const stale = staleWords(store, dictionary.pick([watch.channel]), cutoff, false);
     return stale === undefined ? [line] : [{ ...line, value: `${line.value}, ${stale}`, holds: undefined }];
   });
@@ -279,12 +426,25 @@ function offsetWords(offset_s: number | undefined): string {
 }
 
 /** `due`: by the vehicle's word, NaN while it has none itself; `foreseen`: by the timeline's rule over predicted anchors. */
-function timeLine(words: string, due_sclk: number | undefined, foreseen_sclk: number | undefined, now_sclk: number, entry_sclk: number): Line {
+function timeLine(
+  words: string,
+  due_sclk: number | undefined,
+  foreseen_sclk: number | undefined,
+  now_sclk: number,
+  entry_sclk: number,
+): Line {
   const told = due_sclk !== undefined && !Number.isNaN(due_sclk);
-  const left = (told ? due_sclk : foreseen_sclk ?? NaN) - now_sclk;
-  if (told) return { words, value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`, holds: left <= 0 };
+  const left = (told ? due_sclk : (foreseen_sclk ?? NaN)) - now_sclk;
+  if (told)
+    return {
+      words,
+      value: left <= 0 ? fromEntry(due_sclk - entry_sclk, { tenths: true }) : `in ${duration(left)}`,
+      holds: left <= 0,
+    };
   if (left > 0) return { words, value: `≈ in ${duration(left)}`, holds: false };
-  return due_sclk === undefined && foreseen_sclk === undefined ? { words, value: 'no word yet', holds: undefined } : { words, value: 'not yet', holds: false };
+  return due_sclk === undefined && foreseen_sclk === undefined
+    ? { words, value: 'no word yet', holds: undefined }
+    : { words, value: 'not yet', holds: false };
 }
 
 const FRESH_S = 5; // ours: an explanation older than this no longer says why it is held now, nor a time what this timepoint waits for
@@ -292,6 +452,8 @@ const FRESH_S = 5; // ours: an explanation older than this no longer says why it
 /** What flight says that this, and nothing else, is held by. */
 function latestHeld(store: RunStore, isOf: (fact: Explanation) => boolean, cutoff: number): Explanation | undefined {
   const now = Math.min(store.seenSclk, cutoff);
-  const told = store.explanations.findLast(({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && isOf(fact))?.fact;
+  const told = store.explanations.findLast(
+    ({ fact }) => fact.sclk <= cutoff && fact.conditions.length > 0 && isOf(fact),
+  )?.fact;
   return told?.verdict === 'held' && now - told.sclk < FRESH_S ? told : undefined;
 }

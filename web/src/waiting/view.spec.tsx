@@ -7,7 +7,18 @@ import { access } from '../access/model';
 import { ConditionSchema } from '../gen/aeolis/v1/items_pb';
 import { DictionaryChannelSchema, TimepointRowSchema } from '../gen/aeolis/v1/run_pb';
 import { Dictionary } from '../run/dictionary';
-import { aDictionary, aPlan, aRun, aStore, event, explanation, firing, samples, stage, tone } from '../testing/fixtures';
+import {
+  aDictionary,
+  aPlan,
+  aRun,
+  aStore,
+  event,
+  explanation,
+  firing,
+  samples,
+  stage,
+  tone,
+} from '../testing/fixtures';
 import { stream } from '../run/connection';
 import { useForTest } from '../run/session';
 import { timepoints } from '../run/shown';
@@ -25,49 +36,107 @@ const soonPlan = aPlan.slice(1); // of which the first timepoint on the clock is
 describe('waiting for', () => {
   it('tells a newcomer what to press first, and then what next', () => {
     expect(waitingFor(aStore(), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “set edl parameters”');
-    expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “do edl”');
+    expect(waitingFor(aStore(commanded.slice(0, 1)), aDictionary, soonPlan, Infinity).title).toBe(
+      'Press / and type “do edl”',
+    );
   });
   it('says what the plan notes as a sentence, for more may follow', () => {
     const words = (note: string) => {
       const plan = aPlan.map((row) => ({ ...row, note }));
-      return waitingFor(aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 174 })]), aDictionary, plan, Infinity).words;
+      return waitingFor(
+        aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 174 })]),
+        aDictionary,
+        plan,
+        Infinity,
+      ).words;
     };
     expect(['Tone only (L)', 'GNC says when.', ''].map(words)).toEqual(['Tone only.', 'GNC says when.', '']);
     expect(noteWords('Cables are cut before it (order H; time L)')).toBe('Cables are cut before it.');
     expect(noteWords('By the clock (see the plan); 75 kg (M)')).toBe('By the clock (see the plan); 75 kg.');
   });
   it('asks for no command that the vehicle’s status still speaks against', () => {
-    const waiting = waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]), aDictionary, soonPlan, Infinity);
+    const waiting = waitingFor(
+      aStore([...commanded.slice(0, 1), samples(899, { 5: 0 })]),
+      aDictionary,
+      soonPlan,
+      Infinity,
+    );
     expect(waiting.title).toBe('Waiting for the vehicle’s status');
-    expect(waiting.lines.at(-1)).toMatchObject({ words: 'parameters received', value: 'parameters_received is 0', holds: false });
-    expect(waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, soonPlan, Infinity).title).toBe('Press / and type “do edl”');
+    expect(waiting.lines.at(-1)).toMatchObject({
+      words: 'parameters received',
+      value: 'parameters_received is 0',
+      holds: false,
+    });
+    expect(
+      waitingFor(aStore([...commanded.slice(0, 1), samples(899, { 5: 1 })]), aDictionary, soonPlan, Infinity).title,
+    ).toBe('Press / and type “do edl”');
   });
   it('takes a tone for an answer where no packet comes', () => {
-    const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) => stage({ command: BigInt(i + 1), name, stage: 'radiated', status: 'ok' }));
-    const waiting = waitingFor(aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]), aDictionary, soonPlan, Infinity);
+    const sent = ['EDL_SET_PARAMETERS', 'EDL_DO_EDL'].map((name, i) =>
+      stage({ command: BigInt(i + 1), name, stage: 'radiated', status: 'ok' }),
+    );
+    const waiting = waitingFor(
+      aStore([...sent, tone({ sclk: 890, tone: 5, name: 'parameters_accepted' })]),
+      aDictionary,
+      soonPlan,
+      Infinity,
+    );
     expect(waiting.title).toContain('Waiting for the vehicle');
-    expect(waiting.lines.map((line) => [line.value, line.holds])).toEqual([['by tone 5', true], ['sent', false]]);
+    expect(waiting.lines.map((line) => [line.value, line.holds])).toEqual([
+      ['by tone 5', true],
+      ['sent', false],
+    ]);
   });
   it('does not call sent what still waits on the ground, and says for what', () => {
-    const on = (fields: object) => waitingFor(aStore([
-      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok' }), stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'released', status: 'pending', ...fields }),
-    ]), aDictionary, soonPlan, Infinity);
-    expect([on({ needsApproval: true, askedBy: 'ann' }), on({ held: true }), on({})].map(({ title, lines }) => [title, lines[0]?.value])).toEqual([
-      ['“set edl parameters” waits on the ground', 'waits for a second person'], ['“set edl parameters” waits on the ground', 'is held until it is released'], ['“set edl parameters” waits on the ground', 'waits to leave'],
+    const on = (fields: object) =>
+      waitingFor(
+        aStore([
+          stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok' }),
+          stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'released', status: 'pending', ...fields }),
+        ]),
+        aDictionary,
+        soonPlan,
+        Infinity,
+      );
+    expect(
+      [on({ needsApproval: true, askedBy: 'ann' }), on({ held: true }), on({})].map(({ title, lines }) => [
+        title,
+        lines[0]?.value,
+      ]),
+    ).toEqual([
+      ['“set edl parameters” waits on the ground', 'waits for a second person'],
+      ['“set edl parameters” waits on the ground', 'is held until it is released'],
+      ['“set edl parameters” waits on the ground', 'waits to leave'],
     ]);
     expect(on({ status: 'ok' }).lines[0]?.value).toBe('sent');
   });
   it('says why a command failed', () => {
-    const store = aStore([stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' })]);
+    const store = aStore([
+      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'accepted', status: 'failed', evidence: 'bad_argument' }),
+    ]);
     expect(waitingFor(store, aDictionary, soonPlan, Infinity).lines[0]?.value).toContain('bad_argument');
   });
   it('has typed what is missing: the first command again where it was cancelled, nothing while one waits or is under way', () => {
-    const said = (stageName: string, status: string, evidence = '') => stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: stageName, status, evidence, held: status === 'pending' });
+    const said = (stageName: string, status: string, evidence = '') =>
+      stage({
+        command: 1n,
+        name: 'EDL_SET_PARAMETERS',
+        stage: stageName,
+        status,
+        evidence,
+        held: status === 'pending',
+      });
     const now = (...words: ReturnType<typeof said>[]) => waitingFor(aStore(words), aDictionary, soonPlan, Infinity);
     expect(now().type).toBe('set edl parameters');
     const held = said('released', 'pending', 'held by Ada');
-    expect(now(held)).toMatchObject({ title: '“set edl parameters” waits on the ground', words: 'It has not left yet: it is held until it is released.' });
-    expect(now(held, said('released', 'failed', 'cancelled by Ada'))).toMatchObject({ type: 'set edl parameters', lines: [{ value: 'cancelled by Ada', holds: false }, { value: 'to be sent' }] });
+    expect(now(held)).toMatchObject({
+      title: '“set edl parameters” waits on the ground',
+      words: 'It has not left yet: it is held until it is released.',
+    });
+    expect(now(held, said('released', 'failed', 'cancelled by Ada'))).toMatchObject({
+      type: 'set edl parameters',
+      lines: [{ value: 'cancelled by Ada', holds: false }, { value: 'to be sent' }],
+    });
     const sent = [held, said('released', 'ok'), said('radiated', 'ok')];
     expect(now(...sent).title).toBe('Sent. Waiting for the vehicle’s answer');
     expect([now(held).type, now(...sent).type]).toEqual([undefined, undefined]);
@@ -77,25 +146,60 @@ describe('waiting for', () => {
     const run = aRun();
     if (run.clocks) run.clocks = { ...run.clocks, eS: -700, sclk: 300, seenSclk: 300 };
     const late = waitingFor(aStore([], run), aDictionary, aPlan, Infinity);
-    expect(late).toMatchObject({ title: 'Too late for this run', late: true, words: expect.stringContaining('E−13:51') });
+    expect(late).toMatchObject({
+      title: 'Too late for this run',
+      late: true,
+      words: expect.stringContaining('E−13:51'),
+    });
     expect(late.type).toBeUndefined();
   });
   it('names a moment between timepoints, with what is compared for it, until an event or a tone tells of it', () => {
-    const row = (id: number, name: string, anchor: string) => create(TimepointRowSchema, { id, name, anchor, desiredOffsetS: 0, minimumOffsetS: 0 });
-    const plan = [row(0, 'entry_guidance', 'guidance_start'), row(1, 'sufr', 'sufr_start'), row(2, 'parachute_deploy', 'parachute')];
-    const now = (...items: Parameters<typeof aStore>[0] & object) => waitingFor(aStore([...commanded, firing({ timepoint: 0, name: 'entry_guidance', firedSclk: 890 }), samples(899, { 4: 2000 }), ...items]), aDictionary, plan, Infinity);
+    const row = (id: number, name: string, anchor: string) =>
+      create(TimepointRowSchema, { id, name, anchor, desiredOffsetS: 0, minimumOffsetS: 0 });
+    const plan = [
+      row(0, 'entry_guidance', 'guidance_start'),
+      row(1, 'sufr', 'sufr_start'),
+      row(2, 'parachute_deploy', 'parachute'),
+    ];
+    const now = (...items: Parameters<typeof aStore>[0] & object) =>
+      waitingFor(
+        aStore([
+          ...commanded,
+          firing({ timepoint: 0, name: 'entry_guidance', firedSclk: 890 }),
+          samples(899, { 4: 2000 }),
+          ...items,
+        ]),
+        aDictionary,
+        plan,
+        Infinity,
+      );
     const peak = event({ name: 'PEAK_DECELERATION', sclk: 895 });
     expect(now().title).toBe('Waiting for peak deceleration');
-    expect(now(peak)).toMatchObject({ title: 'Waiting for heading alignment', lines: [{ words: 'speed ≤ 1100 m/s', value: '2000 m/s', holds: false }] });
+    expect(now(peak)).toMatchObject({
+      title: 'Waiting for heading alignment',
+      lines: [{ words: 'speed ≤ 1100 m/s', value: '2000 m/s', holds: false }],
+    });
     const aligned = tone({ sclk: 898, tone: 35, name: 'heading_alignment' });
     expect(now(peak, aligned).title).toBe('Waiting for straighten up and fly right (SUFR)');
     expect(now(firing({ timepoint: 1, name: 'sufr', firedSclk: 898 })).title).toBe('Waiting for parachute deploy');
   });
   it('knows nothing of what is compared once it is stale, nor of any condition while nothing comes', () => {
-    const words = new Dictionary({ ...aDictionary.reply, channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })] });
-    const store = (sclk: number) => aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 850 }), samples(850, { 9: 405 }), samples(sclk, { 4: 400 })]);
+    const words = new Dictionary({
+      ...aDictionary.reply,
+      channels: [...aDictionary.channels, create(DictionaryChannelSchema, { id: 9, name: 'parachute_speed_mps' })],
+    });
+    const store = (sclk: number) =>
+      aStore([
+        ...commanded,
+        firing({ timepoint: 1, name: 'entry_interface', firedSclk: 850 }),
+        samples(850, { 9: 405 }),
+        samples(sclk, { 4: 400 }),
+      ]);
     const watched = (sclk: number) => waitingFor(store(sclk), words, aPlan, Infinity).lines.at(-1);
-    expect([watched(899), watched(859)]).toEqual([{ words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true }, { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined }]);
+    expect([watched(899), watched(859)]).toEqual([
+      { words: 'speed ≤ 405 m/s', value: '400 m/s', holds: true },
+      { words: 'speed ≤ 405 m/s', value: '400 m/s, ◌ 41 s', holds: undefined },
+    ]);
     const root = document.createElement('div');
     act(() => {
       useForTest(store(899), words);
@@ -110,8 +214,17 @@ describe('waiting for', () => {
     timepoints.value = [];
   });
   it('has how long a timepoint is ago as a condition with its live value', () => {
-    const plan = [...aPlan, create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 })];
-    const lines = (firedSclk: number) => waitingFor(aStore([...commanded, firing({ timepoint: 2, name: 'parachute_deploy', firedSclk }), samples(899, { 4: 150 })]), aDictionary, plan, Infinity).lines;
+    const plan = [
+      ...aPlan,
+      create(TimepointRowSchema, { id: 3, name: 'heatshield_separation', anchor: 'heatshield', desiredOffsetS: 0 }),
+    ];
+    const lines = (firedSclk: number) =>
+      waitingFor(
+        aStore([...commanded, firing({ timepoint: 2, name: 'parachute_deploy', firedSclk }), samples(899, { 4: 150 })]),
+        aDictionary,
+        plan,
+        Infinity,
+      ).lines;
     expect(lines(887.5)).toContainEqual({ words: 'since parachute deploy ≥ 20 s', value: '12.5 s', holds: false });
     expect(lines(870).at(-1)).toMatchObject({ value: '30.0 s', holds: true });
   });
@@ -123,65 +236,201 @@ describe('waiting for', () => {
     const without = (commands: typeof aDictionary.commands) => new Dictionary({ ...aDictionary.reply, commands });
     expect(listening(without([]))).toEqual(['Nothing has come yet', 'This venue has no commands here.', undefined, []]);
     expect(listening(without([]), [samples(899, { 3: 1 })])[0]).toBe('Listening');
-    expect(listening(without(aDictionary.commands.slice(0, 1)))[1]).toBe('This venue has none of the commands that begin a landing.');
+    expect(listening(without(aDictionary.commands.slice(0, 1)))[1]).toBe(
+      'This venue has none of the commands that begin a landing.',
+    );
   });
   it('names the next timepoint and when it is due by the vehicle’s own word', () => {
-    const store = aStore([...commanded, firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 880 }), samples(899, { 1: 0, 2: 1000, 5: 1 })]);
+    const store = aStore([
+      ...commanded,
+      firing({ timepoint: 0, name: 'coolant_vent', firedSclk: 880 }),
+      samples(899, { 1: 0, 2: 1000, 5: 1 }),
+    ]);
     const waiting = waitingFor(store, aDictionary, aPlan, Infinity);
     expect(waiting.title).toBe('Waiting for entry interface');
     expect(waiting.lines[0]).toMatchObject({ words: 'at entry', value: 'in 1 m 40 s', holds: false });
   });
   it('says that an anchor has not happened, and not nothing', () => {
-    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
-    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'not yet', holds: false });
+    const store = aStore([
+      ...commanded,
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+      samples(899, { 1: 0, 5: 1 }),
+    ]);
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines[0]).toMatchObject({
+      words: 'the vehicle declares “parachute”',
+      value: 'not yet',
+      holds: false,
+    });
   });
   it('takes no time of the timepoint before for this one’s, where history has a gap for what is undefined', () => {
-    const plan = [...aPlan.slice(0, 2), create(TimepointRowSchema, { id: 7, name: 'parachute_deploy', anchor: 'entry', desiredOffsetS: 50, minimumOffsetS: 2, plannedES: 50 })];
-    const first = (rows: typeof aPlan, told_sclk: number, cutoff: number) => waitingFor(aStore([
-      ...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 1000 }), samples(told_sclk, { 2: 1000, 5: 1 }), samples(1300, { 5: 1 }),
-    ], aRun({ clocks: undefined as never, startSclk: 1300 })), aDictionary, rows, cutoff, [{ id: 7, name: '', e_s: 50, fired: false }]).lines[0];
-    expect(first(plan, 1000, 1005), 'while it is new').toMatchObject({ words: '50 s after entry', value: 'E+00:00.0', holds: true });
+    const plan = [
+      ...aPlan.slice(0, 2),
+      create(TimepointRowSchema, {
+        id: 7,
+        name: 'parachute_deploy',
+        anchor: 'entry',
+        desiredOffsetS: 50,
+        minimumOffsetS: 2,
+        plannedES: 50,
+      }),
+    ];
+    const first = (rows: typeof aPlan, told_sclk: number, cutoff: number) =>
+      waitingFor(
+        aStore(
+          [
+            ...commanded,
+            firing({ timepoint: 1, name: 'entry_interface', firedSclk: 1000 }),
+            samples(told_sclk, { 2: 1000, 5: 1 }),
+            samples(1300, { 5: 1 }),
+          ],
+          aRun({ clocks: undefined as never, startSclk: 1300 }),
+        ),
+        aDictionary,
+        rows,
+        cutoff,
+        [{ id: 7, name: '', e_s: 50, fired: false }],
+      ).lines[0];
+    expect(first(plan, 1000, 1005), 'while it is new').toMatchObject({
+      words: '50 s after entry',
+      value: 'E+00:00.0',
+      holds: true,
+    });
     expect(first(plan, 1000, 1005.5)).toMatchObject({ value: '≈ in 44.5 s', holds: false });
-    expect(first(aPlan, 1000, 1180)).toMatchObject({ words: 'the vehicle declares “parachute”', value: 'no word yet', holds: undefined });
-    expect(first(aPlan, 1000, 1001), 'what is declared is heard of by its timepoint').toMatchObject({ value: 'not yet', holds: false });
+    expect(first(aPlan, 1000, 1180)).toMatchObject({
+      words: 'the vehicle declares “parachute”',
+      value: 'no word yet',
+      holds: undefined,
+    });
+    expect(first(aPlan, 1000, 1001), 'what is declared is heard of by its timepoint').toMatchObject({
+      value: 'not yet',
+      holds: false,
+    });
   });
   it('shows the condition that is missing, as flight explained it', () => {
-    const condition = create(ConditionSchema, { quantity: 'speed_mps', value: 450, comparison: '<=', bound: 405, holds: false });
-    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] })]);
-    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({ words: 'speed ≤ 405 m/s', value: '450 m/s', holds: false });
+    const condition = create(ConditionSchema, {
+      quantity: 'speed_mps',
+      value: 450,
+      comparison: '<=',
+      bound: 405,
+      holds: false,
+    });
+    const store = aStore([
+      ...commanded,
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+      explanation({ sclk: 899, decision: 'parachute', verdict: 'held', conditions: [condition] }),
+    ]);
+    expect(waitingFor(store, aDictionary, aPlan, Infinity).lines).toContainEqual({
+      words: 'speed ≤ 405 m/s',
+      value: '450 m/s',
+      holds: false,
+    });
   });
   it('takes no other decision’s conditions for its own', () => {
-    const condition = create(ConditionSchema, { quantity: 'drag_mps2', value: 1.8, comparison: '>=', bound: 1.96, holds: false });
-    const words = (decision: string, text = '') => waitingFor(aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
-      explanation({ sclk: 899, decision, verdict: 'held', text, conditions: [condition] })]), aDictionary, aPlan, Infinity).lines.map((line) => line.words);
+    const condition = create(ConditionSchema, {
+      quantity: 'drag_mps2',
+      value: 1.8,
+      comparison: '>=',
+      bound: 1.96,
+      holds: false,
+    });
+    const words = (decision: string, text = '') =>
+      waitingFor(
+        aStore([
+          ...commanded,
+          firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+          explanation({ sclk: 899, decision, verdict: 'held', text, conditions: [condition] }),
+        ]),
+        aDictionary,
+        aPlan,
+        Infinity,
+      ).lines.map((line) => line.words);
     const own = ['the vehicle declares “parachute”', 'drag ≥ 1.960 m/s²'];
     expect(words('heading_alignment')).toEqual(own.slice(0, 1));
     expect(words('timepoint', 'timepoint entry_interface held: …')).toEqual(own.slice(0, 1));
-    for (const each of [words('parachute'), words('parachute_deploy'), words('timepoint', 'timepoint parachute_deploy held: …')]) expect(each).toEqual(own);
+    for (const each of [
+      words('parachute'),
+      words('parachute_deploy'),
+      words('timepoint', 'timepoint parachute_deploy held: …'),
+    ])
+      expect(each).toEqual(own);
   });
   it('has the next moment that people wait for as its title, and what comes before it as the small line', () => {
-    const plan = [...aPlan.slice(0, 2), create(TimepointRowSchema, { id: 7, name: 'heartbeat_range_control', anchor: 'entry', desiredOffsetS: 20, note: 'Tone only (L)', plannedES: 20 }), ...aPlan.slice(2)];
-    const store = aStore([...commanded, firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }), samples(899, { 1: 0, 5: 1 })]);
-    const waiting = waitingFor(store, aDictionary, plan, Infinity, [{ id: 7, name: '', e_s: 20, fired: false }, { id: 2, name: '', e_s: 255, fired: false }]);
-    expect(waiting).toMatchObject({ title: 'Waiting for parachute deploy', words: 'GNC says when.', beforeName: 'heartbeat range control', before: { words: '20 s after entry', value: '≈ in 2 m 00 s' } });
-    expect(waiting.lines).toEqual([{ words: 'the vehicle declares “parachute”', value: '≈ in 5 m 55 s', holds: false }]);
+    const plan = [
+      ...aPlan.slice(0, 2),
+      create(TimepointRowSchema, {
+        id: 7,
+        name: 'heartbeat_range_control',
+        anchor: 'entry',
+        desiredOffsetS: 20,
+        note: 'Tone only (L)',
+        plannedES: 20,
+      }),
+      ...aPlan.slice(2),
+    ];
+    const store = aStore([
+      ...commanded,
+      firing({ timepoint: 1, name: 'entry_interface', firedSclk: 890 }),
+      samples(899, { 1: 0, 5: 1 }),
+    ]);
+    const waiting = waitingFor(store, aDictionary, plan, Infinity, [
+      { id: 7, name: '', e_s: 20, fired: false },
+      { id: 2, name: '', e_s: 255, fired: false },
+    ]);
+    expect(waiting).toMatchObject({
+      title: 'Waiting for parachute deploy',
+      words: 'GNC says when.',
+      beforeName: 'heartbeat range control',
+      before: { words: '20 s after entry', value: '≈ in 2 m 00 s' },
+    });
+    expect(waiting.lines).toEqual([
+      { words: 'the vehicle declares “parachute”', value: '≈ in 5 m 55 s', holds: false },
+    ]);
   });
   it('knows by tone what has fired where UHF is silent, and says that it is by tone', () => {
     const plan = aPlan.map((row) => ({ ...row, tone: row.name }));
     const store = aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface' })]);
-    expect(waitingFor(store, aDictionary, plan, Infinity)).toMatchObject({ title: 'Waiting for parachute deploy', byTone: 'entry interface, E−01:50' });
-    expect(waitingFor(aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface', likelihood: 0.3 })]), aDictionary, plan, Infinity).title).toBe('Waiting for coolant vent');
+    expect(waitingFor(store, aDictionary, plan, Infinity)).toMatchObject({
+      title: 'Waiting for parachute deploy',
+      byTone: 'entry interface, E−01:50',
+    });
+    expect(
+      waitingFor(
+        aStore([...commanded, tone({ sclk: 890, tone: 29, name: 'entry_interface', likelihood: 0.3 })]),
+        aDictionary,
+        plan,
+        Infinity,
+      ).title,
+    ).toBe('Waiting for coolant vent');
   });
   it('in a past view has the commands as they were known then, and asks for nothing to be pressed', () => {
-    const words = (at: string) => [stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', at }), stage({ command: 1n, stage: 'executed', status: 'ok', at })];
+    const words = (at: string) => [
+      stage({ command: 1n, name: 'EDL_SET_PARAMETERS', stage: 'queued', status: 'ok', at }),
+      stage({ command: 1n, stage: 'executed', status: 'ok', at }),
+    ];
     const past = (cutoff: number) => waitingFor(aStore(words('2012-219T04:59:00.0')), aDictionary, soonPlan, cutoff); // 60 s ago: SCLK 840
-    expect([past(830).title, past(830).lines[0]?.value]).toEqual(['“set edl parameters” had not been sent', 'to be sent']);
+    expect([past(830).title, past(830).lines[0]?.value]).toEqual([
+      '“set edl parameters” had not been sent',
+      'to be sent',
+    ]);
     expect([past(850).title, past(850).lines[0]?.value]).toEqual(['“do edl” had not been sent', 'executed']);
   });
   it('ends with the outcome', () => {
-    expect(waitingFor(aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 })), aDictionary, aPlan, Infinity).title).toBe('Landed');
-    const cutOff = (venue: string) => waitingFor(aStore([], aRun({ state: 'interrupted', venue })), aDictionary, aPlan, Infinity);
-    expect([cutOff('rehearsal').title, cutOff('rehearsal').words.includes('the panel Runs continues it'), cutOff('downlink').title, cutOff('downlink').words.includes('cannot be continued')]).toEqual(['Interrupted', true, 'Interrupted', true]);
+    expect(
+      waitingFor(
+        aStore([], aRun({ state: 'finished', outcome: 'touchdown', relayProgress: 1 })),
+        aDictionary,
+        aPlan,
+        Infinity,
+      ).title,
+    ).toBe('Landed');
+    const cutOff = (venue: string) =>
+      waitingFor(aStore([], aRun({ state: 'interrupted', venue })), aDictionary, aPlan, Infinity);
+    expect([
+      cutOff('rehearsal').title,
+      cutOff('rehearsal').words.includes('the panel Runs continues it'),
+      cutOff('downlink').title,
+      cutOff('downlink').words.includes('cannot be continued'),
+    ]).toEqual(['Interrupted', true, 'Interrupted', true]);
   });
 });
 
@@ -194,14 +443,21 @@ describe('the recording’s way down', () => {
     act(() => {
       access.value = { state: 'open' };
       timepoints.value = aPlan;
-      useForTest(aStore(down, aRun({ relayProgress: 0.25, ...mode })), aDictionary, (message) => void heard.push(message));
+      useForTest(
+        aStore(down, aRun({ relayProgress: 0.25, ...mode })),
+        aDictionary,
+        (message) => void heard.push(message),
+      );
       render(<WaitingFor />, root);
     });
     return { root, heard, button: root.querySelector<HTMLButtonElement>('[data-testid="stop-downlink"]') };
   };
   it('has a bar, and can be stopped by two presses, which ends the run with what has come', () => {
     const { root, heard, button } = shown({});
-    expect([root.querySelector('progress')?.value, button?.textContent]).toEqual([0.25, 'stop here, with what has come']);
+    expect([root.querySelector('progress')?.value, button?.textContent]).toEqual([
+      0.25,
+      'stop here, with what has come',
+    ]);
     act(() => button?.click());
     expect([heard, button?.textContent]).toEqual([[], '▲ press again: run 1 ends for everyone']);
     act(() => button?.click());

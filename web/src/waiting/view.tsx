@@ -19,14 +19,19 @@ export function WaitingFor() {
       <section class="panel waiting" data-testid="waiting">
         <h2>No run yet</h2>
         <p>Start a rehearsal: choose a scenario below and press start.</p>
-        <button type="button" onClick={() => focusPanel('rehearsal')}>Go to rehearsals</button>
+        <button type="button" onClick={() => focusPanel('rehearsal')}>
+          Go to rehearsals
+        </button>
       </section>
     );
   }
   const waiting = waitingFor(run, words, timepoints.value, cutoff.value, predicted.value);
   const isOld = isLost.value && cutoff.value === Infinity && waiting.kind === 'waiting'; // the clocks stand still, what is compared is of then
   return (
-    <section class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`} data-testid="waiting">
+    <section
+      class={`panel waiting waiting-${waiting.kind} ${waiting.late || waiting.type !== undefined ? 'waiting-said' : ''}`}
+      data-testid="waiting"
+    >
       <ModeMark />
       <h2 aria-live="polite">{waiting.title}</h2>
       <p>{waiting.words}</p>
@@ -42,15 +47,33 @@ export function WaitingFor() {
           );
         })}
       </ul>
-      {waiting.before && <p class="before" data-testid="waiting-before">First <b>{waiting.beforeName}</b>, {waiting.before.words}: <output>{waiting.before.value}</output></p>}
-      {waiting.byTone && <p class="by-tone" data-testid="waiting-by-tone">■ by tone, the last that was heard of: {waiting.byTone}</p>}
-      {waiting.coming !== undefined && (
-        <p><progress max={1} value={waiting.coming} aria-label="of the recording" />{' '}
-          {modeNow() === 'rehearsal' && mayRehearse() && <EndRun run={run.id} name="stop-downlink" words="stop here, with what has come" />}</p>
+      {waiting.before && (
+        <p class="before" data-testid="waiting-before">
+          First <b>{waiting.beforeName}</b>, {waiting.before.words}: <output>{waiting.before.value}</output>
+        </p>
       )}
-      {waiting.late && modeNow() === 'rehearsal' && mayRehearse() && <button type="button" class="primary" onClick={() => focusPanel('rehearsal')}>Go to the runs <kbd>s</kbd></button>}
+      {waiting.byTone && (
+        <p class="by-tone" data-testid="waiting-by-tone">
+          ■ by tone, the last that was heard of: {waiting.byTone}
+        </p>
+      )}
+      {waiting.coming !== undefined && (
+        <p>
+          <progress max={1} value={waiting.coming} aria-label="of the recording" />{' '}
+          {modeNow() === 'rehearsal' && mayRehearse() && (
+            <EndRun run={run.id} name="stop-downlink" words="stop here, with what has come" />
+          )}
+        </p>
+      )}
+      {waiting.late && modeNow() === 'rehearsal' && mayRehearse() && (
+        <button type="button" class="primary" onClick={() => focusPanel('rehearsal')}>
+          Go to the runs <kbd>s</kbd>
+        </button>
+      )}
       {waiting.type !== undefined && takesCommands() && (
-        <button type="button" class="primary" onClick={() => openCommandLine(waiting.type)}>Open the command line <kbd>/</kbd></button>
+        <button type="button" class="primary" onClick={() => openCommandLine(waiting.type)}>
+          Open the command line <kbd>/</kbd>
+        </button>
       )}
     </section>
   );
