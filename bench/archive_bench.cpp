@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the archive costs above bare SQLite with the same table, index, batch and synchronous=FULL; what a landing's
 // telemetry costs from packet to durable row; what a plot of ten million samples costs to read; what a sample takes;
 // how long a start has to wait for an archive that was closed, or whose writer was killed.

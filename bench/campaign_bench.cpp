@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a case of a campaign costs beside its dynamics: one thread, the same cases, the same stretch of flight.
 //
 //   case       copied at the moment of dispersion, flown to its end by all of the flight software: as `aeolis campaign`

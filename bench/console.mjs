@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The console beside a bare uPlot page and Open MCT, on the same load from the same server: 64 Hz x 30 channels live, 8 of them plotted.
 //   node bench/console.mjs      AEOLIS_FULL=1: heap over ten minutes instead of one     AEOLIS_PARTS=first,live,heap,ranges,pace,zoom
 // Needs npm ci and npm run build in web/, npm ci in web/openmct/. The ratios and limits are the goals; what the machine does beside moves the rest.

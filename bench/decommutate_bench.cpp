@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Packets decommutated a second on one core, against the goal of a million, and against the packet's CRC alone: the one
 // pass over the octets that no decommutator can do without.
 #include "common/crc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the deterministic executive adds to the modules' own work, and what a snapshot of a computer costs.
 //
 //   dispatch   a cycle of a computer that has nothing to do (before EDL): every module has its turn or its tick and is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What it costs to give one message to a thousand clients of the stream, against a bare send of the same octets to as
 // many sockets: CPU a delivered message, and how long it is on its way. Then eight messages a tick.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ground under its design load: 2000 packets of 1.5 kB a second, each of their parameters decoded and stored, to a
 // thousand clients that follow 30 channels at 20 Hz and every event, one of them stalled: all the same channels, then
 // each some of its own. Those that joined first, in the middle and last are looked at, and the stalled one when it

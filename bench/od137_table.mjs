@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The events of scenario od137 beside the published ones, as the table of docs/validation.md:   node bench/od137_table.mjs
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';

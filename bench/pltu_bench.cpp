@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octets of a UHF stream searched for frames a second on one core, against the goal of 200 MB/s, and against memcpy and
 // memchr over the same octets in the same run: nobody who takes octets in and looks for a marker does with less.
 #include "common/proximity_frame.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One landing, headless, as fast as it goes: without archive and with everything stored. The goals are the project's:
 // 1000 × real time on one core without storage, 300 × with it, both with statistical tones. Then the same landing in
 // `aeolis serve`: the largest resident memory, which at 1 × is to stay below 200 MB.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The threaded executive over a whole landing: processor time of each task in a cycle against its budget, by message,
 // and the deepest use of its stack. On a virtual clock, as fast as it goes; with AEOLIS_REAL_TIME=1 at 1 x, a quarter
 // of an hour and more, with wall-clock overruns and jitter. AEOLIS_SECONDS=N ends after N seconds of flight.

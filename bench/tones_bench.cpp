@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The X-band tone receiver beside exact theory: what `aeolis tones bench` prints. AEOLIS_FULL=1 adds the points that
 // take long.
 #include "server/scenario/scenario_text.hpp"

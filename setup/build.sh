@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced after setup/install.sh: builds the parts, each only when something of it changed.
 
 export CCACHE_SLOPPINESS=pch_defines,time_macros  # without it ccache takes no file that uses a precompiled header

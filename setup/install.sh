@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Sourced by ./run, ./test, .ci/run and bench/run: brings what they need, as root or with sudo, and removes nothing.
 # What is already there costs a fraction of a second. Every function ends the script with 2 when it cannot.
 

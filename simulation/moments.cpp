@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/moments.hpp"
 
 #include "simulation/vectors.hpp"

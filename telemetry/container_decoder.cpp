@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/container_decoder.hpp"
 
 #include "common/bytes.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/frame_receiver.hpp"
 
 #include "common/crc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/proximity_packets.hpp"
 
 #include "common/bytes.hpp"

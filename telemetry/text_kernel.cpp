@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/text_kernel.hpp"
 
 #include "common/calendar.hpp"

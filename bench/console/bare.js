@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The least that can be done: the history of the channels named, their live samples over the stream as JSON, a plot each, 20 draws a second.
 /* global uPlot */
 const names = new URLSearchParams(location.search).get('channels').split(',');

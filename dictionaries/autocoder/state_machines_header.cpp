@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/state_machines_header.hpp"
 
 #include "dictionaries/autocoder/cpp_text.hpp"

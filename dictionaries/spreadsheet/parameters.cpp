@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/spreadsheet/table.hpp"
 #include "dictionaries/spreadsheet/tables.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/spreadsheet/telemetry_plan.hpp"
 
 #include "dictionaries/spreadsheet/table.hpp"

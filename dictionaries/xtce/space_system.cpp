@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/xtce/space_system.hpp"
 
 #include "dictionaries/xtce/alarms.hpp"

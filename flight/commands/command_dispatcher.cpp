@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/commands/command_dispatcher.hpp"
 
 #include "common/cltu.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/cross_string/cross_string.hpp"
 
 namespace aeolis::flight {

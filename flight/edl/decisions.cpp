@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/decisions.hpp"
 
 #include "flight/explanation/explanation.hpp"

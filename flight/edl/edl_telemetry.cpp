@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl/edl_main.hpp"
 
 #include "flight/gnc/mars.hpp"

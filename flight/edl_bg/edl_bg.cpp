@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_bg/edl_bg.hpp"
 
 #include "flight/edl/solution.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_comm/data_products.hpp"
 
 #include "common/crc.hpp"

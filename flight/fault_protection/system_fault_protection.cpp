@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/fault_protection/system_fault_protection.hpp"
 
 namespace aeolis::flight {

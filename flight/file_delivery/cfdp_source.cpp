@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/file_delivery/cfdp_source.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/access/access.hpp"
 
 #include "server/access/account_file.hpp"

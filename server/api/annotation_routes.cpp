@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/annotations.hpp"
 #include "server/api/api.hpp"
 #include "server/api/json.hpp"

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # INPUT, a text, becomes OUTPUT, a header with openapi_text. Run by the build.
 file(READ ${INPUT} text)
 file(WRITE ${OUTPUT}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GET /metrics: figures of each queue, link, commit and client, in Prometheus' text format.
 
 #include "server/api/api.hpp"

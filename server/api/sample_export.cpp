@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // GET /api/v1/runs/{run}/samples: as many samples as there are, in the memory of a page.
 
 #include "server/api/api.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/series_text.hpp"
 
 #include "server/api/csv_text.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/kept_request.hpp"
 
 #include <google/protobuf/io/tokenizer.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/row_reader.hpp"
 
 #include "server/archive/schema.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_origins.hpp"
 
 #include "server/archive/other_path.hpp"

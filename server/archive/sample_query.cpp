@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_query.hpp"
 
 #include "server/archive/schema.hpp"

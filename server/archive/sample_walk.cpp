@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_walk.hpp"
 
 #include <algorithm>

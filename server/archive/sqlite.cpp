@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sqlite.hpp"
 
 #include "common/check.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/case_flights.hpp"
 
 #include "common/check.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/program_digest.hpp"
 
 #include "server/rehearsal/digest.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/access/this_user.hpp"
 #include "server/archive/upkeep.hpp"
 #include "server/cli/commands.hpp"

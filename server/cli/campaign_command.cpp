@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign_order.hpp"
 #include "server/campaign/campaign_plots.hpp"
 #include "server/campaign/campaign_report.hpp"

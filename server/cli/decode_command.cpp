@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/xtce/packet_model.hpp"

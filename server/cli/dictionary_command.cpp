@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/state_diagram.hpp"
 #include "dictionaries/mission_files.hpp"
 #include "server/cli/commands.hpp"

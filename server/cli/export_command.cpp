@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/sample_text.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sample_table.hpp"

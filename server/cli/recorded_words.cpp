@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/cli/recorded_words.hpp"
 
 #include "server/cli/shipped_paths.hpp"

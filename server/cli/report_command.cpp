@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/json.hpp"
 #include "server/api/run_questions.hpp"
 #include "server/archive/reader.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/json.hpp"
 #include "server/cli/commands.hpp"
 #include "server/cli/shipped_paths.hpp"

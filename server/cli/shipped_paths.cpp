@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/cli/shipped_paths.hpp"
 
 #include "generated/dictionary_flight.hpp"

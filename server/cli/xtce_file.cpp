@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/cli/xtce_file.hpp"
 
 #include "common/crc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/downlink/downlink_follower.hpp"
 
 #include "server/rehearsal/wall_clock.hpp"

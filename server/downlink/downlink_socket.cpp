@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/downlink/downlink_socket.hpp"
 
 #include <algorithm>

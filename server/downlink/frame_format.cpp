@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/downlink/frame_format.hpp"
 
 namespace aeolis::server {

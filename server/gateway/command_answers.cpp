@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What reaches Earth and decides what is known of commands: values for preconditions, answers, reports of what is held.
 #include "server/gateway/command_gateway.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/gateway/command_gateway.hpp"
 
 #include "commands/authorise.hpp"

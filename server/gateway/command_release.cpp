@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How commands leave: out of the queue, while a station sees the vehicle, by the uplink; and what the vehicle's reports
 // say of their frames.
 #include "server/gateway/command_gateway.hpp"

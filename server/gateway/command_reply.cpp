@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a reply tells of a command besides yes or no.
 #include "server/gateway/command_gateway.hpp"
 

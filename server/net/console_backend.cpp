@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/console_backend.hpp"
 
 #include "server/access/this_user.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/http_client.hpp"
 
 #include "server/net/sockets.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/web_server.hpp"
 
 #include "aeolis/v1/run.pb.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/packet_intake.hpp"
 
 #include "common/space_packet.hpp"

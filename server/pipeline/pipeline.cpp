@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/pipeline/pipeline.hpp"
 
 #include "server/archive/items.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/pipeline_thread.hpp"
 
 #include "server/archive/reader.hpp"

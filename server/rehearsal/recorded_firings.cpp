@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/recorded_firings.hpp"
 
 #include "telemetry/packet_stream.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/scenario/script_check.hpp"
 
 #include "commands/encoder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/station/predicted_silences.hpp"
 
 #include "server/archive/timeline_plan.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/station/recording_receiver.hpp"
 
 #include "common/ids.hpp"

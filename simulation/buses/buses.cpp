@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/buses/buses.hpp"
 
 namespace aeolis::simulation {

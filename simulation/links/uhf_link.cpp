@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/links/uhf_link.hpp"
 
 #include "common/time.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/links/x_band_channel.hpp"
 
 #include <algorithm>

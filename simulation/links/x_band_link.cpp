@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/links/x_band_link.hpp"
 
 #include "simulation/links/tone_detection.hpp"

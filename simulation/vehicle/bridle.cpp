@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/vehicle/bridle.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/vehicle/engines.hpp"
 
 #include "flight/devices/effectors.hpp"

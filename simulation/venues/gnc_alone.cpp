@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/venues/gnc_alone.hpp"
 
 #include "flight/gnc/mars.hpp"

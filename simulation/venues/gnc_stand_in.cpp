@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/venues/gnc_stand_in.hpp"
 
 #include "flight/gnc/mars.hpp"

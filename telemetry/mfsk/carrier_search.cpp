@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/mfsk/carrier_search.hpp"
 
 #include "telemetry/mfsk/spectrum.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/mfsk/tone_correlator.hpp"
 
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Under the content security policy of a server with accounts: log in, lose the session in the middle of something, log in again; acknowledge
 // and shelve an alarm, write a note, manage users. The second test's alarms are answered by a stand-in.
 import assert from 'node:assert/strict';

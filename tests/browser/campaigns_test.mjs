@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A campaign from the console, by keyboard: started, seen to fill, cancelled, gone on with; and what a landing that goes on notices of it.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

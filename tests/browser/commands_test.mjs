@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands by keyboard: tried out before they are sent, refused in place, held, timed, cancelled; and what the vehicle holds compared field by field.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a console meets outside the laboratory: a second browser, a slow way, a wrong clock, a huge dictionary with hostile names, a run that is gone.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

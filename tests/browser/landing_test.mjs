@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A newcomer lands a spacecraft with the keyboard alone, reloads, and asks for a recorded range; a server that is
 // killed in mid-landing loses nothing that was shown.
 import assert from 'node:assert/strict';

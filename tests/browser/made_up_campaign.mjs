@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A campaign that is a function of its case numbers, in place of the server's: a picture of it is always the same.
 const CASES = 240;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The description that the server serves is a valid OpenAPI document, and what it says is so: each route is called on a run that was
 // flown, on one that flies, and as each role by cookie and by token; its answer is one that is described, of the shape that is described.
 // The examples in its text run as they stand.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The plugin in the real Open MCT: a run's channels in its tree, their history, and live values. Skipped where `npm ci` was not run in web/openmct.
 // And what serves it: read-only, for its own page alone.
 import assert from 'node:assert/strict';

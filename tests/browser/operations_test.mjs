@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // docs/operations.md, run as it stands there: from accounts and TLS by a file of settings to a rehearsal, an export and a campaign.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';

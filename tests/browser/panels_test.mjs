@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every panel alone and the whole console, in both themes and every mode: axe finds nothing, each says which mode it is in, nothing is
 // wider than the screen from 320 px to 4K; live against recorded is shown octet by octet; the script is as small as was promised.
 import assert from 'node:assert/strict';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of panels against stored ones: both as means of tiles, so that the edge of a letter does not count and a panel that moved,
 // lost its colours does. A trace is a pixel thin and would be lost in a tile: of each canvas is counted besides in how many columns of
 // pixels something of a trace's colour stands. AEOLIS_RENEW_PICTURES=1 stores what is seen: look at it before you commit it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renews the pictures of README and docs/user-guide.md from the real program: node tests/browser/pictures.mjs
 import path from 'node:path';
 import {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An instructor breaks something in a rehearsal and writes about it; when it is over its review has both, with facts, and a score that is the sum of its terms.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

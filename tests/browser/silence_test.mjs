@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is said while something is not heard: a landing of which only tones come, a replay of what had been heard, a connection that is gone.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What has to be in sight on screens of each size: all of a laptop's page, large figures on a wall, what is opened beside the timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';

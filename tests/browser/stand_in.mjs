@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A server before the server: answers some routes itself, sends everything else on, and gives each page the content security
 // policy that a server with accounts gives. What the routes answer can be changed while pages look at it.
 import { once } from 'node:events';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Panels in states that an ended run without accounts does not have: users, tokens and audit; a command that is reviewed, armed, waits for a second
 // person; a command file that the ground has looked at. In each axe finds nothing in both themes, it comes to look as its stored picture does, and
 // nothing is wider than the screen or cut off from 320 px to 4K. AEOLIS_RENEW_PICTURES=1 stores what is seen.
@@ -179,13 +180,11 @@ test('a command that is reviewed or armed and a file that the ground has looked 
 
   await page.getByTestId('command-file').locator('summary').click();
   const choose = (commands) =>
-    page
-      .getByTestId('file-chosen')
-      .setInputFiles({
-        name: 'landing.json',
-        mimeType: 'application/json',
-        buffer: Buffer.from(JSON.stringify({ commands })),
-      });
+    page.getByTestId('file-chosen').setInputFiles({
+      name: 'landing.json',
+      mimeType: 'application/json',
+      buffer: Buffer.from(JSON.stringify({ commands })),
+    });
   await choose([
     { command: 'EDL_SET_PARAMETERS', from_solution: true },
     { command: 'EDL_DO_EDL', hold: true },

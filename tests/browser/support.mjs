@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts what the browser tests need: the program on a free port with an archive of its own, and Debian's Chromium.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';

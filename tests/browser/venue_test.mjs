@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another mission is followed over a real downlink, by its XTCE file alone: nothing is made up, and nothing is offered that is not there.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "commands/read_back.hpp"
 
 #include "commands/encoder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/cltu.hpp"
 #include "common/randomiser.hpp"
 #include "tests/support/catch.hpp"

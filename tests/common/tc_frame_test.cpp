@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/tc_frame.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/analysis/difference_network.hpp"
 #include "tests/support/catch.hpp"
 

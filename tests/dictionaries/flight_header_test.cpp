@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/flight_header.hpp"
 
 #include "common/bytes.hpp"

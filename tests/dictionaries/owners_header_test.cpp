@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/owners_header.hpp"
 #include "generated/owners.hpp"
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/spreadsheet/owners.hpp"
 #include "tests/support/planted.hpp"
 #include "tests/support/shipped_dictionary.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/xtce/packet_model.hpp"
 #include "tests/support/catch.hpp"
 

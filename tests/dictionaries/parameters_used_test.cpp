@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/structure/source_tree.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/state_diagram.hpp"
 #include "tests/support/catch.hpp"
 

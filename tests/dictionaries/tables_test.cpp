@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/spreadsheet/tables.hpp"
 #include "tests/support/planted.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "dictionaries/autocoder/timeline_source.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/computer.hpp"
 
 #include "simulation/entry_reference.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/timeline/constraint_monitor.hpp"
 
 #include "flight/computer.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/device_parts.hpp"
 
 #include "flight/kernel/dispatch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_comm/edl_comm.hpp"
 
 #include "common/space_packet.hpp"

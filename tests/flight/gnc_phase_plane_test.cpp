@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/attitude/phase_plane.hpp"
 
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/quantities.hpp"
 
 #include "flight/gnc/edl_gnc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/attitude/steering.hpp"
 
 #include "flight/gnc/attitude/attitude_control.hpp"

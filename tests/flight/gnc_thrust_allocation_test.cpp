@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/devices/effectors.hpp"
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "tests/support/catch.hpp"

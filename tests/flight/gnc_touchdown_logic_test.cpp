@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/mars.hpp"
 #include "flight/gnc/sky_crane/touchdown_logic.hpp"
 #include "tests/support/catch.hpp"

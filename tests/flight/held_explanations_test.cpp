@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/explanation/held_explanations.hpp"
 
 #include "tests/support/catch.hpp"

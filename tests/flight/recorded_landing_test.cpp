@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a whole landing records and radiates, read back by the ground's own functions.
 #include "flight/computer.hpp"
 #include "generated/dictionary_flight.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/cross_string/state_frame.hpp"
 
 #include "flight/gnc/vector.hpp"

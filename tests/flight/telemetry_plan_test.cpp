@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/edl_comm/telemetry_plan.hpp"
 
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stream of TM or AOS frames of any octets, with markers or without, and the packets in them. The first octets choose
 // how the stream is read; where a CRC is agreed, the rest is cut into frames whose CRC is right.
 #include "common/crc.hpp"

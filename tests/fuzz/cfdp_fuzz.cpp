@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PDUs of any octets to both ends of a file delivery: what can be read is written again with the same meaning, neither
 // end says what cannot be read, and nothing is written twice or outside the file. A PDU is behind an octet of length;
 // where that is even, its header is replaced by that of the transaction.

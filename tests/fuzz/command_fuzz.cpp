@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client asks for, as a command of the shipped dictionary: it is refused in words, or it reads back as it was
 // meant. Then the same octets as an uplinked packet.
 #include "commands/encoder.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A spreadsheet as anyone may have left it: each reader says what is wrong with it, with a line of the text, or takes
 // it. The first octet chooses the sheet. The other files are the shipped ones, so that references are followed.
 #include "dictionaries/dictionary.hpp"

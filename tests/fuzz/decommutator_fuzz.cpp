@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octets from a link, decommutated by the shipped dictionary and put into words. The first octet chooses a packet whose
 // headers and CRC are written around the rest, so that the fields are reached; or the octets are taken as they are.
 #include "telemetry/explanation.hpp"

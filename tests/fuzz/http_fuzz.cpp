@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octets as a peer may send them for an HTTP request, through the parser with the server's limits, to every route: no
 // file outside the console's folder is given out, nothing takes long, and what is refused is refused in words.
 #include "server/api/api.hpp"

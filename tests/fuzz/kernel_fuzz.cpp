@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text kernels as anyone may have left them: a kernel, or a fault that names the file; what is read gives finite times.
 #include "telemetry/clock_kernel.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Any message to any module of a computer at any time, any uplink, anything from any device: the computer counts and
 // reports what it does not expect, refuses what it cannot do, and goes on. A failed check is a bug here, though in
 // flight it would only be a reset. The first octet chooses where it begins: a computer that was just started, or one in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A UHF stream of any octets: each is used or counted as skipped, and what comes out can be taken apart. The first
 // octet says how the stream is cut into pieces; where the second is odd, good frames are put around pieces of it.
 #include "telemetry/proximity_packets.hpp"

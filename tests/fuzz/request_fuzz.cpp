@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON as a client may send it: a CommandRequest to a landing's command path, a StartRehearsal up to its first cycles.
 // The first octet chooses. It is refused in words, or it can be done.
 #include "server/api/json.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octets from a link, as packets: whatever they are, nothing outside them is read and nothing ends the program.
 #include "common/space_packet.hpp"
 #include "telemetry/packet_stream.hpp"

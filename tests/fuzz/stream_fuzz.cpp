@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a client of the stream may send, in both subprotocols, while items are published: each batch joins the one
 // before, no event is left out, and the session holds no more than it says. The first octet chooses the subprotocol; a
 // message is preceded by its length in two octets.

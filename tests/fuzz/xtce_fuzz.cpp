@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An XTCE file as anyone may have left it, to our own dictionary's reader and to that of other missions: what is wrong
 // is said with a line of the text; what is left decodes any octets. The first octet says where in the text a packet
 // begins.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/stream.pb.h"
 #include "server/access/account_file.hpp"
 #include "server/api/json.hpp"

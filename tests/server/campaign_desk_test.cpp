@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/campaign_desk.hpp"
 
 #include "server/api/json.hpp"

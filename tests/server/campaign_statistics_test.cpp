@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/campaign/statistics.hpp"
 
 #include "server/campaign/chart.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/run.pb.h"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/connection_count.hpp"
 
 #include "tests/support/catch.hpp"

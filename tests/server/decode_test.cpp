@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // aeolis decode on what another mission's instrument sent, where those files are beside the project (../shared/data).
 #include "dictionaries/xtce/packet_model.hpp"
 #include "server/rehearsal/digest.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // aeolis serve --downlink: another mission's octets over real sockets, and what the API then says of them.
 #include "common/proximity_frame.hpp"
 #include "dictionaries/xtce/packet_model.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/server/faulty_disk.hpp"
 
 #include "common/check.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the archive promises, on a disk that loses power or fails at any moment.
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/tones/flown_signal.hpp"
 
 #include "tests/server/running_server.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/station/ground_station.hpp"
 
 #include "common/proximity_frame.hpp"

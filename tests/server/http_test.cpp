@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "aeolis/v1/run.pb.h"
 #include "server/access/this_user.hpp"
 #include "server/api/json.hpp"

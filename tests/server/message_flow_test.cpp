@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/venue/message_flow.hpp"
 
 #include "server/rehearsal/rehearsal.hpp"

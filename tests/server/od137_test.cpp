@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/rehearsal.hpp"
 #include "simulation/landing.hpp"
 #include "tests/server/running_server.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/gateway/planned_deadlines.hpp"
 
 #include "server/archive/timeline_plan.hpp"

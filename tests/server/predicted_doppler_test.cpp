@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/tones/predicted_doppler.hpp"
 
 #include "server/tones/flown_signal.hpp"

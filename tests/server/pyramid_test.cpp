@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/pyramid.hpp"
 #include "tests/support/catch.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/query_threads.hpp"
 
 #include "server/pipeline/pipeline.hpp"

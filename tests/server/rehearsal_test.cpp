@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/json.hpp"
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/landing_report.hpp"

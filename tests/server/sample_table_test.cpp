@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/sample_table.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/scenario/scenario_library.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "tests/support/catch.hpp"

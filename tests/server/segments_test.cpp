@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/archive/archive.hpp"
 #include "server/archive/packet_columns.hpp"
 #include "server/archive/sqlite.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A crowd of clients that join, read, stall, leave and send rubbish, while some follow the landing.
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"

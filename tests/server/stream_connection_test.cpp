@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames on the wire when a client is slow: ours, and the WebSocket's own between them.
 
 #include "tests/server/event_server.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/net/stream_session.hpp"
 
 #include "server/api/json.hpp"

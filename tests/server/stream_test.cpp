@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/api/json.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/venue/task_report.hpp"
 
 #include "flight/kernel/deadlines.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "commands/encoder.hpp"
 #include "dictionaries/analysis/timeline_analysis.hpp"
 #include "server/gateway/timeline_check.hpp"

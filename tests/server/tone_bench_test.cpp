@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "server/tones/tone_bench.hpp"
 #include "simulation/links/tone_detection.hpp"
 #include "simulation/links/x_band_link.hpp"

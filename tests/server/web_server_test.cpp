@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connections without what is said over them: bodies in parts, and clients that leave.
 
 #include "server/net/web_server.hpp"

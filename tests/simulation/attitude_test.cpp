@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/vehicle/rigid_body.hpp"
 #include "simulation/vehicle/thrusters.hpp"
 #include "tests/simulation/gale.hpp"

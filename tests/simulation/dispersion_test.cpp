@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/initial_state.hpp"
 #include "simulation/vectors.hpp"
 #include "simulation/world.hpp"

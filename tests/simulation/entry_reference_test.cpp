@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "generated/dictionary_flight.hpp"
 #include "simulation/entry_flight.hpp"
 #include "simulation/entry_reference.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/gnc_venue.hpp"

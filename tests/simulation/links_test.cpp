@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/space_packet.hpp"
 #include "simulation/devices/recorder.hpp"
 #include "simulation/links/error_bursts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/devices/relay_radio.hpp"
 
 #include "common/space_packet.hpp"

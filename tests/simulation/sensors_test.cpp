@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/sensors/imu.hpp"
 #include "simulation/sensors/radar.hpp"
 #include "tests/simulation/gale.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/vehicle/separated_bodies.hpp"
 
 #include "common/time.hpp"

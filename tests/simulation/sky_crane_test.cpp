@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/vehicle/stage_and_rover.hpp"
 
 #include "common/time.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "commands/encoder.hpp"
 #include "common/space_packet.hpp"
 #include "flight/edl/solution.hpp"

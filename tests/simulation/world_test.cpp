@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/world.hpp"
 
 #include "simulation/mars/mars.hpp"

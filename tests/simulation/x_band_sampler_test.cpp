@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/links/x_band_sampler.hpp"
 
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The repository's own files, as the structure tests read them.
 #pragma once
 

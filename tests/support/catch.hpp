@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 // Catch2 by one name: version 2 of Debian 12, version 3 of newer systems.

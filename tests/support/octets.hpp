@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Octets as tests write them down, and at random.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The packets in what is radiated: PLTUs one after another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/alarm_desk.hpp"
 
 #include "tests/support/catch.hpp"

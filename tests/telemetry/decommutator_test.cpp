@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/decommutator.hpp"
 
 #include "common/crc.hpp"

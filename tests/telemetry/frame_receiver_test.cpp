@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/randomiser.hpp"
 #include "telemetry/frame_receiver.hpp"
 #include "tests/support/catch.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/leap_seconds.hpp"
 #include "tests/support/kernels.hpp"
 

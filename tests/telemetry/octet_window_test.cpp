@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/octet_window.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"

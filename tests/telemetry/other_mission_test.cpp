@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/other_mission.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"

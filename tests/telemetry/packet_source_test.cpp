@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/randomiser.hpp"
 #include "common/space_packet.hpp"
 #include "telemetry/packet_source.hpp"

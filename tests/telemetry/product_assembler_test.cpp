@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "telemetry/product_assembler.hpp"
 
 #include "common/crc.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "simulation/random.hpp"
 #include "telemetry/mfsk/symbol_sequence.hpp"
 #include "tests/support/catch.hpp"

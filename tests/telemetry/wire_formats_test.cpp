@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our packets as a program of others reads them: tshark, from a capture, where it is installed.
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Aeolis in Open MCT, read-only: runs as folders, their channels as telemetry, history from the query routes, live values by serve.mjs.
 // Time is milliseconds from a run's predicted entry, at the vehicle: so runs lie over one another.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Serves Open MCT with the plugin beside a running Aeolis, under one origin and read-only: questions (GET) of its own page go on to /api, and
 // live values come by /live, a socket by which this server itself subscribes. Nothing that a page says reaches the stream, which takes commands, too.
 //   node serve.mjs [http://127.0.0.1:8080 [PORT]]

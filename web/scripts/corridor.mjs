@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renews the predicted corridor of the descent picture:
 //   node web/scripts/corridor.mjs PREDICTION.csv http://127.0.0.1:8080 >web/src/descent/corridor.ts
 // The middle is the published prediction [od137], the rows t_from_EI_s, height_above_landing_radius_km and v_rel_mps of its

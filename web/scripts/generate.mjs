@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes TypeScript of schema/: src/gen/ has all of it, for types and tests, and src/gen/worker/ what the worker speaks, whose descriptors are part of
 // its script. Field numbers and names are the same in both; what the part leaves out is never sent to the worker, nor by it.
 //   node scripts/generate.mjs          in web/

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole console, or one panel of it at ?panel=NAME for further monitors.
 import { access } from './access/model';
 import { ExpiredBar, LogIn } from './access/view';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The default layout: the one place that knows names of a mission. Each pick is a list of names in order of preference;
 // where the dictionary has none of them, the panel does without or takes the first channels there are.
 

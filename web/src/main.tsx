@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { effect } from '@preact/signals';
 import { render } from 'preact';
 import { access } from './access/model';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/attitude/thruster_selection.hpp"
 
 #include "common/time.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/entry/range_control.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/navigation/radar_batch.hpp"
 
 #include <algorithm>

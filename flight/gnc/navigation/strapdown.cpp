@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/navigation/strapdown.hpp"
 
 #include "flight/gnc/mars.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/powered_descent/vertical_profile.hpp"
 
 #include "flight/gnc/mars.hpp"

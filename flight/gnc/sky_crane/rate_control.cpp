@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/sky_crane/rate_control.hpp"
 
 #include "generated/dictionary_flight.hpp"

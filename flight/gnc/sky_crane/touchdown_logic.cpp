@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "flight/gnc/sky_crane/touchdown_logic.hpp"
 
 #include "flight/gnc/mars.hpp"

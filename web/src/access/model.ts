@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who looks at the page, and what they may do. A server without accounts lets everyone on its own machine do everything.
 import { effect, signal } from '@preact/signals';
 import { Refused, call, turnedAway, wordsFor } from '../run/api';

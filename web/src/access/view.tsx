@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The log-in, in place: alone before anything may be shown, as a bar over the display when a session ended in the middle.
 import { signal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';

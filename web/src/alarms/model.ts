@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Alarms that want attention, as the ground keeps them: each with who did what about it. The stream tells that something changed.
 import { computed, signal } from '@preact/signals';
 import { uplink } from '../commands/line';

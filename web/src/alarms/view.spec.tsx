@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { create } from '@bufbuild/protobuf';
 import { render } from 'preact';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Campaigns: dispersed landings that the server flies beside everything else, and what their cases come to. Statistics of rehearsals;
 // nothing here is of the vehicle.
 import { signal } from '@preact/signals';

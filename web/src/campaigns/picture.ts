@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the cases came down about the target, and the ellipse that holds 99 % of them; one scale for east and north.
 import { ticks, valueStep } from '../draw/axis';
 import type { Surface } from '../draw/canvas';

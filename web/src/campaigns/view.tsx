@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Campaigns: start one, watch the landing ellipse fill, cancel it, go on; and what former ones came to.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';

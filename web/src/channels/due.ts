@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which rows of the table are shown anew when. What is in sight follows each tick. Laying out hundreds of rows takes several times as long as
 // everything else that a tick changes, so what is out of sight takes turns, and is as new as the rest once nothing changes any more.
 import { computed, effect, signal } from '@preact/signals';

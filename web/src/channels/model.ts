@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The table of channels: value, unit, age, alarm and stale state.
 import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';
 import { STATUS } from '../design/status';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { linkLook } from '../design/status';
 import type { LinkLook } from '../design/status';
 import { dayOfYear, duration, fromEntry, secondsOfDayOfYear } from '../run/time';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aRun, aStore, event, link, tone } from '../testing/fixtures';
 import { readReleaseAt } from '../commands/model';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The header: which run, what time it is, what is connected.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { inWords } from '../run/dictionary';

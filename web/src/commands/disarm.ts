@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Another run, or the past, is looked at: what was armed is taken back, for a name typed to one vehicle must never send to another.
 import { effect, untracked } from '@preact/signals';
 import { pastRange, store } from '../run/shown';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of a command file: read, tried out while it is looked at, armed where it must be, sent once.
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command file: what it says, and what is sent of it. Pure; the same JSON as `aeolis send` and POST /runs/{run}/sequences take.
 import type { Dictionary } from '../run/dictionary';
 import { isHazardous } from './model';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command file in the panel of commands: chosen or pasted, each of its commands with the ground's word on it, then one arming and one sending.
 import { signal } from '@preact/signals';
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';

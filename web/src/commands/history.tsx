@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What waits to leave, with what can be done about it; and every command of the run, each stage with all that was said of it.
 import { signal } from '@preact/signals';
 import { STAGE_LOOKS } from '../design/status';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The state of the command line, and its three keys: Enter goes one step on, Esc one step back, arrows choose.
 import { computed, signal } from '@preact/signals';
 import { learnAccess } from '../access/model';

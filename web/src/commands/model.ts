@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From what is typed to what is sent, step by step, all of it pure: what is sent is decided here and tested.
 import type { CommandArgument } from '../gen/aeolis/v1/scenario_pb';
 import type { CommandReply, DictionaryArgument, DictionaryCommand } from '../gen/aeolis/v1/run_pb';

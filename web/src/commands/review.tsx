@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What would be sent, before it is: a form from the dictionary, the server's dry run of it, and the arming of a hazardous one, in place.
 import { useEffect, useLayoutEffect, useRef } from 'preact/hooks';
 import type { CommandReply, DictionaryCommand } from '../gen/aeolis/v1/run_pb';

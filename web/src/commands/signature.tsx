@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who asks, where the server has no accounts to know it by; one name for commands, alarms and notes.
 import { access } from '../access/model';
 import { uplink } from './line';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
 import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The predicted corridor, by web/scripts/corridor.mjs: the published prediction [od137], and how far from it 12 landings
 // of the scenario "nominal_auto" came, in decades of altitude and speed.
 export interface CorridorPoint {

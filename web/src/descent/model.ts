@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Altitude against speed, by pairs that came in one packet, and where they lie to the predicted corridor.
 import type { Series } from '../run/series';
 import type { CorridorPoint } from './corridor';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The descent in one picture that anyone understands: how high, how fast.
 import { Canvas } from '../draw/canvas';
 import type { Surface } from '../draw/canvas';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The states a thing on the screen can be in: one shape, one colour and one word each, the same in every panel.
 
 export const STATUS = {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import guide from '../../../docs/console.md?raw';
 import { DEFICIENCIES, contrast, difference, linear, seenWith } from './colour';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Axes: steps that people count in, and the way from seconds to pixels.
 
 const TIME_STEPS_S = [

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A canvas that fills its box, sharp on every screen, drawn by the loop when its key has changed.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import { onDraw } from './loop';

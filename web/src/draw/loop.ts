@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one animation loop of the page: some 20 draws a second, numbers at 5 a second, and nothing at all while
 // nothing has changed. The browser's frame time only spaces the draws; no clock on the screen comes from it.
 import { step } from '../replay/model';

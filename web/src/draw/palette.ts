@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The colours of the style sheet, for canvases. Read once a theme.
 
 const TOKENS = {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events and the explanations that belong to them, newest first.
 import { SOURCES, STATUS } from '../design/status';
 import type { RunStore } from '../run/store';

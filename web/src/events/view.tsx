@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { signal } from '@preact/signals';
 import { Panel } from '../design/panel';
 import { pastRange, runNow } from '../run/shown';

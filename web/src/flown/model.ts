@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The as-flown report in words: each timepoint and event by every source that told of it, and what was silent.
 import type { AsFlownEvent, AsFlownReport, AsFlownTimepoint } from '../gen/aeolis/v1/run_pb';
 import { fromEntry } from '../run/time';

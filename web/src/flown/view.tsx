@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run as it was flown: when each timepoint came by plan, prediction, tone, UHF and recording, what flight reported between them, and what was
 // silent meanwhile.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';

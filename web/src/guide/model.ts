@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The first five minutes: what to press now, why, and what is happening, in plain words. From opening the page to landing.
 import { signal } from '@preact/signals';
 import { step as commandStep } from '../commands/line';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each link: its state and silences as it told them, what came over it, and how much of it was damaged.
 import type { LinkCounters, ProofReport } from '../gen/aeolis/v1/run_pb';
 import { linkLook } from '../design/status';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The links side by side: which is up, which is silent and why, what each brought and lost.
 import { LINK_STATUS, STATUS } from '../design/status';
 import { proofOfRun } from '../proof/report';

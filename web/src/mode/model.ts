@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of the modes the page is in, and what it says of it. Two things are told apart: how the run is looked at (now, a
 // replay, a fixed range, after its end), and where it happens (a rehearsal can never be taken for the real thing).
 import type { RunState } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aRun } from '../testing/fixtures';
 import { MODES, isReal, modeOf, panelMark, resumedWords } from './model';

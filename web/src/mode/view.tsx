@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mode, where no one can miss it: tape along the top of a rehearsal, a bar over every past view, a mark in each panel.
 import { stream } from '../run/connection';
 import { backToLive } from '../run/session';

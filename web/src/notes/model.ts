@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shift log of a run, and remarks at its instants: what people wrote down, kept with the run.
 import { signal } from '@preact/signals';
 import { uplink } from '../commands/line';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shift log: what was written when and by whom, a line to write in, and a search.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units as they arrived: how fast each link and each packet comes, and which octets of one are which of its fields.
 import type { Unit } from '../gen/aeolis/v1/items_pb';
 import type { PacketField, PacketRow } from '../gen/aeolis/v1/run_pb';

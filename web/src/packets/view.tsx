@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Units as they come: what each link and each packet brings, the newest of them, and one octet by octet beside its fields.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';

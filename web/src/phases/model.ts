@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';
 import type { Dictionary } from '../run/dictionary';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strip that says where in the landing we are, to be read across a room.
 import { cutoff, dictionary, runNow, timepoints } from '../run/shown';
 import { duration, fromEntry } from '../run/time';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From series to what a plot takes: one axis of time, the recording and real time beside each other.
 import type { Series } from '../run/series';
 import type { RunStore, Sample } from '../run/store';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { axisNumber } from '../draw/axis';
 import { Series } from '../run/series';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four plots over one axis of time, with one cursor. History and live are one trace; a gap stays a gap.
 import { useLayoutEffect, useRef } from 'preact/hooks';
 import uPlot from 'uplot';

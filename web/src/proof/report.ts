@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of live against recorded, as the panels of verdicts and of links show it.
 import type { ProofReport } from '../gen/aeolis/v1/run_pb';
 import { reportOfRun } from '../run/report';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A file that the server makes while it is taken: how much has come is told, and it can be cancelled.
 import { Refused, turnedAway, wordsOf } from '../run/api';
 

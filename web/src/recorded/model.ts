@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fixed range of a run, asked of the archive: what it holds, and which of it came how.
 import type { SeriesAnswer } from '../stream/series_answer';
 

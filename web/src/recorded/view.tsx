@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorded range: asked of the archive, shown as numbers here and as the past in every panel.
 import { signal } from '@preact/signals';
 import type { RecordingSummary } from '../gen/aeolis/v1/run_pb';

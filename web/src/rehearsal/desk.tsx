@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The instructor's desk in a rehearsal that goes on: what can be broken, a line to write in, and what was done so far. It is folded away:
 // whoever is rehearsed may look at the same screen.
 import { signal } from '@preact/signals';

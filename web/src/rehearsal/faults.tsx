@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What can be broken in the rehearsal that goes on, chosen and injected with the next cycle; and a fault in words.
 import { signal } from '@preact/signals';
 import { Device, DeviceFaultKind } from '../gen/aeolis/v1/scenario_pb';

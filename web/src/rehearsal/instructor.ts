@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an instructor did to a rehearsal: what was broken, and what was written about it. Those who fly it are told when it is over.
 import { signal } from '@preact/signals';
 import { mayRehearse } from '../access/model';

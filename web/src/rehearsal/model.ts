@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Paces that a key steps through. 0 is "as fast as it goes".
 export const PACES = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 0] as const;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The review of a rehearsal that is over: facts first, then what the instructor did, then a score whose rule and terms stand beside it.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';

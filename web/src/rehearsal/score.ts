@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a rehearsal came to: facts with their times, all from what was recorded, and a score by a stated rule (docs/console.md). Pure.
 import type { AsFlownReport } from '../gen/aeolis/v1/run_pb';
 import { inWords } from '../run/dictionary';

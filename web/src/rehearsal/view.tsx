@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rehearsals: pace and pause in one bar that is always there; which run is looked at, and new ones, in a panel.
 import { signal } from '@preact/signals';
 import { mayRehearse, whyNotRehearse } from '../access/model';

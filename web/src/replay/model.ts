@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A replay: the run's past played again at a pace. Every panel shows what had been heard by then and nothing later, or, where that is
 // asked for, what had happened by then with all that the recording tells of it.
 import { LAYOUT } from '../layout';

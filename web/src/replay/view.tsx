@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bar of a replay: where it is, how fast, and the way back.
 import { backToLive } from '../run/session';
 import { cutoff, pastRange, replay, runNow, withRecording } from '../run/shown';

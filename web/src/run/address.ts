@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page's address asks for.
 
 const asked = () => new URLSearchParams(globalThis.location?.search);

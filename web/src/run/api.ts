@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Asks what the worker does not: routes of plain JSON with small answers, and everything that changes something over HTTP.
 // Nothing is ever sent twice: what failed is said to whoever asked, and asking again is theirs.
 import { signal } from '@preact/signals';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a replay "as it was heard" knows at an instant: ERT 05:00:00 is SCLK 900, light time none.
 import { describe, expect, it } from 'vitest';
 import { aStore, event, explanation, firing, samples, unit } from '../testing/fixtures';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { expect, it, vi } from 'vitest';
 import { aServer } from '../testing/server';

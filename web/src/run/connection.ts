@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page's way to the server: what is connected, and what is asked and sent, each with its answer or the reason why there is none.
 import { computed, signal } from '@preact/signals';
 import type { CommandReply } from '../gen/aeolis/v1/run_pb';

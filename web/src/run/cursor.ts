@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The instant that is pointed at, one for plots, tones and timeline. By mouse where it is drawn, by key anywhere.
 import { effect, signal } from '@preact/signals';
 import { cutoff, shownRun, store } from './shown';

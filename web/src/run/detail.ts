@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is held of a channel's past is thinned over the whole run. Once a shorter stretch of it is looked at, that stretch is asked for
 // again, as fine as it can be drawn: what is wanted last, and one question at a time.
 import { effect, untracked } from '@preact/signals';

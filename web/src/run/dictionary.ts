@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The mission's words, as the API tells them, with the look-ups that the panels need.
 import { LAYOUT } from '../layout';
 import type { DictionaryChannel, DictionaryCommand, DictionaryReply, DictionaryTone } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { create, toBinary } from '@bufbuild/protobuf';
 import { describe, expect, it, vi } from 'vitest';
 import { ChannelSeriesListSchema } from '../gen/aeolis/v1/run_pb';

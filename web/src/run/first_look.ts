@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is drawn, coarse, asked for before anything else is known, while the rest of the script, the worker and its schema are still loading:
 // someone waits for a picture. The history that has no seam replaces it. Where it fails nothing is lost but that head start.
 import type { RunState } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aStore, samples } from '../testing/fixtures';
 import { allLimitsText, contextAt, isWorst, limitsIn, limitsOver, limitsText, outside } from './limits';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits as the ground judges by them: those of the context that holds, else those without one. A context is a state of EDL.
 import { LAYOUT } from '../layout';
 import type { AlarmLimit, DictionaryChannel } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /** Lets something through every `every_ms` on the average: what came late lets the next come sooner, by no less than `least_ms`. */
 export class Pace {
   private next = -Infinity;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A report that the archive counts over a whole run: asked for while a panel shows it, anew once more of the run is there.
 import { signal } from '@preact/signals';
 import type { Signal } from '@preact/signals';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aStore, event, firing, samples, stage } from '../testing/fixtures';
 import { Series } from './series';

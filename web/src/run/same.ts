@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether two words of a run are of one run. Its number alone says nothing: each archive counts from 1.
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One channel's samples in order of SCLK, bounded. Live samples are appended; history read from the archive replaces
 // what it covers. When full, the older half is thinned to the least and the largest of each four.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What leads from run to run: which one is followed, what of it is learnt from the server and when, and how the page begins.
 import { effect } from '@preact/signals';
 import type { RunState, ScenarioList, TimepointList } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is shown: the run, the part of it that is looked at as the past, its mode, and what is said to who looks. The signals that the panels read.
 import { computed, effect, signal, untracked } from '@preact/signals';
 import type { Signal } from '@preact/signals';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { create, fromJson, toJson } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { DictionaryReplySchema, RunListSchema } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page must know before it shows anything: the mission's words and the runs. Asked as the document asks for them (index.html preloads
 // both), and read here, for the worker and its schema still load then.
 import type { DictionaryReply, RunList, RunState } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All that the page holds of one run. Filled by the stream; read by every panel. One store a run: another run, another
 // store, so that nothing of one can be seen in the other.
 import type {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times as controllers write them. All of them come from the stream; the browser's clock is never read.
 
 const DAY_S = 86400;

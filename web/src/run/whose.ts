@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Once the rover stands on the ground, some channels are of the other half of the vehicle. The screen says so, or it would contradict itself.
 import { LAYOUT } from '../layout';
 import type { RunStore } from './store';

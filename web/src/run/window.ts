@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stretch of time that timeline, tones and plots show together, in seconds from entry.
 import { signal } from '@preact/signals';
 import { LAYOUT } from '../layout';

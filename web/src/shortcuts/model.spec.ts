@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // @vitest-environment happy-dom
 import { afterEach, expect, it } from 'vitest';
 import guide from '../../../docs/console.md?raw';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys, in one table: what the help shows is what the page does.
 import { signal } from '@preact/signals';
 import { backFile, stage } from '../commands/file';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { SHORTCUTS, TABS, helpShown } from './model';
 import './style.css';
 

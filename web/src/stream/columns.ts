@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns the stream's batches into columns: one run of samples a channel, and facts in order of sequence number.
 import type { Batch } from '../gen/aeolis/v1/stream_pb';
 import type { BatchOfFacts, Column, Fact } from './messages';

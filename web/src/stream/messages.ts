@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page and its worker tell each other. Everything here is plain data that can be posted.
 // Sequence and run numbers are JavaScript numbers: exact up to 2^53.
 import type {

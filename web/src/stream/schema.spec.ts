@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { createRegistry } from '@bufbuild/protobuf';
 import type { DescField, DescFile, Registry } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';

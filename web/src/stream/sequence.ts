@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proves that nothing is missing: each batch must continue what was complete before it.
 
 export type Verdict = 'continues' | 'repeats' | 'gap';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads samples as the archive answers them: v1.ChannelSeriesList in Protobuf, whose packed columns become typed arrays as they lie there. It
 // needs no schema, so that the page can read its first look before the worker has one.
 import { SOURCE_RECORDED } from './columns';

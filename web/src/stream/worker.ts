@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owns the socket: connects, subscribes, resumes after a break, checks the sequence, decodes, and posts columnar
 // batches every 25 ms at most, on the average, samples a little sooner. Also asks the HTTP routes, so that no large answer is parsed on the page's thread.
 //

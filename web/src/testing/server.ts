@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A server of a few routes for tests: answers what is put in, keeps what was asked.
 import { afterEach, beforeEach, vi } from 'vitest';
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The anchors that timepoints hang from, as a tree: each with its parent, its offset from it, when it is, and what says so.
 import { LAYOUT } from '../layout';
 import type { AnchorRow, TimepointRow } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { expect, it } from 'vitest';
 import { aPlan, aStore, firing } from '../testing/fixtures';
 import { heardOf } from './heard';

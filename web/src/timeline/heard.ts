@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is known of each timepoint, whichever way it came. The one answer for prediction, waiting, phases, guide, counts and details: where
 // UHF is silent, tones tell.
 import type { Explanation } from '../gen/aeolis/v1/items_pb';

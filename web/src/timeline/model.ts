@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lanes of the timeline: what was planned, and how each moment became known.
 import { LAYOUT } from '../layout';
 import { inWords } from '../run/dictionary';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What people wait for that is no timepoint: flight tells it by an event and a tone of the same name.
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';
 import { LAYOUT } from '../layout';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The prediction of the run that is shown, and how the command in the form would move it.
 import { computed } from '@preact/signals';
 import { fields, chosen } from '../commands/line';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When each timepoint is predicted, from what is known now: the plan, moved by every anchor that was heard of, by UHF, recording
 // or tone; and what a command in the form would move.
 import { LAYOUT } from '../layout';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { describe, expect, it } from 'vitest';
 import { aDictionary, aPlan, aStore, event, explanation, firing, link, samples, tone } from '../testing/fixtures';
 import { create } from '@bufbuild/protobuf';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The timeline: lanes one under the other on one axis of time, so that plan and each way of knowing can be compared.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import type { Tone } from '../gen/aeolis/v1/items_pb';
 import type { RunStore } from '../run/store';
 import { fromEntry, secondsOfDayOfYear } from '../run/time';

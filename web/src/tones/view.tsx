@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The strip of tones: 256 high, 10 s wide each.
 import { signal } from '@preact/signals';
 import { Canvas } from '../draw/canvas';

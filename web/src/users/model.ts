@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accounts, tokens of programs and what everyone did: for administrators. Nothing of it is kept in the page longer than it is shown.
 import { signal } from '@preact/signals';
 import { call, wordsFor } from '../run/api';

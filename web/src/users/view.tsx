@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Users, tokens and the audit, for administrators.
 import { signal, useSignal } from '@preact/signals';
 import { useEffect, useId } from 'preact/hooks';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A verdict as every panel shows it.
 import { STATUS, VERDICTS } from '../design/status';
 import type { Verdict } from '../design/status';

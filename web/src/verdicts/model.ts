@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What was seen live against the recording: the sentence that matters, the rows in order of trouble, and where octets differ.
 import type { ProofReport, ProofRow, ToneVerdict } from '../gen/aeolis/v1/run_pb';
 import type { Status } from '../design/status';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { ProofReportSchema } from '../gen/aeolis/v1/run_pb';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Live against recorded: one sentence, then the counts by packet and by link, the tones, and any packet octet by octet.
 import { signal } from '@preact/signals';
 import { useEffect } from 'preact/hooks';

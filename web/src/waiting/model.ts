@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the vehicle waits for and which condition is missing, in plain words; and before that, what to press.
 import type { Explanation, Condition } from '../gen/aeolis/v1/items_pb';
 import type { TimepointRow } from '../gen/aeolis/v1/run_pb';

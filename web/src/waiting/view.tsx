@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 import { STATUS, held } from '../design/status';
 import { openCommandLine } from '../commands/line';
 import { mayRehearse } from '../access/model';
