@@ -5,6 +5,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace commands_authorise_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 using State = PreconditionState::State;
@@ -69,3 +71,5 @@ TEST_CASE("in the shipped dictionary do edl is hazardous and wants parameters in
     CHECK_FALSE(allowed());
     CHECK_FALSE(is_hazardous(*dictionary.command("EDL_SET_PARAMETERS")));
 }
+
+}  // namespace commands_authorise_test

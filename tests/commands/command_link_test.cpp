@@ -8,6 +8,8 @@
 
 #include <map>
 
+namespace commands_command_link_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -141,3 +143,5 @@ TEST_CASE("when the vehicle counts from 0 again it is told the sequence, and wha
     REQUIRE(units.size() == 1);
     CHECK(units[0].sequence == 5);
 }
+
+}  // namespace commands_command_link_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace commands_command_queue_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -114,3 +116,5 @@ TEST_CASE("when one in order comes to nothing those behind it wait until each is
     CHECK_FALSE(queue.judged(3));
     CHECK(leaving(queue, Ert{0}) == Numbers{3});
 }
+
+}  // namespace commands_command_queue_test

@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+namespace commands_encoder_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -202,3 +204,5 @@ TEST_CASE("every command of the shipped dictionary can be sent at its bounds, an
         }
     }
 }
+
+}  // namespace commands_encoder_test

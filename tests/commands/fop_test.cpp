@@ -9,6 +9,8 @@
 #include <random>
 #include <set>
 
+namespace commands_fop_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -229,3 +231,5 @@ TEST_CASE("what was never radiated can be taken back; what was stays until it is
     CHECK(fop.unacknowledged().empty());
     CHECK_FALSE(fop.next());
 }
+
+}  // namespace commands_fop_test

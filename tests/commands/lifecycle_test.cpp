@@ -5,6 +5,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace commands_lifecycle_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -228,3 +230,5 @@ TEST_CASE("a frame that is not radiated again says why, and stays radiated", "[l
     CHECK(uplink.evidence(Stage::radiated) == "it must not");
     CHECK(uplink.lifecycle.status(Stage::radiated) == Status::ok);
 }
+
+}  // namespace commands_lifecycle_test

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <random>
 
+namespace commands_number_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -31,3 +33,5 @@ TEST_CASE("a field's bits are a number by its encoding", "[number]") {
 TEST_CASE("SCLK reads to a millisecond", "[number]") {
     CHECK(text_of(Sclk{397501022.15625}) == "397501022.156");
 }
+
+}  // namespace commands_number_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace commands_preconditions_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 using State = PreconditionState::State;
@@ -69,3 +71,5 @@ TEST_CASE("each comparison is the one that it says", "[preconditions]") {
     CHECK(holds(">=", 5));
     CHECK_FALSE(holds(">=", 6));
 }
+
+}  // namespace commands_preconditions_test

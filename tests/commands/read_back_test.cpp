@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace commands_read_back_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 using aeolis::tests::PacketFiller;
@@ -78,3 +80,5 @@ TEST_CASE("the shipped dictionary reports the parameters that it is sent", "[rea
     REQUIRE(command != nullptr);
     CHECK(read_back_packet(dictionary, *command) == dictionary.packet("ParametersHeld"));
 }
+
+}  // namespace commands_read_back_test

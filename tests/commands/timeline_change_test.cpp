@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace commands_timeline_change_test {
+
 using namespace aeolis;
 
 TEST_CASE("a command that changes an offset changes that row of the timeline alone", "[commands][R19]") {
@@ -50,3 +52,5 @@ TEST_CASE("a row that is not there, and any other command, change nothing", "[co
     CHECK(changed.timeline[0].desired_offset_s == before);
     CHECK_FALSE(commands::changes_offsets("EDL_SET_PARAMETERS"));
 }
+
+}  // namespace commands_timeline_change_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace commands_tracking_schedule_test {
+
 using namespace aeolis;
 using namespace aeolis::commands;
 
@@ -62,3 +64,5 @@ TEST_CASE("after the last pass nobody sees the vehicle any more, in a gap somebo
     CHECK(schedule.over(at_minute(200)));
     CHECK_FALSE(TrackingSchedule{}.over(at_minute(1000)));
 }
+
+}  // namespace commands_tracking_schedule_test

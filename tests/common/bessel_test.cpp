@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace common_bessel_test {
+
 using namespace aeolis;
 
 TEST_CASE("the logarithm of I0 has no seam", "[tones]") {
@@ -12,3 +14,5 @@ TEST_CASE("the logarithm of I0 has no seam", "[tones]") {
     CHECK(log_bessel_i0(19.999999) == Approx(log_bessel_i0(20.000001)).margin(3e-6));
     CHECK(log_bessel_i0(2000.0) > 1990.0);
 }
+
+}  // namespace common_bessel_test

@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace common_bytes_test {
+
 using namespace aeolis;
 
 TEST_CASE("bit fields are written most significant bit first", "[common]") {
@@ -64,3 +66,5 @@ TEST_CASE("writing or reading past the end is a bug, not a silent loss", "[commo
     CHECK_THROWS_AS(read_bits(octets, 4, 5), CheckFailed);
     CHECK_FALSE(BitReader{octets}.has(9));
 }
+
+}  // namespace common_bytes_test

@@ -2,6 +2,8 @@
 #include "common/calendar.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_calendar_test {
+
 using namespace aeolis;
 
 TEST_CASE("days are counted as the Gregorian calendar has them", "[common]") {
@@ -28,3 +30,5 @@ TEST_CASE("what is no date has no number", "[common]") {
     CHECK_FALSE(days_since_2000(0, 1, 1));
     CHECK_FALSE(days_since_2000(10000, 1, 1));
 }
+
+}  // namespace common_calendar_test

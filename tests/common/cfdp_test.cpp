@@ -5,6 +5,8 @@
 
 #include <string>
 
+namespace common_cfdp_test {
+
 using namespace aeolis;
 using namespace aeolis::cfdp;
 
@@ -138,3 +140,5 @@ TEST_CASE("of a NAK with more requests than we keep the first are kept", "[commo
     REQUIRE(back);
     CHECK(std::get<Nak>(back->content).requests.size() == nak_requests_max);
 }
+
+}  // namespace common_cfdp_test

@@ -2,6 +2,8 @@
 #include "common/check.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_check_test {
+
 using namespace aeolis;
 
 TEST_CASE("a failed check names its condition and its line", "[common]") {
@@ -13,3 +15,5 @@ TEST_CASE("a failed check names its condition and its line", "[common]") {
         CHECK(failed.line() == __LINE__ - 4);
     }
 }
+
+}  // namespace common_check_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace common_cltu_test {
+
 using namespace aeolis;
 
 TEST_CASE("a published CLTU is taken apart and put together again the same", "[common]") {
@@ -73,3 +75,5 @@ TEST_CASE("a CLTU without start, cut, or too long for its reader is refused with
     cltu[0] = 0xEA;
     CHECK(read_cltu(cltu, back).why() == Malformed::no_start);
 }
+
+}  // namespace common_cltu_test

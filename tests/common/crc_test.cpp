@@ -5,6 +5,8 @@
 #include <array>
 #include <vector>
 
+namespace common_crc_test {
+
 using namespace aeolis;
 
 namespace {
@@ -57,3 +59,5 @@ TEST_CASE("published CRC-16 values", "[common]") {
                                           0x05, 0x21}) == 0x75FB);
     CHECK(crc16(std::vector<std::uint8_t>{0x01, 0x92, 0xFE, 0x00, 0x11, 0x82, 0x5A}) == 0x0EA3);
 }
+
+}  // namespace common_crc_test

@@ -2,6 +2,8 @@
 #include "common/fixed_queue.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_fixed_queue_test {
+
 using namespace aeolis;
 
 TEST_CASE("a fixed queue is first in, first out, round and round", "[common][R7]") {
@@ -48,3 +50,5 @@ TEST_CASE("a queue that grows gives the place to fill, in order, until it is ful
     *queue.try_grow() = 3;
     CHECK(queue.front() == 2);
 }
+
+}  // namespace common_fixed_queue_test

@@ -4,6 +4,8 @@
 
 #include <array>
 
+namespace common_fixed_vector_test {
+
 using namespace aeolis;
 
 TEST_CASE("a full fixed vector refuses and keeps what it has", "[common][R7]") {
@@ -37,3 +39,5 @@ TEST_CASE("a vector that grows gives the place to fill until it is full", "[comm
     CHECK(vector.back() == 7);
     CHECK(vector.try_grow() == nullptr);
 }
+
+}  // namespace common_fixed_vector_test

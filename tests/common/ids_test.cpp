@@ -4,6 +4,8 @@
 
 #include <type_traits>
 
+namespace common_ids_test {
+
 using namespace aeolis;
 
 TEST_CASE("two kinds of id do not mix", "[common]") {
@@ -12,3 +14,5 @@ TEST_CASE("two kinds of id do not mix", "[common]") {
     STATIC_REQUIRE_FALSE(std::is_convertible_v<TimepointId, AnchorId>);
     STATIC_REQUIRE_FALSE(std::is_convertible_v<int, Opcode>);
 }
+
+}  // namespace common_ids_test

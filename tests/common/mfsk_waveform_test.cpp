@@ -2,6 +2,8 @@
 #include "common/mfsk_waveform.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_mfsk_waveform_test {
+
 using namespace aeolis;
 
 TEST_CASE("carrier and first sidebands share the power by the modulation index", "[tones][R31]") {
@@ -11,3 +13,5 @@ TEST_CASE("carrier and first sidebands share the power by the modulation index",
     CHECK(even.tone_hz(255) == Approx(555.0));
     CHECK(even.highest_tone_hz() < 3.0 * even.first_tone_hz);
 }
+
+}  // namespace common_mfsk_waveform_test

@@ -5,6 +5,8 @@
 #include <set>
 #include <string>
 
+namespace common_parsed_test {
+
 using namespace aeolis;
 
 TEST_CASE("what could not be read has a reason, and reading it all the same is a bug", "[common]") {
@@ -24,3 +26,5 @@ TEST_CASE("each reason has a name of its own", "[common]") {
     CHECK(names.size() == static_cast<std::size_t>(Malformed::bad_field) + 1);
     CHECK(names.count("") == 0);
 }
+
+}  // namespace common_parsed_test

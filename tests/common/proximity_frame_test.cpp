@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace common_proximity_frame_test {
+
 using namespace aeolis;
 
 TEST_CASE("a PLTU has the bits of the standard", "[common]") {
@@ -75,3 +77,5 @@ TEST_CASE("a segment header says first, last and of which packet", "[common]") {
     CHECK(read_segment_header(0x85).last);
     CHECK(read_segment_header(0x85).pseudo_packet == 5);
 }
+
+}  // namespace common_proximity_frame_test

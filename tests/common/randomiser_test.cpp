@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace common_randomiser_test {
+
 using namespace aeolis;
 
 TEST_CASE("the random sequences begin as published, come round after 255 octets, and undo themselves", "[common]") {
@@ -18,3 +20,5 @@ TEST_CASE("the random sequences begin as published, come round after 255 octets,
     CHECK(tm == std::vector<std::uint8_t>(520));
     CHECK(tc == std::vector<std::uint8_t>(520));
 }
+
+}  // namespace common_randomiser_test

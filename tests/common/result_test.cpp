@@ -2,6 +2,8 @@
 #include "common/result.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_result_test {
+
 using namespace aeolis;
 
 TEST_CASE("a result holds a value or an error, and asking for the other is a bug", "[common]") {
@@ -15,3 +17,5 @@ TEST_CASE("a result holds a value or an error, and asking for the other is a bug
     CHECK(Result<void>{}.ok());
     CHECK_FALSE(Result<void>{Error{"no"}}.ok());
 }
+
+}  // namespace common_result_test

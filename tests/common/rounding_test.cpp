@@ -3,6 +3,8 @@
 
 #include <array>
 
+namespace common_rounding_test {
+
 namespace {
 
 /// The form that g++ 12.2 -O2 gets wrong where it makes vectors of neighbouring values.
@@ -21,3 +23,5 @@ TEST_CASE("what goes through a float is rounded, in every build and also in pair
     CHECK(pair[0] == 0.100000001490116119384765625);
     CHECK(pair[1] == 0.300000011920928955078125);
 }
+
+}  // namespace common_rounding_test

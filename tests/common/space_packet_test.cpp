@@ -6,6 +6,8 @@
 #include <random>
 #include <vector>
 
+namespace common_space_packet_test {
+
 using namespace aeolis;
 
 TEST_CASE("a telemetry packet reads back with its APID, count and exact time", "[common]") {
@@ -75,3 +77,5 @@ TEST_CASE("any octets at all are read as a packet or as none", "[common]") {
     }
     SUCCEED();
 }
+
+}  // namespace common_space_packet_test

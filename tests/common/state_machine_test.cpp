@@ -4,6 +4,8 @@
 
 #include <array>
 
+namespace common_state_machine_test {
+
 using namespace aeolis;
 
 namespace {
@@ -47,3 +49,5 @@ TEST_CASE("a state machine is carried as its state", "[state_machine][R33]") {
     CHECK(door.state() == Door::open);
     CHECK(door.take(DoorEvent::pulled));
 }
+
+}  // namespace common_state_machine_test

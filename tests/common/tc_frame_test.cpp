@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace common_tc_frame_test {
+
 using namespace aeolis;
 
 TEST_CASE("a published telecommand frame reads as published, and is written the same", "[common]") {
@@ -84,3 +86,5 @@ TEST_CASE("every CLCW reads back; one of another type, version or length does no
     CHECK(read_clcw(test::hex("000000")).why() == Malformed::too_short);
     CHECK(read_clcw(test::hex("0000000000")).why() == Malformed::too_long);
 }
+
+}  // namespace common_tc_frame_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+namespace common_time_table_test {
+
 using namespace aeolis;
 
 TEST_CASE("a time table is smooth: value and rate are continuous, a parabola is followed inside", "[common]") {
@@ -40,3 +42,5 @@ TEST_CASE("a time table refuses times that stand still, numbers that are none, c
           "row 2 has a number that is not finite");
     CHECK_FALSE(TimeTable::make({0.0, 1.0}, {1.0}).ok());
 }
+
+}  // namespace common_time_table_test

@@ -2,6 +2,8 @@
 #include "common/time.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_time_test {
+
 using namespace aeolis;
 
 TEST_CASE("a clock of n hertz is the time cut to 1/n s, exactly", "[common][R21]") {
@@ -78,3 +80,5 @@ TEST_CASE("a time in day-of-year form is read back to the microsecond, and nothi
         CHECK_FALSE(ert_from_day_of_year(text).has_value());
     }
 }
+
+}  // namespace common_time_test

@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace common_tm_frame_test {
+
 using namespace aeolis;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("a frame whose fields point outside it, or that has no packets, is ref
     CHECK(read_tm_frame(std::vector<std::uint8_t>(transfer_frame_octets_max + 1), {.crc = false}).why() ==
           Malformed::too_long);
 }
+
+}  // namespace common_tm_frame_test

@@ -2,6 +2,8 @@
 #include "common/tone_evidence.hpp"
 #include "tests/support/catch.hpp"
 
+namespace common_tone_evidence_test {
+
 using namespace aeolis;
 
 TEST_CASE("a level in decibels comes back from its octet to a quarter of a decibel, and ends at the ends",
@@ -11,3 +13,5 @@ TEST_CASE("a level in decibels comes back from its octet to a quarter of a decib
     CHECK(spectrum_octet(-80.0) == 0);
     CHECK(spectrum_octet(200.0) == 255);
 }
+
+}  // namespace common_tone_evidence_test

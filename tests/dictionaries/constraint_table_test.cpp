@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
 
+namespace dictionaries_constraint_table_test {
+
 using namespace aeolis;
 
 TEST_CASE("each constraint's code names its row of the spreadsheet, and its moments as symbols",
@@ -18,3 +20,5 @@ TEST_CASE("each constraint's code names its row of the spreadsheet, and its mome
         CHECK_THAT(source,
                    Catch::Contains("#line " + std::to_string(row.line) + " \"constraints.csv\"\n    {Moment::"));
 }
+
+}  // namespace dictionaries_constraint_table_test

@@ -2,6 +2,8 @@
 #include "dictionaries/autocoder/cpp_text.hpp"
 #include "tests/support/catch.hpp"
 
+namespace dictionaries_cpp_text_test {
+
 using namespace aeolis::dictionary;
 using namespace aeolis::dictionary::autocoder;
 
@@ -29,3 +31,5 @@ TEST_CASE("a type's values have a type in C++", "[autocoder]") {
     type.bits = 32;
     CHECK(value_type(type) == "float");
 }
+
+}  // namespace dictionaries_cpp_text_test

@@ -2,6 +2,8 @@
 #include "dictionaries/spreadsheet/csv.hpp"
 #include "tests/support/catch.hpp"
 
+namespace dictionaries_csv_test {
+
 using namespace aeolis::dictionary;
 
 namespace {
@@ -63,3 +65,5 @@ TEST_CASE("a last line without its end, and a lone carriage return, are text lik
     REQUIRE(result.sheet);
     CHECK(result.sheet->rows[0].cells[0] == "x\ry");
 }
+
+}  // namespace dictionaries_csv_test

@@ -9,6 +9,8 @@
 #include <random>
 #include <set>
 
+namespace dictionaries_dictionary_test {
+
 using namespace aeolis;
 using namespace aeolis::dictionary;
 
@@ -226,3 +228,5 @@ TEST_CASE("what a computer says of itself has the same fields for both, in order
         }
     }
 }
+
+}  // namespace dictionaries_dictionary_test

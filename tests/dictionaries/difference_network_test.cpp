@@ -4,6 +4,8 @@
 
 #include <set>
 
+namespace dictionaries_difference_network_test {
+
 using namespace aeolis::dictionary;
 
 TEST_CASE("the earliest solution keeps every least difference, and no moment could be earlier", "[timeline][R19]") {
@@ -46,3 +48,5 @@ TEST_CASE("the least difference is the longest path, and is none where no path l
     CHECK_FALSE(network.least_difference(3, 0));
     CHECK(network.least_difference(2, 2)->ticks == 0);
 }
+
+}  // namespace dictionaries_difference_network_test

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+namespace dictionaries_enumerations_test {
+
 using namespace aeolis;
 
 TEST_CASE("each enumeration of packets and commands is listed once", "[dictionary][R48]") {
@@ -17,3 +19,5 @@ TEST_CASE("each enumeration of packets and commands is listed once", "[dictionar
     std::ranges::sort(names);
     CHECK(std::ranges::adjacent_find(names) == names.end());
 }
+
+}  // namespace dictionaries_enumerations_test

@@ -10,6 +10,8 @@
 #include <limits>
 #include <vector>
 
+namespace dictionaries_flight_header_test {
+
 // The encoders that flight was built with against the layout that the ground loads.
 using namespace aeolis;
 namespace packet = aeolis::flight::packet;
@@ -189,3 +191,5 @@ TEST_CASE("a command decodes as the ground lays it out, or not at all", "[dictio
     CHECK(command::NO_OP::decode({}));
     CHECK_FALSE(command::NO_OP::decode(std::vector<std::uint8_t>{0}));
 }
+
+}  // namespace dictionaries_flight_header_test

@@ -3,6 +3,8 @@
 #include "tests/support/planted.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_ground_sheets_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -82,3 +84,5 @@ TEST_CASE("what only ground knows changes neither the dictionary's id nor the ti
     CHECK(loaded.dictionary->id == tests::shipped_dictionary().id);
     CHECK(loaded.dictionary->timeline_version == tests::shipped_dictionary().timeline_version);
 }
+
+}  // namespace dictionaries_ground_sheets_test

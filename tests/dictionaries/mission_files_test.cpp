@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+namespace dictionaries_mission_files_test {
+
 using namespace aeolis;
 using namespace aeolis::dictionary;
 using tests::MissionCopy;
@@ -112,3 +114,5 @@ TEST_CASE("a file that holds no whole mission is refused in words", "[dictionary
     files.xtce.text = "<SpaceSystem name='T'><AncillaryDataSet/></SpaceSystem>";
     CHECK(one_file_of(files).error().message.find("no place for the sheets") != std::string::npos);
 }
+
+}  // namespace dictionaries_mission_files_test

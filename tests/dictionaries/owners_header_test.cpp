@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_owners_header_test {
+
 using namespace aeolis;
 
 TEST_CASE("each owner's code names its row of the spreadsheet, and its module as a symbol",
@@ -26,3 +28,5 @@ TEST_CASE("flight knows the owners at compile time", "[dictionary][R5]") {
     STATIC_REQUIRE(owner_of(DeviceLine::pyros) == ModuleId::pyro);
     STATIC_REQUIRE(action_owner::fire_parachute_mortar == ModuleId::pyro);
 }
+
+}  // namespace dictionaries_owners_header_test

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+namespace dictionaries_owners_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -58,3 +60,5 @@ TEST_CASE("each action of the timeline, each device and each decision has one ow
     CHECK(std::ranges::count(dictionary.owners, Kind::device, &dictionary::OwnerRow::kind) > 10);
     CHECK(std::ranges::count(dictionary.owners, Kind::decision, &dictionary::OwnerRow::kind) > 20);
 }
+
+}  // namespace dictionaries_owners_test

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <string>
 
+namespace dictionaries_packet_model_test {
+
 using namespace aeolis::dictionary;
 using namespace aeolis::dictionary::xtce;
 
@@ -126,3 +128,5 @@ TEST_CASE("what is no XTCE is refused", "[dictionary]") {
     CHECK_FALSE(Read{"<Other/>"}.model);
     CHECK_FALSE(Read{"not XML"}.model);
 }
+
+}  // namespace dictionaries_packet_model_test

@@ -7,6 +7,8 @@
 #include <regex>
 #include <set>
 
+namespace dictionaries_parameters_used_test {
+
 // One source for parameters: what parameters.csv names, flight uses, and what flight is tuned by stands nowhere else.
 namespace {
 
@@ -72,3 +74,5 @@ TEST_CASE("no module of EDL has a constant of its own that tunes it: they come f
     INFO("put the value in parameters.csv and take it from flight::parameters\n" << tuning);
     CHECK(tuning.empty());
 }
+
+}  // namespace dictionaries_parameters_used_test

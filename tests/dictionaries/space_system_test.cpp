@@ -2,6 +2,8 @@
 #include "dictionaries/xtce/space_system.hpp"
 #include "tests/support/planted.hpp"
 
+namespace dictionaries_space_system_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -217,3 +219,5 @@ TEST_CASE("containers based on each other, and SpaceSystems without end, are fou
     REQUIRE(all.size() == 1);
     CHECK_THAT(all.front().message, Catch::Contains("are nested deeper than"));
 }
+
+}  // namespace dictionaries_space_system_test

@@ -2,6 +2,8 @@
 #include "dictionaries/autocoder/state_diagram.hpp"
 #include "tests/support/catch.hpp"
 
+namespace dictionaries_state_diagram_test {
+
 using namespace aeolis;
 
 TEST_CASE("a state machine's diagram has its start and each of its transitions", "[dictionary][R48]") {
@@ -16,3 +18,5 @@ TEST_CASE("a state machine's diagram has its start and each of its transitions",
                                                                "    open --> shut: pulled\n"
                                                                "```\n\n");
 }
+
+}  // namespace dictionaries_state_diagram_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_state_machines_header_test {
+
 using namespace aeolis;
 
 TEST_CASE("each transition's code names its row of the spreadsheet, and its states as labels of the dictionary",
@@ -25,3 +27,5 @@ TEST_CASE("flight's machines have the tables that ground reads", "[dictionary][R
     CHECK(flight::GncModeMachine{}.state() == flight::GncMode::off);
     CHECK(flight::EdlPhaseMachine{}.state() == flight::EdlPhase::pre_edl);
 }
+
+}  // namespace dictionaries_state_machines_header_test

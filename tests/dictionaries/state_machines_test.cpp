@@ -3,6 +3,8 @@
 #include "tests/support/planted.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_state_machines_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -55,3 +57,5 @@ TEST_CASE("the phase of EDL and the mode of GNC are machines of the shipped dict
     CHECK(machines[1].name == "EdlPhase");
     CHECK(machines[1].initial == "pre_edl");
 }
+
+}  // namespace dictionaries_state_machines_test

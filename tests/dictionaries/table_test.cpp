@@ -2,6 +2,8 @@
 #include "dictionaries/spreadsheet/table.hpp"
 #include "tests/support/catch.hpp"
 
+namespace dictionaries_table_test {
+
 using namespace aeolis::dictionary;
 
 TEST_CASE("a cell is read as what it should be, and a finding names row and column", "[dictionary][R13]") {
@@ -32,3 +34,5 @@ TEST_CASE("a cell is read as what it should be, and a finding names row and colu
     CHECK_FALSE(none.offset("offset"));
     CHECK(all.size() == 3);
 }
+
+}  // namespace dictionaries_table_test

@@ -2,6 +2,8 @@
 #include "dictionaries/spreadsheet/tables.hpp"
 #include "tests/support/planted.hpp"
 
+namespace dictionaries_tables_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -182,3 +184,5 @@ TEST_CASE("a timepoint's offset counts from its neighbour or an anchor, from no 
     tests::check_planted({"another timepoint", "timeline.csv", "gnc_enable,entry,", "gnc_enable,coolant_vent,",
                           "reference 'coolant_vent' is neither previous nor an anchor"});
 }
+
+}  // namespace dictionaries_tables_test

@@ -4,6 +4,8 @@
 #include "tests/support/mission_copy.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_telemetry_plan_source_test {
+
 using namespace aeolis;
 
 TEST_CASE("each row of the plan is code under its line, with plan, packet and priority as symbols",
@@ -24,3 +26,5 @@ TEST_CASE("each row of the plan is code under its line, with plan, packet and pr
     CHECK_THAT(source, Catch::Contains("evr::COMMAND_ACCEPTED::apid, TelemetryPriority::first, "));
     CHECK(tests::text_of(std::filesystem::path{AEOLIS_BINARY_DIR} / "generated" / "telemetry_plan.cpp") == source);
 }
+
+}  // namespace dictionaries_telemetry_plan_source_test

@@ -4,6 +4,8 @@
 #include "tests/support/planted.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace dictionaries_telemetry_plan_test {
+
 using namespace aeolis;
 using aeolis::tests::Planted;
 
@@ -62,3 +64,5 @@ TEST_CASE("a packet that its own file has wrong is one fault, not one more for i
     tests::check_planted({"unknown type", "msl.xml", "parameterTypeRef=\"EdlPhase\"", "parameterTypeRef=\"EdlFace\"",
                           "there is no type 'EdlFace'"});
 }
+
+}  // namespace dictionaries_telemetry_plan_test

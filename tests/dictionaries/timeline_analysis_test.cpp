@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+namespace dictionaries_timeline_analysis_test {
+
 using namespace aeolis;
 using namespace aeolis::dictionary;
 
@@ -428,3 +430,5 @@ TEST_CASE("on small random timelines the analysis agrees with trying every sched
     CHECK(impossible > 20);
     CHECK(unbounded < 300);
 }
+
+}  // namespace dictionaries_timeline_analysis_test

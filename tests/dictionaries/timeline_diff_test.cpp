@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace dictionaries_timeline_diff_test {
+
 using namespace aeolis;
 using namespace aeolis::dictionary;
 
@@ -156,3 +158,5 @@ TEST_CASE("the shipped sheets quote only the cells that need it, and end lines w
         CHECK(saved(mission.text(file), false, false, false) == mission.text(file));
     }
 }
+
+}  // namespace dictionaries_timeline_diff_test

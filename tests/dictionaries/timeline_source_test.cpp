@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/mission_copy.hpp"
 
+namespace dictionaries_timeline_source_test {
+
 using namespace aeolis;
 
 TEST_CASE("each timepoint's code names its row of the spreadsheet, and its action and event as symbols",
@@ -21,3 +23,5 @@ TEST_CASE("each timepoint's code names its row of the spreadsheet, and its actio
         if (!row.desired_offset_s) CHECK_THAT(code, Catch::Contains("std::nullopt"));
     }
 }
+
+}  // namespace dictionaries_timeline_source_test

@@ -2,6 +2,8 @@
 #include "dictionaries/words.hpp"
 #include "tests/support/catch.hpp"
 
+namespace dictionaries_words_test {
+
 using namespace aeolis::dictionary;
 
 TEST_CASE("a word is wholly a number, or it is none", "[dictionary]") {
@@ -34,3 +36,5 @@ TEST_CASE("keywords and odd characters are no names in C++", "[dictionary][R40]"
         CHECK(unusable_as_identifier(name));
     }
 }
+
+}  // namespace dictionaries_words_test

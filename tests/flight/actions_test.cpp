@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_actions_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -48,3 +50,5 @@ TEST_CASE("the timeline powers devices and sets telecom", "[timeline][R28]") {
     CHECK(f.context.awaited() ==
           ActionReply{ReplyKind::device_switch, static_cast<std::uint8_t>(SwitchId::entry_antenna)});
 }
+
+}  // namespace flight_actions_test

@@ -6,6 +6,8 @@
 #include <optional>
 #include <type_traits>
 
+namespace flight_cfdp_source_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -139,3 +141,5 @@ TEST_CASE("an empty file is announced and ended", "[flight]") {
     while (source.next({}, pdu) > 0) ++sent;
     CHECK(sent == 2);
 }
+
+}  // namespace flight_cfdp_source_test

@@ -10,6 +10,8 @@
 #include <random>
 #include <vector>
 
+namespace flight_command_dispatcher_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -144,3 +146,5 @@ TEST_CASE("a frame for another spacecraft is not acted on", "[commands][R23]") {
     CHECK(f.recorder.events<evr::NO_OP_EXECUTED>() == 0);
     CHECK(f.recorder.events<evr::UPLINK_FRAME_REFUSED>() == 1);
 }
+
+}  // namespace flight_command_dispatcher_test

@@ -13,6 +13,8 @@
 #include <memory>
 #include <vector>
 
+namespace flight_computer_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -139,3 +141,5 @@ TEST_CASE("a computer that gets no clock, no sensor and no reply does not end", 
     CHECK(computer.counters().resets == 0);
     CHECK(out->pyros.empty());
 }
+
+}  // namespace flight_computer_test

@@ -15,6 +15,8 @@
 #include <utility>
 #include <vector>
 
+namespace flight_constraint_monitor_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -222,3 +224,5 @@ TEST_CASE("a violation planted by command is reported, explained, and changes no
     CHECK(planted.computer.counters().resets == 0);
     CHECK(planted.computer.counters().mailbox_overflows == 0);
 }
+
+}  // namespace flight_constraint_monitor_test

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+namespace flight_cross_string_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -195,3 +197,5 @@ TEST_CASE("what was kept goes to edl after a restart, and what cannot be read is
     CHECK(recorder.sent<Resume>().empty());
     CHECK(recorder.events<evr::STATE_UNREADABLE>() == 1);
 }
+
+}  // namespace flight_cross_string_test

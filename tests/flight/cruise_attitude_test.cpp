@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace flight_cruise_attitude_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -26,3 +28,5 @@ TEST_CASE("what is no unit quaternion is not used, and reported", "[devices][R4]
         CHECK(cruise.recorder.events<evr::CRUISE_ATTITUDE_UNUSABLE>() == 1);
     }
 }
+
+}  // namespace flight_cruise_attitude_test

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <random>
 
+namespace flight_data_products_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -189,3 +191,5 @@ TEST_CASE("without a row there is no product", "[products][R30]") {
     CHECK(all_parts(products).empty());
     CHECK(products.made() == 0);
 }
+
+}  // namespace flight_data_products_test

@@ -8,6 +8,8 @@
 #include <array>
 #include <bit>
 
+namespace flight_decisions_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -111,3 +113,5 @@ TEST_CASE("the peak of deceleration is told once, after it has passed, with the 
     }
     CHECK(told == 1);
 }
+
+}  // namespace flight_decisions_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_descent_engines_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -38,3 +40,5 @@ TEST_CASE("throttle and pay-out reach the bus at the turn of the engines' manage
 TEST_CASE("the engines' manager confirms each tick and addresses the selected controller", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<DescentEngines>(ModuleId::descent_engines, Device::descent_engines));
 }
+
+}  // namespace flight_descent_engines_test

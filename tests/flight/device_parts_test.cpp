@@ -10,6 +10,8 @@
 #include <set>
 #include <vector>
 
+namespace flight_device_parts_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -93,3 +95,5 @@ TEST_CASE("a decision is explained by its owner; another that tries fails its ch
     CHECK(recorder.packets<packet::Explanation>() == 1);
     CHECK_THROWS_AS(recorder.out.record(packet::Explanation{.decision = Decision::parachute_deploy}), CheckFailed);
 }
+
+}  // namespace flight_device_parts_test

@@ -8,6 +8,8 @@
 #include <memory>
 #include <random>
 
+namespace flight_do_no_harm_test {
+
 // Second Chance does no harm: whatever messages it is fed, in whatever order, nothing reaches a device. R34
 using namespace aeolis;
 using namespace aeolis::flight;
@@ -140,3 +142,5 @@ TEST_CASE("the same rain on a backup that may take over does reach devices: the 
     }
     CHECK(commanded);
 }
+
+}  // namespace flight_do_no_harm_test

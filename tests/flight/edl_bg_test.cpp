@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_edl_bg_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -105,3 +107,5 @@ TEST_CASE("a radar that brings nothing while Edl wants it is reported once, and 
     CHECK(losses(1000.0, 3, true) == 0);
     CHECK(losses(1003.0, 30, false) == 0);
 }
+
+}  // namespace flight_edl_bg_test

@@ -12,6 +12,8 @@
 #include <random>
 #include <vector>
 
+namespace flight_edl_comm_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -322,3 +324,5 @@ TEST_CASE("a record that no packet can hold is refused and reported", "[edl_comm
     CHECK(f.recorder.bus->nvm.empty());
     CHECK(f.recorder.events<evr::UNEXPECTED_MESSAGE>() == 1);
 }
+
+}  // namespace flight_edl_comm_test

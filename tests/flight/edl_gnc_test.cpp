@@ -5,6 +5,8 @@
 
 #include <cstring>
 
+namespace flight_edl_gnc_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
@@ -173,3 +175,5 @@ TEST_CASE("in the air a new solution changes bounds, not the navigated state", "
     gnc.cycle(inputs_at({1005.015625}, count, Vector3::Zero()), configuration, out);
     CHECK((to_vector(out.p_MoB_M_m) - to_vector(before)).norm() < 200.0);
 }
+
+}  // namespace flight_edl_gnc_test

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+namespace flight_edl_main_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -207,3 +209,5 @@ TEST_CASE("the version of the timeline on board is in telemetry every second", "
         CHECK(versions == std::vector<std::uint64_t>{loaded.dictionary->timeline_version});
     }
 }
+
+}  // namespace flight_edl_main_test

@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+namespace flight_executive_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -175,3 +177,5 @@ TEST_CASE("random messages to random modules never end the computer, only count,
         CHECK(f.state->unexpected_messages > 1000);
     }
 }
+
+}  // namespace flight_executive_test

@@ -5,6 +5,8 @@
 
 #include <array>
 
+namespace flight_explanation_test {
+
 using namespace aeolis::flight;
 
 TEST_CASE("an explanation has each condition in its place, and none beyond them", "[explanation][R38]") {
@@ -29,3 +31,5 @@ TEST_CASE("a comparison holds at its bound or just beside it, as it says", "[exp
     CHECK_FALSE(below(Quantity::speed_mps, 405.0, 405.0).holds);
     CHECK_FALSE(above(Quantity::speed_mps, 405.0, 405.0).holds);
 }
+
+}  // namespace flight_explanation_test

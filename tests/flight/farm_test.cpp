@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <vector>
 
+namespace flight_farm_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -88,3 +90,5 @@ TEST_CASE("what is for others, or no control command, is refused and changes not
         CHECK(control(farm, command) == Verdict::no_such_control);
     CHECK(farm.clcw() == before);
 }
+
+}  // namespace flight_farm_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_attitude_control_test {
+
 using namespace aeolis::flight::gnc;
 using Mode = AttitudeCommand::Mode;
 
@@ -102,3 +104,5 @@ TEST_CASE("under the parachute small swings are left alone and large ones are da
     state.rate_B_rps = {8.0 * degree, 0.0, 0.0};
     CHECK(control_torque(command, state, inertia).x() < 0.0);
 }
+
+}  // namespace flight_gnc_attitude_control_test

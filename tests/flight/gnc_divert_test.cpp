@@ -2,6 +2,8 @@
 #include "flight/gnc/powered_descent/divert.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_divert_test {
+
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::powered_descent;
 
@@ -40,3 +42,5 @@ TEST_CASE("azimuth goes from north to east", "[gnc][R27]") {
     CHECK((azimuth_direction(p, 0.0) - Vector3::UnitZ()).norm() < 1e-12);
     CHECK((azimuth_direction(p, pi / 2) - Vector3::UnitY()).norm() < 1e-12);
 }
+
+}  // namespace flight_gnc_divert_test

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_flyaway_test {
+
 using namespace aeolis::flight::gnc;
 
 namespace {
@@ -34,3 +36,5 @@ TEST_CASE("a burn of 6.66 s throws the stage 450 m and more", "[gnc][R27]") {
     }
     CHECK(x.z() >= 450.0);  // [facts]
 }
+
+}  // namespace flight_gnc_flyaway_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_force_filter_test {
+
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("drag and lift of a steady force come out as they are", "[gnc][R27]") {
@@ -25,3 +27,5 @@ TEST_CASE("while drag is weak the ratio is what one is told, and never absurd", 
     for (int i = 0; i < 64 * 40; ++i) filter.on({-10.0, 9.0, 0.0}, Vector3::UnitX(), 1.0 / 64);
     CHECK(filter.lift_to_drag(0.24) == 0.40);
 }
+
+}  // namespace flight_gnc_force_filter_test

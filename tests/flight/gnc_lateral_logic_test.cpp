@@ -3,6 +3,8 @@
 #include "generated/dictionary_flight.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_lateral_logic_test {
+
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
 
@@ -46,3 +48,5 @@ TEST_CASE("a reversal comes no sooner than the least time after the last", "[gnc
     CHECK_FALSE(logic.on(now + (interval_s - seconds_per_tick), +1.0e6, 3000.0, false, true));
     CHECK(logic.on(now + interval_s, +1.0e6, 3000.0, false, true));
 }
+
+}  // namespace flight_gnc_lateral_logic_test

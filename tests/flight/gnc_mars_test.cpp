@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_mars_test {
+
 using namespace aeolis::flight::gnc;
 
 namespace {
@@ -45,3 +47,5 @@ TEST_CASE("sound takes about 218 m/s in the 194.5 K at the ground and is held ab
     CHECK(speed_of_sound_mps(-100.0) == speed_of_sound_mps(0.0));
     CHECK(speed_of_sound_mps(500000.0) == speed_of_sound_mps(117647.0));
 }
+
+}  // namespace flight_gnc_mars_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_phase_plane_test {
+
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("a turn by the phase plane ends in its deadband without going past it, whatever its size", "[gnc][R27]") {
@@ -31,3 +33,5 @@ TEST_CASE("within the deadband no rate is wanted, just outside hardly any", "[gn
     CHECK(rate_to_turn(-0.0101, limits) == Approx(-1.0e-4));
     CHECK(rate_to_turn(3.0, limits) == 0.35);
 }
+
+}  // namespace flight_gnc_phase_plane_test

@@ -6,6 +6,8 @@
 
 #include <type_traits>
 
+namespace flight_gnc_quantities_test {
+
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("a condition holds on its bound and says what it compared", "[gnc][R38]") {
@@ -30,3 +32,5 @@ TEST_CASE("GNC's quantities, comparisons and modes are the dictionary's own type
     STATIC_REQUIRE(std::is_same_v<Condition::Comparison, aeolis::flight::Comparison>);
     STATIC_REQUIRE(std::is_same_v<Mode, aeolis::flight::GncMode>);
 }
+
+}  // namespace flight_gnc_quantities_test

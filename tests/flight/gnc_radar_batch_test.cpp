@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_radar_batch_test {
+
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
 
@@ -61,3 +63,5 @@ TEST_CASE("what is older than five seconds is forgotten", "[gnc][R25]") {
     CHECK(batch.solve(Sclk{5.5}));
     CHECK_FALSE(batch.solve(Sclk{6.0}));
 }
+
+}  // namespace flight_gnc_radar_batch_test

@@ -2,6 +2,8 @@
 #include "flight/gnc/navigation/radar_filter.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_radar_filter_test {
+
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
 
@@ -81,3 +83,5 @@ TEST_CASE("without a past that covers it a solution is not used", "[gnc][R25]") 
     descent.fly(1.0);
     CHECK_FALSE(descent.update());
 }
+
+}  // namespace flight_gnc_radar_filter_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_range_control_test {
+
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
 
@@ -61,3 +63,5 @@ TEST_CASE("beyond what lift can give bank is full up or full down", "[gnc][R27]"
     input.range_to_go_m = 1000.0;
     CHECK(range_control(two_rows(), input).bank_magnitude_rad == Approx(3.14159265));
 }
+
+}  // namespace flight_gnc_range_control_test

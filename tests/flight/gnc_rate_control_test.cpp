@@ -2,6 +2,8 @@
 #include "flight/gnc/sky_crane/rate_control.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_rate_control_test {
+
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::sky_crane;
 
@@ -35,3 +37,5 @@ TEST_CASE("an acceleration command is bounded", "[gnc][R27]") {
     RateControl control;
     CHECK(control.command_M({-50.0, 0.0, 0.0}, up, 0.75, dt).norm() <= 3.0);
 }
+
+}  // namespace flight_gnc_rate_control_test

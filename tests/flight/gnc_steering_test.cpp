@@ -6,6 +6,8 @@
 
 #include <array>
 
+namespace flight_gnc_steering_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
@@ -59,3 +61,5 @@ TEST_CASE("four engines steer with the four that are lit", "[gnc][R27]") {
           Approx(2.0));
     CHECK(by_engines.engines.throttle[0] != by_engines.engines.throttle[4]);
 }
+
+}  // namespace flight_gnc_steering_test

@@ -2,6 +2,8 @@
 #include "flight/gnc/sufr/straighten_up.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_straighten_up_test {
+
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("bank comes to lift up from either side at 10°/s and stays there", "[gnc][R27]") {
@@ -10,3 +12,5 @@ TEST_CASE("bank comes to lift up from either side at 10°/s and stays there", "[
     CHECK(sufr::bank_rad(1.0, -0.5) == Approx(-0.5 + sufr::roll_rate_rps));
     CHECK(sufr::bank_rad(5.0, -0.5) == Approx(0.0).margin(1e-12));
 }
+
+}  // namespace flight_gnc_straighten_up_test

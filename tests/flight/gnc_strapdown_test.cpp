@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_strapdown_test {
+
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
 
@@ -111,3 +113,5 @@ TEST_CASE("what navigation believes is moved as a whole: place, velocity, attitu
     CHECK(strapdown.state().q_MB.angularDistance(before.q_MB) == Approx(2.0 * half_rad));
     CHECK(strapdown.bias_B_mps2().x() == 1e-3);
 }
+
+}  // namespace flight_gnc_strapdown_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_target_geometry_test {
+
 using namespace aeolis::flight::gnc;
 
 namespace {
@@ -43,3 +45,5 @@ TEST_CASE("lift points away from where the heatshield leans", "[gnc][R27]") {
         CHECK(angle_of_attack(q_MB, east) == Approx(lean));
     }
 }
+
+}  // namespace flight_gnc_target_geometry_test

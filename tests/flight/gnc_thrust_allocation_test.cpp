@@ -3,6 +3,8 @@
 #include "flight/gnc/powered_descent/thrust_allocation.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_thrust_allocation_test {
+
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::powered_descent;
 
@@ -89,3 +91,5 @@ TEST_CASE("engines at their limit give way to a torque: attitude comes before th
     CHECK(most_N == Approx(powered_descent::engine_used_max_N));
     CHECK(sum_N < given_N - 1000.0);
 }
+
+}  // namespace flight_gnc_thrust_allocation_test

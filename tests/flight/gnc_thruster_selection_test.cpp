@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <random>
 
+namespace flight_gnc_thruster_selection_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 using namespace aeolis::flight::gnc;
@@ -64,3 +66,5 @@ TEST_CASE("a torque beyond all thrusters is cut in proportion, and keeps its axi
     CHECK(*std::max_element(command.on_s.begin(), command.on_s.end()) == Approx(seconds_per_tick));
     CHECK(selection.select(Vector3::Zero()) == ThrusterCommand{});  // and none is owed afterwards
 }
+
+}  // namespace flight_gnc_thruster_selection_test

@@ -3,6 +3,8 @@
 #include "flight/gnc/sky_crane/touchdown_logic.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_touchdown_logic_test {
+
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::sky_crane;
 
@@ -28,3 +30,5 @@ TEST_CASE("a bounce off the weight starts the wait anew", "[gnc][R27]") {
     CHECK_FALSE(all_hold(logic.on(1.2 * stage_N, mass_kg, rover_kg)));
     CHECK_FALSE(all_hold(logic.on(stage_N, mass_kg, rover_kg)));
 }
+
+}  // namespace flight_gnc_touchdown_logic_test

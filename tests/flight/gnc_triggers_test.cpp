@@ -2,6 +2,8 @@
 #include "flight/gnc/triggers/triggers.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_triggers_test {
+
 using namespace aeolis::flight::gnc;
 using namespace aeolis::flight::gnc::triggers;
 
@@ -101,3 +103,5 @@ TEST_CASE("engines are primed a quarter of a minute before the backshell goes", 
     CHECK_FALSE(all_hold(engine_priming(1660.0 + 82.0 * 15.6, 82.0, 1660.0)));
     CHECK_FALSE(all_hold(engine_priming(1000.0, -3.0, 1660.0)));  // it climbs
 }
+
+}  // namespace flight_gnc_triggers_test

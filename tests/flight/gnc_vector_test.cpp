@@ -2,6 +2,8 @@
 #include "flight/gnc/vector.hpp"
 #include "tests/support/catch.hpp"
 
+namespace flight_gnc_vector_test {
+
 using namespace aeolis::flight::gnc;
 
 TEST_CASE("a quaternion of a message keeps its order w, x, y, z and comes back unit", "[gnc][R27]") {
@@ -14,3 +16,5 @@ TEST_CASE("a quaternion of a message keeps its order w, x, y, z and comes back u
 TEST_CASE("a vector of a message goes there and back", "[gnc][R27]") {
     CHECK(to_array(to_vector({1.0, -2.0, 3.0})) == std::array<double, 3>{1.0, -2.0, 3.0});
 }
+
+}  // namespace flight_gnc_vector_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace flight_gnc_vertical_profile_test {
+
 using namespace aeolis::flight::gnc::powered_descent;
 
 TEST_CASE("from OD137's powered approach start the net deceleration comes out as published", "[gnc][R27]") {
@@ -69,3 +71,5 @@ TEST_CASE("absurd starts give a deceleration that engines can fly", "[gnc][R27]"
     approach.start(50000.0, 90.0);
     CHECK(approach.deceleration_mps2() == 1.0);
 }
+
+}  // namespace flight_gnc_vertical_profile_test

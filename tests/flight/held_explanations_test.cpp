@@ -6,6 +6,8 @@
 
 #include <array>
 
+namespace flight_held_explanations_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -90,3 +92,5 @@ TEST_CASE("when the decision is made its explanation carries what was left untol
     CHECK_FALSE(f.at(100.03125, Decision::parachute_deploy));
     CHECK(f.held.take_suppressed(Decision::parachute_deploy) == 2);
 }
+
+}  // namespace flight_held_explanations_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_imu_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -62,3 +64,5 @@ TEST_CASE("the second in which the IMU is changed over is not judged", "[devices
 TEST_CASE("the IMU's manager confirms each tick and addresses the selected unit", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<ImuManager>(ModuleId::imu, Device::imu));
 }
+
+}  // namespace flight_imu_test

@@ -9,6 +9,8 @@
 #include <memory>
 #include <vector>
 
+namespace flight_loads_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -63,3 +65,5 @@ TEST_CASE("every module is made from the load alone, spoken to by messages, and 
         });
     CHECK(modules == module_count);
 }
+
+}  // namespace flight_loads_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_outbox_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -27,3 +29,5 @@ TEST_CASE("an event goes to EdlComm as a record with its id and its time", "[ker
     CHECK(recorder.sent<Record>()[0].time == Sclk{42.5});
     CHECK(recorder.events<evr::EDL_BEGUN>() == 1);
 }
+
+}  // namespace flight_outbox_test

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+namespace flight_phase_test {
+
 using namespace aeolis::flight;
 
 TEST_CASE("the phase follows GNC's mode, and before GNC the clock", "[edl][R48]") {
@@ -64,3 +66,5 @@ TEST_CASE("what the table of phases does not have does not happen", "[edl][R48]"
     CHECK_FALSE(phase.follow(gnc::Mode::sky_crane, configuration, false));
     CHECK(phase.state() == EdlPhase::pre_edl);
 }
+
+}  // namespace flight_phase_test

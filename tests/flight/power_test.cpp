@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_power_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -26,3 +28,5 @@ TEST_CASE("power addresses the selected unit, and an answer of the other is repo
     CHECK(power.on(SwitchReply{SwitchId::radar, true, Unit::a}).events<evr::REPLY_UNEXPECTED>() == 1);
     CHECK(power.on(SwitchReply{SwitchId::radar, true, Unit::b}).sent<ActionReply>().size() == 1);
 }
+
+}  // namespace flight_power_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_pyro_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -58,3 +60,5 @@ TEST_CASE("more pyros at once than the bus takes are reported one by one", "[dev
 TEST_CASE("the pyro manager confirms each tick and addresses the selected controller", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<PyroManager>(ModuleId::pyro, Device::pyro));
 }
+
+}  // namespace flight_pyro_test

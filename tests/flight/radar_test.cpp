@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_radar_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -21,3 +23,5 @@ TEST_CASE("radar returns go on to EdlBg in the cycle in which they came, once", 
 TEST_CASE("the radar's manager confirms each tick and addresses the selected unit", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<RadarManager>(ModuleId::radar, Device::radar));
 }
+
+}  // namespace flight_radar_test

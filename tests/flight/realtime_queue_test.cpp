@@ -7,6 +7,8 @@
 #include <deque>
 #include <random>
 
+namespace flight_realtime_queue_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -96,3 +98,5 @@ TEST_CASE("under any load the queue does what its rule says, and its counts add 
         CHECK(offered == sent + queue.dropped() + queue.waiting());
     }
 }
+
+}  // namespace flight_realtime_queue_test

@@ -19,6 +19,8 @@
 #include <set>
 #include <vector>
 
+namespace flight_recorded_landing_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -220,3 +222,5 @@ TEST_CASE("a landing tells what holds its decisions, live and without flooding t
     for (const auto& [decision, count] : held) all += count;
     CHECK(all < 60);  // of a whole landing: they are for what is near, not a log
 }
+
+}  // namespace flight_recorded_landing_test

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <random>
 
+namespace flight_recording_delivery_test {
+
 using namespace aeolis;
 using flight::RecordingDelivery;
 
@@ -183,3 +185,5 @@ TEST_CASE("ground sets no memory aside for files longer, or more, than the rover
     CHECK(ground.files_under_way() == server::RecordingReceiver::files_under_way_max);
     CHECK(ground.received_octets() == 100 * server::RecordingReceiver::files_under_way_max);
 }
+
+}  // namespace flight_recording_delivery_test

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace flight_state_frame_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -143,3 +145,5 @@ TEST_CASE("pieces out of order, of two states or at random never make a state; i
         REQUIRE_FALSE(at_random.on(part).has_value());
     }
 }
+
+}  // namespace flight_state_frame_test

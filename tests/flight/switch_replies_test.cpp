@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_switch_replies_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -59,3 +61,5 @@ TEST_CASE("a switch that there is not, and one more than the bus takes, are repo
     f.command(SwitchId::radar, true);
     CHECK(f.recorder.events<evr::SWITCH_QUEUE_FULL>() == 1);
 }
+
+}  // namespace flight_switch_replies_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_sync_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -63,3 +65,5 @@ TEST_CASE("messages that found no room are told once, with their number", "[sync
     (void)f.turn_after(ClockTick{Sclk{0.5}}, 0.5);
     CHECK(f.recorder.events<evr::MAILBOX_OVERFLOW>() == 0);
 }
+
+}  // namespace flight_sync_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/outbox.hpp"
 
+namespace flight_system_fault_protection_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -18,3 +20,5 @@ TEST_CASE("each report of a fault asks EDL to hold, and the end of the fault to 
         CHECK(wishes[0].inhibited == present);
     }
 }
+
+}  // namespace flight_system_fault_protection_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_telecom_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -29,3 +31,5 @@ TEST_CASE("UHF and X-band are addressed each by its own selected unit", "[device
     CHECK(telecom.on(SwitchReply{SwitchId::entry_antenna, true, Unit::b}).sent<ActionReply>().size() == 1);
     CHECK(telecom.on(SwitchReply{SwitchId::uhf, true, Unit::a}).sent<ActionReply>().size() == 1);
 }
+
+}  // namespace flight_telecom_test

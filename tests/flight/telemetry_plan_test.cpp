@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace flight_telemetry_plan_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -60,3 +62,5 @@ TEST_CASE("a packet that no plan knows is recorded only", "[telemetry_plan][R30]
     CHECK(every(Plan::mission, EdlPhase::range_control, Apid{0x7FE}) == 0);
     CHECK(planned(Plan::mission, Apid{0x7FE}).priority == TelemetryPriority::low);
 }
+
+}  // namespace flight_telemetry_plan_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_thrusters_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -40,3 +42,5 @@ TEST_CASE("the answer to an overtaken thruster command is not taken for the newe
 TEST_CASE("the thrusters' manager confirms each tick and addresses the selected driver", "[devices][R2][R22]") {
     CHECK(test::confirms_and_addresses<Thrusters>(ModuleId::thrusters, Device::thrusters));
 }
+
+}  // namespace flight_thrusters_test

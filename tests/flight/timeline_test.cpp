@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+namespace flight_timeline_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -227,3 +229,5 @@ TEST_CASE("the shipped timeline fits the engine, and every row that waits for a 
         CHECK(context.awaited().kind != ReplyKind::none);
     }
 }
+
+}  // namespace flight_timeline_test

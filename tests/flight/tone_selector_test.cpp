@@ -7,6 +7,8 @@
 #include <array>
 #include <vector>
 
+namespace flight_tone_selector_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -206,3 +208,5 @@ TEST_CASE("in Second Chance only tones of its own set go out, whoever asks for w
     recorder.begin(ModuleId::mfsk, Sclk{at_s});
     CHECK_FALSE(sent_after(tone::sc_touchdown, at_s).has_value());  // no prime tone means it: it is not asked for
 }
+
+}  // namespace flight_tone_selector_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/device_module.hpp"
 
+namespace flight_unit_selector_test {
+
 using namespace aeolis;
 using namespace aeolis::flight;
 
@@ -97,3 +99,5 @@ TEST_CASE("a prime that stands by says nothing of the units: the other computer 
     units.on(StandBy{});
     CHECK(units.on(ClockTick{Sclk{1010.0}}, Sclk{1010.0}).packets<packet::UnitsHeld>() == 0);
 }
+
+}  // namespace flight_unit_selector_test

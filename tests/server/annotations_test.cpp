@@ -4,6 +4,8 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+namespace server_annotations_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -72,3 +74,5 @@ TEST_CASE("a note is kept as it was written, and refused when it is empty, too l
     CHECK_THAT(refusal_of_note("chute", ""), Catch::StartsWith("by: who"));
     CHECK_THAT(refusal_of_note("chute", std::string(101, 'x')), Catch::StartsWith("by: 101 octets"));
 }
+
+}  // namespace server_annotations_test

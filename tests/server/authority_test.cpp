@@ -10,6 +10,8 @@
 #include <map>
 #include <set>
 
+namespace server_authority_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -510,3 +512,5 @@ TEST_CASE("a password that was reset by hand is in the audit of the server that 
     CHECK(told("controller") == 1);
     CHECK(server::read_accounts(guarded.server.accounts())->resets().empty());
 }
+
+}  // namespace server_authority_test

@@ -13,6 +13,8 @@
 #include <set>
 #include <sys/resource.h>
 
+namespace server_campaign_desk_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using namespace aeolis::test;
@@ -204,3 +206,5 @@ TEST_CASE("a campaign that cannot be flown, or does not exist, is refused by nam
         CHECK_THAT(reply.body, Catch::Contains(row.says));
     }
 }
+
+}  // namespace server_campaign_desk_test

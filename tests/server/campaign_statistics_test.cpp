@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace server_campaign_statistics_test {
+
 using namespace aeolis;
 using namespace aeolis::server::campaign;
 
@@ -79,3 +81,5 @@ TEST_CASE("ticks of an axis are round numbers within it", "[campaign]") {
     CHECK(fine.digits == 2);
     CHECK(ticks_of({"", 1.0, 1.0}, 5).values.empty());
 }
+
+}  // namespace server_campaign_statistics_test

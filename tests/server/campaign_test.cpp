@@ -23,6 +23,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+namespace server_campaign_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using namespace aeolis::server::campaign;
@@ -492,3 +494,5 @@ TEST_CASE("a campaign counts the cases that were struck by what they had let go,
     CHECK(number_at(json, {"backshell_least_m", "max"}) == 310.0);
     CHECK_THAT(campaign_table(summary, {}), Catch::Contains("1 recontacts; backshell never nearer than 7.5 m"));
 }
+
+}  // namespace server_campaign_test

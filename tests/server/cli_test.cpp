@@ -37,6 +37,8 @@
 #include <unistd.h>
 #include <utility>
 
+namespace server_cli_test {
+
 // The program as people start it: what it says, on one line, and how it ends.
 namespace {
 
@@ -596,3 +598,5 @@ TEST_CASE("a landing's samples and their predict are made together, and decode r
     CHECK(run(program(), simulate).code == 2);  // some hundreds of kilohertz are outside of the samples
     std::filesystem::remove_all(directory);
 }
+
+}  // namespace server_cli_test

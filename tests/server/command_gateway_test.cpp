@@ -6,6 +6,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace server_command_gateway_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -914,3 +916,5 @@ TEST_CASE("of a command that waits it is said in fields what for, not in words a
     CHECK(station.latest("released")->status == "ok");
     CHECK_FALSE(station.latest("released")->held);
 }
+
+}  // namespace server_command_gateway_test

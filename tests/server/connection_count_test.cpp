@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace server_connection_count_test {
+
 using aeolis::server::ConnectionCount;
 
 TEST_CASE("one address has its share of the connections, and no more than that", "[http][bounds]") {
@@ -21,3 +23,5 @@ TEST_CASE("this machine has no share of its own, only the limit of all", "[http]
     CHECK(count.enter("127.0.0.1", true) == "10 connections are open already");
     CHECK(count.enter("192.0.2.1", false) == "10 connections are open already");
 }
+
+}  // namespace server_connection_count_test

@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+namespace server_decode_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -74,3 +76,5 @@ TEST_CASE("an instrument's packets decode by its own XTCE file to its published 
     }
     CHECK(row == rows.size());
 }
+
+}  // namespace server_decode_test

@@ -25,6 +25,8 @@
 #include <thread>
 #include <unistd.h>
 
+namespace server_downlink_follower_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using namespace aeolis::test;
@@ -345,3 +347,5 @@ TEST_CASE("addresses that cannot be are refused in one line", "[server][downlink
     CHECK(DownlinkAddress::parse("tcp://[::1]:5000")->text() == "tcp://[::1]:5000");
     CHECK(DownlinkAddress::parse("udp://0.0.0.0:0")->udp);
 }
+
+}  // namespace server_downlink_follower_test

@@ -5,7 +5,7 @@
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "server/rehearsal/rehearsal.hpp"
-#include "tests/server/faulty_disk.hpp"
+#include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/server/web_client.hpp"
@@ -15,6 +15,8 @@
 #include <fstream>
 #include <future>
 #include <random>
+
+namespace server_faulty_disk_test {
 
 using namespace aeolis;
 using namespace aeolis::test;
@@ -529,3 +531,5 @@ TEST_CASE("another file in the archive's place is left alone, and the archive is
     CHECK(Reader::open(file, dictionary)->events(*run, {})->events_size() == 2);
     CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->faults.empty());
 }
+
+}  // namespace server_faulty_disk_test

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace server_flown_signal_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -28,3 +30,5 @@ TEST_CASE("on the published landing Earth sets when it did, and the antennas los
     CHECK(least_db < -0.5);                  // attitude does count
     CHECK(flown.gain_db.at(-700.0) > -0.1);  // a spinning spacecraft points its antenna at Earth
 }
+
+}  // namespace server_flown_signal_test

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <vector>
 
+namespace server_ground_station_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -133,3 +135,5 @@ TEST_CASE("a damaged length holds the next frame back half a second on a link th
     CHECK(bring(3400, {}) == 0);
     CHECK(bring(3450, rest) == 1);  // no pause as long as that cuts a frame
 }
+
+}  // namespace server_ground_station_test

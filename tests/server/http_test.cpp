@@ -4,13 +4,15 @@
 #include "server/api/json.hpp"
 #include "server/archive/items.hpp"
 #include "tests/server/audited.hpp"
-#include "tests/server/faulty_disk.hpp"
+#include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
+
+namespace server_http_test {
 
 using namespace aeolis;
 using namespace aeolis::test;
@@ -704,3 +706,5 @@ TEST_CASE("a second server on the port, or another address, is refused in one li
     REQUIRE_FALSE(same_archive);
     CHECK(web_request(server.port(), "GET", "/healthz").status == 200);
 }
+
+}  // namespace server_http_test

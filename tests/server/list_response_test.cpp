@@ -5,6 +5,8 @@
 #include "server/api/json.hpp"
 #include "tests/support/catch.hpp"
 
+namespace server_list_response_test {
+
 using namespace aeolis;
 using server::list_response;
 
@@ -103,3 +105,5 @@ TEST_CASE("what a spreadsheet would compute stands in CSV as the words that it i
     CHECK(cell("-inf") == "-inf");
     CHECK(cell("'quoted' = words") == "'quoted' = words");
 }
+
+}  // namespace server_list_response_test

@@ -5,6 +5,8 @@
 
 #include <spdlog/details/log_msg.h>
 
+namespace server_log_line_test {
+
 using namespace aeolis::server;
 
 TEST_CASE("what a client sends makes no line of its own in the log, and says nothing to a terminal", "[operation]") {
@@ -22,3 +24,5 @@ TEST_CASE("what a client sends makes no line of its own in the log, and says not
         CHECK(text.find("warning") != std::string_view::npos);
     }
 }
+
+}  // namespace server_log_line_test

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+namespace server_message_flow_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -50,3 +52,5 @@ TEST_CASE("counting who talks to whom changes no bit of a landing", "[venue][inv
     }
     CHECK(plain.digest() == counted.digest());
 }
+
+}  // namespace server_message_flow_test

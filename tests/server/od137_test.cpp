@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+namespace server_od137_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using simulation::TruthState;
@@ -139,3 +141,5 @@ TEST_CASE("OD137's trajectory is followed from entry to SUFR: height within 400 
     CHECK(std::sqrt(height2 / count) <= 400.0);
     CHECK(std::sqrt(speed2 / count) <= 30.0);
 }
+
+}  // namespace server_od137_test

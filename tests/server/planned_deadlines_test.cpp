@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace server_planned_deadlines_test {
+
 using namespace aeolis;
 using server::PlannedDeadlines;
 
@@ -101,3 +103,5 @@ TEST_CASE("a deadline is that of the plan as flight has changed it by command", 
     CHECK(after->timepoint == "coolant_vent");
     CHECK(after->latest.microseconds - before->latest.microseconds == 5'000'000);
 }
+
+}  // namespace server_planned_deadlines_test

@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace server_predicted_doppler_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -38,3 +40,5 @@ TEST_CASE("the predict of a long cruise has no step where it begins to be flown"
         REQUIRE(std::abs(predict_hz.rate_at(e_s + 1.0) - predict_hz.rate_at(e_s)) < 0.5);  // [Hz/s]: cruise is smooth
     }
 }
+
+}  // namespace server_predicted_doppler_test

@@ -5,6 +5,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace server_predicted_silences_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -33,3 +35,5 @@ TEST_CASE("what the scenario says of Earth set and of the link's budget is what 
     CHECK(predicted.earth_set_s == 120.0);
     CHECK(predicted.carrier_weak);
 }
+
+}  // namespace server_predicted_silences_test

@@ -2,6 +2,8 @@
 #include "server/api/query_text.hpp"
 #include "tests/support/catch.hpp"
 
+namespace server_query_text_test {
+
 using namespace aeolis::server;
 
 TEST_CASE("a query's values are decoded", "[http]") {
@@ -39,3 +41,5 @@ TEST_CASE("a wrong query is refused by the name of what is wrong", "[http]") {
     CHECK(QueryText::parse("limit=0", {"limit"})->amount("limit", 10).error().message == "limit: 0 asks for nothing");
     CHECK(**QueryText::parse("limit=0", {"limit"})->count("limit", 10) == 0);
 }
+
+}  // namespace server_query_text_test

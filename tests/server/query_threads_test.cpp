@@ -7,6 +7,8 @@
 
 #include <future>
 
+namespace server_query_threads_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using server::QueryThreads;
@@ -104,3 +106,5 @@ TEST_CASE("questions that wait or go on when the server ends are stopped, and wh
     CHECK(std::chrono::steady_clock::now() - begun < std::chrono::seconds{5});
     CHECK(noted == 20);
 }
+
+}  // namespace server_query_threads_test

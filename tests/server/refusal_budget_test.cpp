@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace server_refusal_budget_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using namespace std::chrono_literals;
@@ -17,3 +19,5 @@ TEST_CASE("of one person's refusals so many a minute are noted, and the next one
     CHECK(budget.take("ada", begin + 60s) == 5U);
     CHECK(budget.take("ada", begin + 61s) == 0U);
 }
+
+}  // namespace server_refusal_budget_test

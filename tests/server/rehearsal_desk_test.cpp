@@ -10,6 +10,8 @@
 #include <deque>
 #include <mutex>
 
+namespace server_rehearsal_desk_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -103,3 +105,5 @@ TEST_CASE(
                                               "keeps them: taken"});
     CHECK(desk.commands_put_off() == 0);
 }
+
+}  // namespace server_rehearsal_desk_test

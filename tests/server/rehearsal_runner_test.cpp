@@ -18,6 +18,8 @@
 #include <thread>
 #include <unistd.h>
 
+namespace server_rehearsal_runner_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -402,3 +404,5 @@ TEST_CASE("a run that goes on keeps the clock with which it was begun, whatever 
     CHECK(state.clock().version() == 4);
     CHECK(state.clock().rate() == 1.0 + 2.0e-5);
 }
+
+}  // namespace server_rehearsal_runner_test

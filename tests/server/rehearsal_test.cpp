@@ -8,6 +8,8 @@
 #include <google/protobuf/struct.pb.h>
 #include <map>
 
+namespace server_rehearsal_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -132,3 +134,5 @@ TEST_CASE("commands over an uplink that loses frames are sent again, and the lan
     CHECK(again > 0);
     CHECK(commanded >= 4);
 }
+
+}  // namespace server_rehearsal_test

@@ -5,6 +5,8 @@
 
 #include <unistd.h>
 
+namespace server_sample_file_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -114,3 +116,5 @@ TEST_CASE("tones to send are in order, whole, and known", "[tones]") {
     CHECK(read_tones_to_send(unknown, 10.0).error().message.find("there is no tone 256") != std::string::npos);
     for (const auto& file : {sound, overlapping, unknown}) std::filesystem::remove(file);
 }
+
+}  // namespace server_sample_file_test

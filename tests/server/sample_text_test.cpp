@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace server_sample_text_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using archive::ChannelValue;
@@ -138,3 +140,5 @@ TEST_CASE("what cannot be aligned is named", "[export]") {
     for (const char* step : {"0", "-1", "nan", "inf", "1e-9", "1e9"})
         CHECK_THAT(refused({"speed_mps"}, {"csv", step}), Catch::StartsWith("align: "));
 }
+
+}  // namespace server_sample_text_test

@@ -10,6 +10,8 @@
 #include <functional>
 #include <unistd.h>
 
+namespace server_scenario_text_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -223,3 +225,5 @@ TEST_CASE("tracking passes are read, written and read again, and a pass that end
     CHECK_THAT(error_of(least + "radio { tracking_passes { end_after_entry_s: 10 } }"),
                Catch::Contains("radio.tracking_passes[0].station"));
 }
+
+}  // namespace server_scenario_text_test

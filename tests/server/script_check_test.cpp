@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace server_script_check_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -29,3 +31,5 @@ TEST_CASE("a scenario's own commands are checked before the start, by name and a
     CHECK_THAT(value.error().message,
                Catch::StartsWith("commands[1]: argument ") && Catch::Contains("of EDL_SET_PARAMETERS is missing"));
 }
+
+}  // namespace server_script_check_test

@@ -7,6 +7,8 @@
 #include <google/protobuf/util/message_differencer.h>
 #include <limits>
 
+namespace server_series_text_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 using google::protobuf::util::MessageDifferencer;
@@ -56,3 +58,5 @@ TEST_CASE("names of any kind and numbers that are none come back from JSON as th
     series.add_value(std::numeric_limits<double>::quiet_NaN());
     CHECK_THAT(series_json(list), Catch::Contains(R"("Infinity","-Infinity","NaN"])"));
 }
+
+}  // namespace server_series_text_test

@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <map>
 
+namespace server_silence_classifier_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -286,3 +288,5 @@ TEST_CASE("a station's outage takes what came live meanwhile and nothing else: l
     CHECK(cut.recording_progress() == 1.0);
     CHECK(cut.digest() == whole.digest());
 }
+
+}  // namespace server_silence_classifier_test

@@ -11,6 +11,8 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 
+namespace server_soak_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -259,3 +261,5 @@ TEST_CASE("clients that join, stall, leave and send rubbish cost others nothing,
 TEST_CASE("ten minutes of a thousand clients that join, stall, leave and send rubbish", "[.long][stream][soak]") {
     soak(990, std::chrono::seconds{600}, 1.0);
 }
+
+}  // namespace server_soak_test

@@ -5,6 +5,8 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+namespace server_state_at_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -107,3 +109,5 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
         CHECK(commands_of({-far_s, far_s}) == 1);
     }
 }
+
+}  // namespace server_state_at_test

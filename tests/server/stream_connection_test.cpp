@@ -15,6 +15,8 @@
 #include <sys/socket.h>
 #include <thread>
 
+namespace server_stream_connection_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using namespace std::chrono_literals;
@@ -303,3 +305,5 @@ TEST_CASE("while as many streams are open as may be, who has none is answered", 
     CHECK(StreamClient{events.port(), "aeolis.v1.json"}.status() == 503);
     CHECK(web_request(events.port(), "GET", "/healthz").status == 200);
 }
+
+}  // namespace server_stream_connection_test

@@ -3,7 +3,7 @@
 
 #include "server/api/json.hpp"
 #include "server/api/query_threads.hpp"
-#include "tests/server/faulty_disk.hpp"
+#include "tests/server/archive/faulty_disk.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -12,6 +12,8 @@
 #include <limits>
 #include <mutex>
 #include <random>
+
+namespace server_stream_session_test {
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -874,3 +876,5 @@ TEST_CASE("a disk that fails once stops no client's stream", "[stream][disk][R42
     CHECK(client.refusals.size() == 1);
     CHECK(client.saw_exactly(1, stream.last));
 }
+
+}  // namespace server_stream_session_test

@@ -7,6 +7,8 @@
 #include <map>
 #include <optional>
 
+namespace server_stream_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -273,3 +275,5 @@ TEST_CASE("a run that is over comes again over the socket at a pace, and not whi
     replayed(10'000.0, last_seq / 2);  // a jump, and another pace
     CHECK((client.seen.front() > last_seq / 2 && client.seen.front() <= last_seq / 2 + 2));
 }
+
+}  // namespace server_stream_test

@@ -9,6 +9,8 @@
 
 #include <google/protobuf/struct.pb.h>
 
+namespace server_task_report_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -117,3 +119,5 @@ TEST_CASE("a command to a venue without a computer is refused with the reason", 
     CHECK(reply.reason() == "the test venue gnc_alone has no computer");
     CHECK(rehearsal.take_stages().empty());
 }
+
+}  // namespace server_task_report_test

@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+namespace server_task_times_test {
+
 using namespace aeolis::server;
 
 TEST_CASE("least, mean and worst are exact, and 99.9 % within a tenth", "[venue][R8]") {
@@ -39,3 +41,5 @@ TEST_CASE("a task whose messages cost alike is even; one dear type among cheap o
     times.by_message[2].add(10000);
     CHECK(unevenness(times) == Approx(10.0 / 4.0));
 }
+
+}  // namespace server_task_times_test

@@ -17,6 +17,8 @@
 #include <set>
 #include <thread>
 
+namespace server_threaded_executive_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -267,3 +269,5 @@ TEST_CASE("a task's time is what it took in a whole cycle, however often it was 
     // Never the worst of two cycles together.
     CHECK(times.all_tasks.worst_us() < task(flight::ModuleId::sync).worst_us() + 6000.0);
 }
+
+}  // namespace server_threaded_executive_test

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+namespace server_timeline_check_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -145,3 +147,5 @@ TEST_CASE("an analysis that does not end in its time is no answer, and nothing i
     CHECK_THAT(look.not_known, Catch::Contains("did not end"));
     CHECK(check.look_again(list, never).known.size() == 1);  // asked again it is found
 }
+
+}  // namespace server_timeline_check_test

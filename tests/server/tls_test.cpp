@@ -14,6 +14,8 @@
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
+namespace server_tls_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 
@@ -226,3 +228,5 @@ TEST_CASE("a certificate or key that cannot serve is named", "[access][http]") {
     CHECK_THAT(server::ConsoleBackend::open(open_to_all, tests::shipped_dictionary()).error().message,
                Catch::Contains("--host"));
 }
+
+}  // namespace server_tls_test

@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace server_tone_bench_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -68,3 +70,5 @@ TEST_CASE("a counted rate's interval holds the rate, and an error rate tells its
     CHECK(loss_db(2.36, 10.0, 0.01) == Approx(0.0).margin(0.005));
     CHECK(loss_db(3.36, 10.0, 0.01) == Approx(1.0).margin(0.005));
 }
+
+}  // namespace server_tone_bench_test

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+namespace server_tone_station_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -145,3 +147,5 @@ TEST_CASE(
     CHECK(drawn.run_start(0.0).tone_model == "statistical");
     CHECK(drawn.digest() == rehearsal.digest());  // what is recorded on board does not depend on who listens
 }
+
+}  // namespace server_tone_station_test

@@ -14,6 +14,8 @@
 #include <thread>
 #include <utility>
 
+namespace server_web_server_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using namespace std::chrono_literals;
@@ -232,3 +234,5 @@ TEST_CASE("a client that takes a long answer slowly gets all of it, and one that
     CHECK(taken > octets);  // and its header
     CHECK(still.take(2 * octets) < octets);
 }
+
+}  // namespace server_web_server_test

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <sstream>
 
+namespace simulation_aeroshell_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -54,3 +56,5 @@ TEST_CASE("the scenario's air is the density inferred from the published flight,
     }
     CHECK(rows > 40);
 }
+
+}  // namespace simulation_aeroshell_test

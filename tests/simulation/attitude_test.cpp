@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 
+namespace simulation_attitude_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -117,3 +119,5 @@ TEST_CASE("thrusters take the spin out and turn to the entry attitude before the
     CHECK(vector3(pilot.world.inspect().rate_B_rps).norm() < 0.5 * degree_rad);
     CHECK(pilot.world.inspect().angle_of_attack_deg == Approx(16.0).margin(1.0));
 }
+
+}  // namespace simulation_attitude_test

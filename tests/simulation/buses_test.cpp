@@ -7,6 +7,8 @@
 
 #include <vector>
 
+namespace simulation_buses_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 using flight::Device;
@@ -242,3 +244,5 @@ TEST_CASE("each unit of a sensor has errors of its own", "[buses][R2]") {
     CHECK(felt(Unit::a) == felt(Unit::a));
     CHECK(felt(Unit::a) != felt(Unit::b));
 }
+
+}  // namespace simulation_buses_test

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <map>
 
+namespace simulation_device_faults_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 using flight::Device;
@@ -264,3 +266,5 @@ TEST_CASE("a fault that is injected in mid-flight is the scenario's fault that b
         CHECK((injected != sound));
     }
 }
+
+}  // namespace simulation_device_faults_test

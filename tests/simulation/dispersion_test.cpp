@@ -8,6 +8,8 @@
 #include <cmath>
 #include <functional>
 
+namespace simulation_dispersion_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -121,3 +123,5 @@ TEST_CASE("an impossible moment of dispersion is named", "[simulation][scenario]
         CHECK_THAT(found.front(), Catch::StartsWith(says));
     }
 }
+
+}  // namespace simulation_dispersion_test

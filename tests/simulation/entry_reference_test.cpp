@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+namespace simulation_entry_reference_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -124,3 +126,5 @@ TEST_CASE("a nearer target is reached by more bank", "[gnc][R27]") {
     const auto middle = [](const flight::EntryReference& r) { return r.rows[35].lift_to_drag; };
     CHECK(middle(nearer) < middle(usual));
 }
+
+}  // namespace simulation_entry_reference_test

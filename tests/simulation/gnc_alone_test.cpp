@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace simulation_gnc_alone_test {
+
 using namespace aeolis;
 using namespace aeolis::flight::gnc;
 
@@ -128,3 +130,5 @@ TEST_CASE("each change of configuration changes what GNC controls with: none, ra
     CHECK_FALSE(throttled_before_priming);
     CHECK_FALSE(engines_and_thrusters);
 }
+
+}  // namespace simulation_gnc_alone_test

@@ -13,6 +13,8 @@
 #include <optional>
 #include <set>
 
+namespace simulation_landing_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 using aeolis::test::do_edl;
@@ -188,3 +190,5 @@ TEST_CASE("while the station is out nothing of what reaches Earth reaches ground
     REQUIRE(x_band != told.end());
     CHECK(x_band->reason == "station out");
 }
+
+}  // namespace simulation_landing_test

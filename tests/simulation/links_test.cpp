@@ -8,6 +8,8 @@
 #include "simulation/mars/earth.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_links_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -233,3 +235,5 @@ TEST_CASE("Earth stands where the published geometry has it", "[simulation][eart
     const double landed_hz = -earth_range_rate_mps(site, Vector3::Zero(), 431.0) / 299792458.0 * 8.4e9;
     CHECK(landed_hz == Approx(-299300.0).margin(1000.0));
 }
+
+}  // namespace simulation_links_test

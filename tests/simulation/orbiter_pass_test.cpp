@@ -6,6 +6,8 @@
 
 #include <numeric>
 
+namespace simulation_orbiter_pass_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -124,3 +126,5 @@ TEST_CASE("files go at the rate of the pass, which changes as its table says", "
     CHECK(pass.file_rate_bps(119.0) == 128.0e3);
     CHECK(pass.file_rate_bps(120.0) == 1.0e6);
 }
+
+}  // namespace simulation_orbiter_pass_test

@@ -4,6 +4,8 @@
 #include "tests/simulation/jacobi.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_point_mass_test {
+
 using namespace aeolis::simulation;
 
 namespace {
@@ -60,3 +62,5 @@ TEST_CASE("a ballistic entry decelerates as Allen and Eggers say", "[simulation]
     CHECK(peak_mps2 == Approx(expected_mps2).epsilon(0.03));  // theory leaves gravity out
     CHECK(speed_at_peak_mps == Approx(speed_mps * std::exp(-0.5)).epsilon(0.03));
 }
+
+}  // namespace simulation_point_mass_test

@@ -5,6 +5,8 @@
 #include "common/time.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_relay_radio_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -42,3 +44,5 @@ TEST_CASE("without any answer the ends of the files are announced again, and it 
     CHECK(times == 4);  // the end every 210 s
     CHECK_FALSE(radio.done(recording));
 }
+
+}  // namespace simulation_relay_radio_test

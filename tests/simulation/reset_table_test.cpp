@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace simulation_reset_table_test {
+
 // A reset of the prime computer at any moment: the outcome that the rule foretells, and the one that was flown. The
 // rules and the table are in docs/second_chance.md.
 using namespace aeolis;
@@ -162,3 +164,5 @@ TEST_CASE("the table of resets: at every boundary of a timepoint and at 200 rand
         if (start_before_entry_s == 900.0) CHECK(next == at_random.size());
     }
 }
+
+}  // namespace simulation_reset_table_test

@@ -6,6 +6,8 @@
 
 #include <limits>
 
+namespace simulation_scenario_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -99,3 +101,5 @@ TEST_CASE("each list of a scenario has a bound, and one that is too long is told
     too_long("computer_resets", scenario_rows_max,
              [](Scenario& s, std::size_t rows) { s.computer_resets.resize(rows); });
 }
+
+}  // namespace simulation_scenario_test

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+namespace simulation_second_chance_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -260,3 +262,5 @@ TEST_CASE("do edl is refused while the computers are about to change roles", "[s
     CHECK(after.times<flight::evr::EDL_BEGUN>().size() == 1);
     CHECK(after.times<flight::evr::PRIME_STANDS_BY>().empty());
 }
+
+}  // namespace simulation_second_chance_test

@@ -5,6 +5,8 @@
 #include "tests/simulation/truth_pilot.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_sensors_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -207,3 +209,5 @@ TEST_CASE("each radar beam measures twenty times a second", "[simulation][radar]
         CHECK(count == 200);
     }
 }
+
+}  // namespace simulation_sensors_test

@@ -10,6 +10,8 @@
 
 #include <cmath>
 
+namespace simulation_separated_bodies_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -127,3 +129,5 @@ TEST_CASE("without the sidestep the backshell comes down on the stage, and the l
     CHECK(world.outcome() == Outcome::lost);
     CHECK_THAT(world.outcome_reason(), Catch::StartsWith("the vehicle was struck by its backshell at E+"));
 }
+
+}  // namespace simulation_separated_bodies_test

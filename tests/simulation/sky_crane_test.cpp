@@ -16,6 +16,8 @@
 #include <array>
 #include <cmath>
 
+namespace simulation_sky_crane_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -211,3 +213,5 @@ TEST_CASE("GNC damps a swing that something has started, by nulling the stage's 
     CHECK(late_deg < 0.35 * early_deg);
     CHECK(world.touchdown()->horizontal_mps < 0.2);
 }
+
+}  // namespace simulation_sky_crane_test

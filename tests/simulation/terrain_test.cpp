@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+namespace simulation_terrain_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -104,3 +106,5 @@ TEST_CASE("GNC lands softly on ground that is higher, lower or tilted: the radar
         CHECK(touchdown->horizontal_mps <= 0.5);
     }
 }
+
+}  // namespace simulation_terrain_test

@@ -18,6 +18,8 @@
 #include <set>
 #include <utility>
 
+namespace simulation_test_venues_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -218,3 +220,5 @@ TEST_CASE("each line in place of the timeline happens once, at its time, and wai
     at(100.0 + seconds_per_tick);
     CHECK(out.pyros.empty());
 }
+
+}  // namespace simulation_test_venues_test

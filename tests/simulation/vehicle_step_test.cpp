@@ -10,6 +10,8 @@
 #include <cmath>
 #include <functional>
 
+namespace simulation_vehicle_step_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -144,3 +146,5 @@ TEST_CASE("while engines burn the step is of second order: thrust goes in a stra
     CHECK(order(vehicle, 8.0, 0.32, 0.02, apart_m) == Approx(2.0).margin(0.4));
     CHECK(order(vehicle, 8.0, 0.32, 0.02, apart_rad) == Approx(2.0).margin(0.4));
 }
+
+}  // namespace simulation_vehicle_step_test

@@ -6,6 +6,8 @@
 #include "tests/simulation/gale.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_vehicle_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -211,3 +213,5 @@ TEST_CASE("the bridle pays out seven and a half metres in five seconds without a
         CHECK(bridle.speed_mps(t) == Approx(by_difference).margin(1e-3));
     }
 }
+
+}  // namespace simulation_vehicle_test

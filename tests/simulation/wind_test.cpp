@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace simulation_wind_test {
+
 using namespace aeolis::simulation;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("a case has its own gusts, and the same ones each time", "[simulation]
     CHECK((after_a_second(1) - after_a_second(1)).isZero());
     CHECK((after_a_second(1) - after_a_second(2)).norm() > 0.1);
 }
+
+}  // namespace simulation_wind_test

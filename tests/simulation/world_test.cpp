@@ -6,6 +6,8 @@
 #include "tests/simulation/truth_pilot.hpp"
 #include "tests/support/catch.hpp"
 
+namespace simulation_world_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 using tests::TruthPilot;
@@ -141,3 +143,5 @@ TEST_CASE("in late cruise the spin axis points as published, 21.5 degrees from t
     const double angle_rad = std::acos(z.dot(vector3(world.truth().v_MB_M_mps).normalized()));
     CHECK(angle_rad / degree_rad == Approx(21.47).margin(1.0));
 }
+
+}  // namespace simulation_world_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace simulation_x_band_antenna_test {
+
 using namespace aeolis::simulation;
 
 namespace {
@@ -36,3 +38,5 @@ TEST_CASE(
     CHECK(x_band_gain(XBandAntenna::entry, off_axis(25.0)) > x_band_gain(XBandAntenna::parachute, off_axis(25.0)));
     CHECK(x_band_gain(XBandAntenna::parachute, off_axis(92.0)) > x_band_gain(XBandAntenna::entry, off_axis(92.0)));
 }
+
+}  // namespace simulation_x_band_antenna_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace simulation_x_band_channel_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 using aeolis::tests::mfsk;
@@ -80,3 +82,5 @@ TEST_CASE("samples are the same whatever the portions, and others with another s
     CHECK(a == b);
     CHECK(a != c);
 }
+
+}  // namespace simulation_x_band_channel_test

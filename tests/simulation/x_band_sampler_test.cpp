@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+namespace simulation_x_band_sampler_test {
+
 using namespace aeolis;
 using namespace aeolis::simulation;
 
@@ -75,3 +77,5 @@ TEST_CASE("the phase goes on from one stretch to the next", "[tones]") {
     both.insert(both.end(), second.begin(), second.end());
     CHECK(amplitude_at(both, 250.0) == Approx(std::sqrt(1.0e4 / rate_hz)).margin(0.02));
 }
+
+}  // namespace simulation_x_band_sampler_test

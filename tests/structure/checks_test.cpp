@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+namespace structure_checks_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -56,3 +58,5 @@ TEST_CASE("static analysis, sanitizers and the memory checker are part of the ch
     CHECK(some_line("test", {"$long && threads"}));
     CHECK(files_under("docs/reviews", {".md"}).size() >= 2);  // one beside the README
 }
+
+}  // namespace structure_checks_test

@@ -2,6 +2,8 @@
 #include "tests/structure/source_tree.hpp"
 #include "tests/support/catch.hpp"
 
+namespace structure_decisions_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -39,3 +41,5 @@ TEST_CASE("each decision record lists what the chosen way costs, and what each r
         }
     }
 }
+
+}  // namespace structure_decisions_test

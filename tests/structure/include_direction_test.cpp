@@ -6,6 +6,8 @@
 #include <regex>
 #include <set>
 
+namespace structure_include_direction_test {
+
 namespace {
 
 using namespace aeolis::structure;
@@ -220,3 +222,5 @@ TEST_CASE(
     INFO(broken);
     CHECK(broken.empty());
 }
+
+}  // namespace structure_include_direction_test

@@ -5,6 +5,8 @@
 #include <map>
 #include <sstream>
 
+namespace structure_public_headers_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -76,3 +78,5 @@ TEST_CASE("every exception has a reason and is still needed", "[structure]") {
     INFO(stale);
     CHECK(stale.empty());
 }
+
+}  // namespace structure_public_headers_test

@@ -10,6 +10,8 @@
 #include <regex>
 #include <set>
 
+namespace structure_verification_matrix_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -136,3 +138,5 @@ TEST_CASE("every test that the verification matrix names runs, and carries the r
     INFO(wrong);
     CHECK(wrong.empty());
 }
+
+}  // namespace structure_verification_matrix_test

@@ -3,6 +3,8 @@
 
 #include "tests/support/catch.hpp"
 
+namespace telemetry_alarm_desk_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using dictionary::Severity;
@@ -103,3 +105,5 @@ TEST_CASE("the words of acts read back", "[alarms]") {
         CHECK(alarm_act(name_of(act)) == act);
     CHECK_FALSE(alarm_act("forget").has_value());
 }
+
+}  // namespace telemetry_alarm_desk_test

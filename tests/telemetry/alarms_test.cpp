@@ -5,6 +5,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace telemetry_alarms_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using dictionary::Severity;
@@ -150,3 +152,5 @@ TEST_CASE("the shipped dictionary has limits by phase for load and descent rate,
     CHECK(latches(shipped.channel("sensed_deceleration_g")->type.alarms));
     CHECK_FALSE(latches(shipped.channel("descent_rate_mps")->type.alarms));
 }
+
+}  // namespace telemetry_alarms_test

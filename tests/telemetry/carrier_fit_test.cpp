@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+namespace telemetry_carrier_fit_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -53,3 +55,5 @@ TEST_CASE("in noise alone a fit's energy passes 13 about once in 200 looks", "[t
     }
     CHECK(passed <= 20);
 }
+
+}  // namespace telemetry_carrier_fit_test

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+namespace telemetry_carrier_search_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::samples_of;
@@ -68,3 +70,5 @@ TEST_CASE("noise, silence and what is no number hold no carrier", "[tones]") {
         CHECK_FALSE(in_broken.push(broken));
     }
 }
+
+}  // namespace telemetry_carrier_search_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace telemetry_carrier_tracker_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::mfsk;
@@ -84,3 +86,5 @@ TEST_CASE("a weak carrier is followed by longer looks", "[tones]") {
     CHECK(found > 290);
     CHECK(hops[500].lock == CarrierLock::fluctuating);
 }
+
+}  // namespace telemetry_carrier_tracker_test

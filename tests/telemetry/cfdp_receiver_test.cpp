@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <deque>
 
+namespace telemetry_cfdp_receiver_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -200,3 +202,5 @@ TEST_CASE("a transaction begins with a PDU from a sender of class 2 whose ids we
     CHECK_FALSE(reception_of({.unacknowledged = true, .source = 76}));
     CHECK_FALSE(reception_of({.source = 0x10000}));
 }
+
+}  // namespace telemetry_cfdp_receiver_test

@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace telemetry_clock_kernel_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -111,3 +113,5 @@ TEST_CASE("a clock that cannot be is refused with file and line", "[telemetry][k
     CHECK(fault("SCLK_DATA_TYPE_9 = ( 1 )", "SCLK_DATA_TYPE_8 = 1\nSCLK_DATA_TYPE_9 = 1") ==
           "clock.tsc:4: SCLK_DATA_TYPE_9 is the clock of a second spacecraft: give a kernel of one");
 }
+
+}  // namespace telemetry_clock_kernel_test

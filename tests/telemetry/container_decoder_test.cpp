@@ -10,6 +10,8 @@
 #include <iterator>
 #include <map>
 
+namespace telemetry_container_decoder_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 namespace xtce = aeolis::dictionary::xtce;
@@ -361,3 +363,5 @@ TEST_CASE("a value is undefined where the condition of its validity does not hol
     CHECK(text(decoder.decode(test::hex("0109"))) == "flag=1|1 x=9|9");
     CHECK(text(decoder.decode(test::hex("0009"))) == "flag=0|0 x=9|undefined");
 }
+
+}  // namespace telemetry_container_decoder_test

@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+namespace telemetry_decommutator_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -198,3 +200,5 @@ TEST_CASE("every packet of the shipped dictionary is decoded, whatever its field
         }
     }
 }
+
+}  // namespace telemetry_decommutator_test

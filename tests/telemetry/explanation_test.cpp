@@ -8,6 +8,8 @@
 
 #include <array>
 
+namespace telemetry_explanation_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -180,3 +182,5 @@ TEST_CASE("the shipped dictionary's explanations have what is told of them", "[e
     REQUIRE(explanation->conditions.size() == 4);
     CHECK(explanation->text.find("speed 2.0 m/s <= 3.0 m/s") != std::string::npos);
 }
+
+}  // namespace telemetry_explanation_test

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+namespace telemetry_frame_receiver_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -113,3 +115,5 @@ TEST_CASE("the length of frames is found from the markers, and from the CRC wher
     CHECK(crc_frame_octets(std::span{bare}.first(length + 2), 2) == length);
     CHECK_FALSE(crc_frame_octets(std::span{bare}.first(length), 2));
 }
+
+}  // namespace telemetry_frame_receiver_test

@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace telemetry_leap_seconds_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -66,3 +68,5 @@ TEST_CASE("a table of leap seconds that cannot be is refused with file and line"
     CHECK(fault("12, @1973-JAN-1", "1e9, @1973-JAN-1") == "k.tls:7: DELTET/DELTA_AT holds no possible number");
     CHECK(fault("( 6.239996D0 1.99096871D-7 )", "6.2") == "k.tls:6: DELTET/M has 1 values where 2 are wanted");
 }
+
+}  // namespace telemetry_leap_seconds_test

@@ -2,6 +2,8 @@
 #include "telemetry/link_counters.hpp"
 #include "tests/support/catch.hpp"
 
+namespace telemetry_link_counters_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -39,3 +41,5 @@ TEST_CASE("a rate is the mean of the last ten whole seconds, and falls to zero w
     meter.add(at(1990.0), 10);
     CHECK(meter.per_second(at(2001.0)) == 2.0);
 }
+
+}  // namespace telemetry_link_counters_test

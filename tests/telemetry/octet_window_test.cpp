@@ -3,6 +3,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/octets.hpp"
 
+namespace telemetry_octet_window_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -28,3 +30,5 @@ TEST_CASE("an octet is found where it first stands, or not at all", "[telemetry]
     CHECK(find_octet(octets, 9) == 5);
     CHECK(find_octet({}, 9) == 0);
 }
+
+}  // namespace telemetry_octet_window_test

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <memory>
 
+namespace telemetry_other_mission_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -118,3 +120,5 @@ TEST_CASE("two parameters of one name in different systems are two channels", "[
     CHECK(mission->dictionary().channel("T/B/x") != nullptr);
     CHECK(mission->dictionary().packet("T/B/P") != nullptr);
 }
+
+}  // namespace telemetry_other_mission_test

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <set>
 
+namespace telemetry_packet_extractor_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -151,3 +153,5 @@ TEST_CASE("frames of any content: nothing outside them is read, and it goes on w
     extractor.add(frame, true);
     CHECK(all(extractor) == std::vector<Octets>{good});
 }
+
+}  // namespace telemetry_packet_extractor_test

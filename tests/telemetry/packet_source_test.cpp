@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace telemetry_packet_source_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -152,3 +154,5 @@ TEST_CASE("each format has its name, and no other name a format", "[telemetry]")
     CHECK_FALSE(downlink_format("CADU"));
     CHECK_FALSE(downlink_format(""));
 }
+
+}  // namespace telemetry_packet_source_test

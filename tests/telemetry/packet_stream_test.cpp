@@ -6,6 +6,8 @@
 
 #include <random>
 
+namespace telemetry_packet_stream_test {
+
 using namespace aeolis;
 using aeolis::telemetry::PacketStream;
 using aeolis::tests::PacketFiller;
@@ -63,3 +65,5 @@ TEST_CASE("whatever the octets are, each is in a packet or counted as unreadable
         REQUIRE(sum + stream.unreadable_octets() == octets.size());
     }
 }
+
+}  // namespace telemetry_packet_stream_test

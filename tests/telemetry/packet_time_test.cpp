@@ -2,6 +2,8 @@
 #include "telemetry/packet_time.hpp"
 #include "tests/support/kernels.hpp"
 
+namespace telemetry_packet_time_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -24,3 +26,5 @@ TEST_CASE("a packet's time is UTC as far as kernels are given, else a number", "
     CHECK(time_text({1722921512.0, "TAI"}, leaps) == "2012-219T05:17:57.000");
     CHECK(time_text({12.0, "J2000"}, both) == "12");  // of which scale the file does not say
 }
+
+}  // namespace telemetry_packet_time_test

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+namespace telemetry_pltu_receiver_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -140,3 +142,5 @@ TEST_CASE("any octets at all: each is used or skipped, and the search comes to a
         CHECK(in_frames + receiver.counters().skipped_octets == stream.size());
     }
 }
+
+}  // namespace telemetry_pltu_receiver_test

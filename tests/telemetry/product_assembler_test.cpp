@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <random>
 
+namespace telemetry_product_assembler_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -164,3 +166,5 @@ TEST_CASE("the rows of a product are read by the container that it names", "[pro
     CHECK_FALSE(rows_of(dictionary, container.apid, content));
     CHECK_FALSE(rows_of(dictionary, Apid{0x7FE}, content));
 }
+
+}  // namespace telemetry_product_assembler_test

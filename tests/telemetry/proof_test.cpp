@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace telemetry_proof_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -55,3 +57,5 @@ TEST_CASE("what could not be compared is no proof", "[proof]") {
     units.add(status(1.0, 1), Path::recorded);
     CHECK_FALSE(prove(units).holds());
 }
+
+}  // namespace telemetry_proof_test

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+namespace telemetry_proximity_packets_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -97,3 +99,5 @@ TEST_CASE("segments without end cost no more than one largest packet", "[telemet
     CHECK(packets.counters().cut_packets == 1);
     CHECK(packets.counters().unreadable_octets == 1001 * part.size());
 }
+
+}  // namespace telemetry_proximity_packets_test

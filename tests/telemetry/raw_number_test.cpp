@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace telemetry_raw_number_test {
+
 using namespace aeolis::telemetry;
 using aeolis::dictionary::xtce::Coding;
 using Form = Coding::Form;
@@ -56,3 +58,5 @@ TEST_CASE("real numbers of 16, 32 and 64 bits, and of MIL-STD-1750A", "[telemetr
     CHECK(number<double>(0x80000000, 32, Form::mil1750a) == -1.0);
     CHECK(number<double>(0x600000FF, 32, Form::mil1750a) == 0.375);
 }
+
+}  // namespace telemetry_raw_number_test

@@ -2,6 +2,8 @@
 #include "telemetry/mfsk/spectrum.hpp"
 #include "tests/support/catch.hpp"
 
+namespace telemetry_spectrum_test {
+
 using namespace aeolis::telemetry;
 
 TEST_CASE("lengths for the transform have no prime factor above 5", "[tones]") {
@@ -19,3 +21,5 @@ TEST_CASE("a parabola's peak lies within half a step, and a valley has none", "[
     CHECK(peak_offset(2.0, 1.0, 2.0) == 0.0);
     CHECK(peak_offset(1.0, 1.0, 1.0) == 0.0);
 }
+
+}  // namespace telemetry_spectrum_test

@@ -4,6 +4,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace telemetry_staleness_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -203,3 +205,5 @@ TEST_CASE("a packet that was stale tells nothing of the link's losses, and old l
     const auto before = ground.changes.size();
     CHECK(ground.after(599.0 + 8.5) == before + 1);
 }
+
+}  // namespace telemetry_staleness_test

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+namespace telemetry_symbol_error_test {
+
 using namespace aeolis::telemetry;
 
 TEST_CASE("two tones err by e^(-E/2)/2, as the closed form says", "[tones]") {
@@ -31,3 +33,5 @@ TEST_CASE("256 tones of 10 s need 2.36, 3.53, 4.41 and 5.11 dB-Hz for 1e-2 to 1e
               Approx(needed_dbhz[i]).margin(0.005));
     CHECK(symbol_error(0.0, 256) == Approx(255.0 / 256.0).epsilon(1e-4));
 }
+
+}  // namespace telemetry_symbol_error_test

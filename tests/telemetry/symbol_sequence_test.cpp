@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace telemetry_symbol_sequence_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -112,3 +114,5 @@ TEST_CASE("a symbol that could be either of two tones is erased", "[tones]") {
     CHECK_FALSE(out[0].tone);
     CHECK(out[0].evidence.best[0].likelihood == Approx(0.5).margin(0.01));
 }
+
+}  // namespace telemetry_symbol_sequence_test

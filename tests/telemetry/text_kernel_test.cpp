@@ -4,6 +4,8 @@
 
 #include <random>
 
+namespace telemetry_text_kernel_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -87,3 +89,5 @@ TEST_CASE("any cut and any spoilt octet of a kernel gives a kernel or a fault wi
         REQUIRE(readable(spoilt));
     }
 }
+
+}  // namespace telemetry_text_kernel_test

@@ -5,6 +5,8 @@
 #include "tests/support/shipped_dictionary.hpp"
 #include "tests/support/small_dictionary.hpp"
 
+namespace telemetry_text_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -95,3 +97,5 @@ TEST_CASE("every event of the shipped dictionary reads as a sentence without bra
         CHECK(text.find('{') == std::string::npos);
     }
 }
+
+}  // namespace telemetry_text_test

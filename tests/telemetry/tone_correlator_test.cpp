@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace telemetry_tone_correlator_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::mfsk;
@@ -41,3 +43,5 @@ TEST_CASE("noise of deviation 1 gives each tone as much energy as there are samp
     }
     CHECK(energy == Approx(512.0).epsilon(0.03));
 }
+
+}  // namespace telemetry_tone_correlator_test

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+namespace telemetry_tone_evidence_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -61,3 +63,5 @@ TEST_CASE("a symbol is likelier than none when it is there, and less likely when
     CHECK(spectrum_db(strong.spectrum[100]) == Approx(10.0 * std::log10(300.0)).margin(1.5));  // energy over noise
     CHECK(weigh(ToneSums{}, 0.0).log_likelihood_ratio == Approx(0.0).margin(1e-9));
 }
+
+}  // namespace telemetry_tone_evidence_test

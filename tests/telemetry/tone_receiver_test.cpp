@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+namespace telemetry_tone_receiver_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::simulation::SentTone;
@@ -202,3 +204,5 @@ TEST_CASE("as the signal fades the lock says so before it is lost", "[tones]") {
     CHECK(fluctuated);
     CHECK(ear.status().lock == CarrierLock::searching);
 }
+
+}  // namespace telemetry_tone_receiver_test

@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+namespace telemetry_unit_identity_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 using aeolis::tests::PacketFiller;
@@ -93,3 +95,5 @@ TEST_CASE("the counts agree with sets kept by hand", "[unit_identity][property]"
     CHECK(units.counts().both == both);
     CHECK(units.counts().differs == differs);
 }
+
+}  // namespace telemetry_unit_identity_test

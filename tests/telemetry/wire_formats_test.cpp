@@ -16,6 +16,8 @@
 #include <unistd.h>
 #include <vector>
 
+namespace telemetry_wire_formats_test {
+
 using namespace aeolis;
 
 namespace {
@@ -126,3 +128,5 @@ TEST_CASE("tshark reads the files in which the recording comes down, and what gr
                              "cfdp.direction -e cfdp.fdtype "
                              "-e cfdp.offset -e cfdp.file_size -e cfdp.nak_st_scope -e cfdp.nak_sp_scope") == expected);
 }
+
+}  // namespace telemetry_wire_formats_test

@@ -3,16 +3,17 @@
 #include "server/access/account_file.hpp"
 #include "server/access/network.hpp"
 #include "server/access/secrets.hpp"
-#include "server/net/console_backend.hpp"
-#include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+namespace access_access_test {
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -108,21 +109,6 @@ TEST_CASE("who changes the accounts waits until another process has done so, and
     REQUIRE(all);
     CHECK(all->accounts_size() == 1 + each);
     CHECK(all->tokens_size() == each);
-}
-
-TEST_CASE("a server that does not come up makes no account: the one that does tells the first password", "[access]") {
-    test::TemporaryFolder folder;
-    ConsoleBackend::Settings settings;
-    settings.accounts = folder / "accounts.json";
-    settings.archive = folder / "no_archive";
-    settings.web = settings.scenarios = folder / "";
-    std::ofstream{settings.archive} << "not an archive";
-    CHECK_FALSE(ConsoleBackend::open(settings, tests::shipped_dictionary()));
-    CHECK_FALSE(std::filesystem::exists(settings.accounts));
-    settings.archive = folder / "a.db";
-    const auto backend = ConsoleBackend::open(settings, tests::shipped_dictionary());
-    REQUIRE(backend);
-    CHECK_FALSE((*backend)->first_password().empty());
 }
 
 TEST_CASE("without accounts browsers are told apart, and all programs without a cookie are one", "[access]") {
@@ -366,3 +352,5 @@ TEST_CASE("a password's hash matches that password only, and no hash matches not
     CHECK(secret_hash("abc") ==
           "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4, example B.1
 }
+
+}  // namespace access_access_test

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+namespace archive_expression_test {
+
 using aeolis::archive::Expression;
 
 namespace {
@@ -49,3 +51,5 @@ TEST_CASE("a formula only computes: it assigns nothing, holds no texts, gives on
     for (int i = 1; i <= 16; ++i) many += "+c" + std::to_string(i);
     CHECK_THAT(refusal(many), Catch::Contains("more than 16 channels"));
 }
+
+}  // namespace archive_expression_test

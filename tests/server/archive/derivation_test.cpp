@@ -7,6 +7,8 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+namespace archive_derivation_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using archive::Archive;
@@ -226,3 +228,5 @@ TEST_CASE("an archive is not rebuilt while another writes it, and one that is no
     CHECK_FALSE(pipeline::verify(none, {}, recorded.dictionary, nullptr, recorded.folder / "").ok());
     CHECK_FALSE(std::filesystem::exists(none));
 }
+
+}  // namespace archive_derivation_test

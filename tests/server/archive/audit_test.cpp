@@ -6,6 +6,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
+namespace archive_audit_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 
@@ -75,3 +77,5 @@ TEST_CASE("no two entries of the audit that differ are hashed alike by moving wh
     two.from = "bc";
     CHECK(audit_hash("", one) != audit_hash("", two));
 }
+
+}  // namespace archive_audit_test

@@ -11,6 +11,8 @@
 #include <limits>
 #include <random>
 
+namespace archive_sample_walk_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 
@@ -139,3 +141,5 @@ TEST_CASE("a segment or block that is damaged is named, not plotted", "[archive]
         CHECK(refusal(100).find("of the pyramid is damaged") != std::string::npos);
     }
 }
+
+}  // namespace archive_sample_walk_test

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+namespace archive_segments_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 using pipeline::SegmentBuilder;
@@ -116,3 +118,5 @@ TEST_CASE("a stored column tells its least, largest, first and last defined valu
     CHECK(rows->integer(0) == 0);
     CHECK(rows->is_null(1));
 }
+
+}  // namespace archive_segments_test

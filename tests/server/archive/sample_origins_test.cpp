@@ -6,6 +6,8 @@
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
+namespace archive_sample_origins_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using archive::Reader;
@@ -124,3 +126,5 @@ TEST_CASE("of one source a series tells the gaps of that source", "[reader][arch
     CHECK(text_of(landing.series({1010.0, 1040.0}, archive::Source::recorded)) ==
           "15 recorded relay never_seen_live 1020-1034; gap 1010-1020 ; gap 1034-1040 ; ");
 }
+
+}  // namespace archive_sample_origins_test

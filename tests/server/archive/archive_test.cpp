@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace archive_archive_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 using test::TemporaryFolder;
@@ -233,3 +235,5 @@ TEST_CASE("a run that was cut off is marked interrupted, with its last sequence 
     CHECK(archive->interrupted().front() == RunId{1});
     CHECK(ask(file, "SELECT last_seq FROM runs WHERE state = 'interrupted'") == 8);
 }
+
+}  // namespace archive_archive_test

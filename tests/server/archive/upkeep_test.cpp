@@ -13,6 +13,8 @@
 #include <fstream>
 #include <thread>
 
+namespace archive_upkeep_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using namespace aeolis::archive;
@@ -228,3 +230,5 @@ TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a 
     REQUIRE(after->notes.size() == 1);  // nothing but that the rebuilds are in the audit
     CHECK_THAT(after->notes[0], Catch::StartsWith("audit: "));
 }
+
+}  // namespace archive_upkeep_test

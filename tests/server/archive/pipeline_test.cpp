@@ -11,6 +11,8 @@
 #include <sys/resource.h>
 #include <sys/wait.h>
 
+namespace archive_pipeline_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using archive::Archive;
@@ -619,3 +621,5 @@ TEST_CASE("kill -9 takes back nothing that was acknowledged", "[pipeline][archiv
     REQUIRE(series.ok());
     CHECK(series->channels(0).samples() == after / 2);  // sealed segments and the open tail together
 }
+
+}  // namespace archive_pipeline_test

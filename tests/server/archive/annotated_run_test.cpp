@@ -8,6 +8,8 @@
 
 #include <atomic>
 
+namespace archive_annotated_run_test {
+
 // Alarms, what was done about them, notes and the words of all in one archive: over restart, rebuild and a second
 // flight.
 
@@ -407,3 +409,5 @@ TEST_CASE("a question ends soon after it shall stop, says so, and the next one i
     CHECK_FALSE(reader.stopped());
     CHECK(reader.proof(first_run).ok());
 }
+
+}  // namespace archive_annotated_run_test

@@ -9,6 +9,8 @@
 #include <limits>
 #include <random>
 
+namespace archive_column_codec_test {
+
 using namespace aeolis;
 using archive::ColumnCodec;
 
@@ -158,3 +160,5 @@ TEST_CASE("octets that were never a packed column are refused", "[archive][codec
         REQUIRE_FALSE(ok);
     }
 }
+
+}  // namespace archive_column_codec_test

@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+namespace archive_reader_test {
+
 using namespace aeolis;
 using namespace aeolis::test;
 using archive::Archive;
@@ -458,3 +460,5 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
     REQUIRE(reader.packets(RunId{1}, missing)->packets_size() == 1);
     CHECK(reader.packets(RunId{1}, missing)->packets(0).unit().sclk() == 1005.0);
 }
+
+}  // namespace archive_reader_test

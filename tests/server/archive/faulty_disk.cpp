@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/server/faulty_disk.hpp"
+#include "tests/server/archive/faulty_disk.hpp"
 
 #include "common/check.hpp"
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+namespace archive_timeline_plan_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 
@@ -75,3 +77,5 @@ TEST_CASE("it is the design that is given which predicts, not the one of the dic
     const auto predicted = predicted_from_entry_s(dictionary, design_e_s, Heard(dictionary.timeline.size()));
     CHECK(predicted[row_of(dictionary, "parachute_deploy")] == 260.0);
 }
+
+}  // namespace archive_timeline_plan_test

@@ -8,6 +8,8 @@
 #include <map>
 #include <random>
 
+namespace archive_pyramid_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 
@@ -100,3 +102,5 @@ TEST_CASE("nodes come back from their octets as they were", "[archive][pyramid]"
     CHECK(octets.size() == nodes.size() * pyramid::node_octets);
     for (std::size_t i = 0; i < nodes.size(); ++i) CHECK(same(pyramid::node_of(octets, nodes.size(), i), nodes[i]));
 }
+
+}  // namespace archive_pyramid_test

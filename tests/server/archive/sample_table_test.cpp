@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 
+namespace archive_sample_table_test {
+
 using namespace aeolis;
 using namespace aeolis::archive;
 
@@ -42,3 +44,5 @@ TEST_CASE("samples become rows that plain SQL reads, in a file that is whole or 
     CHECK_FALSE(*rows->step());
     CHECK(SampleTable::create(file).error().message == file.string() + " is there already: nothing is overwritten");
 }
+
+}  // namespace archive_sample_table_test
