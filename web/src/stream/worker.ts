@@ -299,7 +299,7 @@ async function fetchHistory(all = true, live = false): Promise<void> {
           ),
         );
         if (run !== currentRun) return;
-        post({ type: 'history', run, names: some, columns }, columns);
+        post({ type: 'history', run, names: some, columns, live }, columns);
       }
     }
   } catch (error) {
