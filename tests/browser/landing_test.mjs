@@ -162,7 +162,7 @@ test('whoever only does what the guide says lands it, and once put away the guid
   timeout: 480_000,
 }, async (t) => {
   const server = await serve(t, 'guide', ['--scenario', 'nominal']);
-  const { page, problems, text, shows } = await open(server.address);
+  const { page, problems, shows } = await open(server.address);
   await shows('guide', /Tell the vehicle where it is/);
   for (const title of [/Tell the vehicle where it is/, /read it/, /Let it begin/, /read it/, /EDL_DO_EDL/]) {
     await shows('guide', title);

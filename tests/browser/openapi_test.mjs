@@ -119,7 +119,7 @@ test('during a live run every route answers as it says, and the examples of the 
       answer
         .split('\n')
         .filter(Boolean)
-        .forEach((line) => JSON.parse(line));
+        .map((line) => JSON.parse(line));
     else JSON.parse(answer);
   }
   const { wrong, statuses } = await callAll({}, ['delete /api/v1/rehearsals/current']);

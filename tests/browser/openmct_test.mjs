@@ -104,7 +104,7 @@ const ask = (port, path, { method = 'GET', headers = {} } = {}) =>
       },
     );
     asked
-      .on('upgrade', (answer, socket) => {
+      .on('upgrade', (_, socket) => {
         socket.destroy();
         resolve('a socket');
       })

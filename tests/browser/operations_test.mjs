@@ -46,7 +46,7 @@ test('the page of operations leads from a secured server with two users to a reh
   const given = /<<'END'\n(.*?)^END$/ms.exec(settings)[1];
   writeFileSync(
     path.join(folder, 'aeolis.conf'),
-    here(given).replace(/listen=\S+/, 'listen=127.0.0.1:0') + `archive=${path.join(state, 'aeolis.db')}\n`,
+    `${here(given).replace(/listen=\S+/, 'listen=127.0.0.1:0')}archive=${path.join(state, 'aeolis.db')}\n`,
   );
   const server = spawn(program, ['serve', '--config', 'aeolis.conf'], {
     cwd: folder,
@@ -78,7 +78,7 @@ test('the page of operations leads from a secured server with two users to a reh
   const made = run(way_in);
   const secret = /"token":"([^"]+)"/.exec(made)?.[1];
   assert.ok(secret, `a token has its secret in the answer: ${made}`);
-  const known = way_in.split('\n').slice(0, 2).join('\n') + '\n';
+  const known = `${way_in.split('\n').slice(0, 2).join('\n')}\n`;
   const audit = run(known + with_secret.replace('SECRET', secret));
   for (const word of ['dina', 'carl', 'exporter', 'log-in']) assert.match(audit, new RegExp(word));
 

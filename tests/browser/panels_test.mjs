@@ -46,6 +46,19 @@ before(async () => {
   );
 });
 
+/** Pairs of texts of which one lies over the other: by more than a pixel across, and by more than `least_px` in height. */
+const overlapping = (texts, least_px) =>
+  texts.flatMap((one, i) =>
+    texts
+      .slice(i + 1)
+      .filter(
+        (other) =>
+          Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1 &&
+          Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > least_px,
+      )
+      .map((other) => [one, other]),
+  );
+
 test('axe finds nothing on any panel in both themes, and each panel says its mode', { timeout: 400_000 }, async () => {
   const found = [];
   const { page, problems, shows } = await open(server.address);
@@ -651,7 +664,9 @@ function keepWhatIsWritten() {
       actualBoundingBoxAscent: up,
       actualBoundingBoxDescent: down,
     } = this.measureText(words);
-    (window.written[name(this)] ??= []).push({
+    const canvas = name(this);
+    window.written[canvas] ??= [];
+    window.written[canvas].push({
       words,
       x,
       left: x - left,
@@ -706,15 +721,8 @@ test('after landing height and speed say whose they are, and no word of the desc
       ).length >= 3,
       written.map((each) => each.words).join(),
     );
-    written.forEach((one, i) =>
-      written.slice(i + 1).forEach((other) => {
-        if (
-          Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1 &&
-          Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 1
-        )
-          found.push(`${width}: “${one.words}” lies over “${other.words}”`);
-      }),
-    );
+    for (const [one, other] of overlapping(written, 1))
+      found.push(`${width}: “${one.words}” lies over “${other.words}”`);
   }
   assert.deepEqual(found, []);
   assert.deepEqual(problems, []);
@@ -785,15 +793,7 @@ test('nothing in the header lies over another or is cut off, with alarms standin
       .join(' ');
     for (const words of [/connected/, /complete through/, /2 to acknowledge/, /E\+00:0/])
       if (!words.test(whole)) found.push(`${width}: ${words} is cut off`);
-    texts.forEach((one, i) =>
-      texts.slice(i + 1).forEach((other) => {
-        if (
-          Math.min(one.right, other.right) - Math.max(one.left, other.left) > 1 &&
-          Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top) > 4
-        )
-          found.push(`${width}: “${one.words}” lies over “${other.words}”`);
-      }),
-    );
+    for (const [one, other] of overlapping(texts, 4)) found.push(`${width}: “${one.words}” lies over “${other.words}”`);
     for (const text of texts) if (text.right > width) found.push(`${width}: “${text.words}” is beyond the edge`);
   }
   assert.deepEqual(found, []);
@@ -1114,10 +1114,9 @@ for (const [panel, tables] of [
             .evaluateAll((heads) => heads.map((head) => head.getBoundingClientRect().left));
         const before = await places();
         for (const words of ['', '8', '1234567890 '.repeat(8)]) {
-          await rows.evaluateAll(
-            (all, filling) => all.forEach((row) => [...row.cells].forEach((cell) => (cell.textContent = filling))),
-            words,
-          );
+          await rows.evaluateAll((all, filling) => {
+            for (const cell of all.flatMap((row) => [...row.cells])) cell.textContent = filling;
+          }, words);
           assert.deepEqual(await places(), before, `${table}, ${width} px, with '${words}'`);
         }
       }

@@ -158,7 +158,10 @@ function takeRun(run: RunState | undefined): void {
   if (!run || run.run === 0n) return;
   const known = store.value;
   if (known?.id === Number(run.run)) {
-    if (!isSameRun(known.run, run)) return takeOtherArchive();
+    if (!isSameRun(known.run, run)) {
+      takeOtherArchive();
+      return;
+    }
     inDoubt.value = false;
     known.update(run);
   } else if (watched.value === 0 && known && pastRange.value) {
@@ -336,5 +339,5 @@ export function useForTest(
 }
 
 effect(() => {
-  document.documentElement.dataset['stream'] = stream.value.state;
+  document.documentElement.dataset.stream = stream.value.state;
 });

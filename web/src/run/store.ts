@@ -303,7 +303,10 @@ export class RunStore {
   private series(column: Column): Series {
     const all = column.recorded ? this.recorded : this.live;
     let series = all.get(column.id);
-    if (!series) all.set(column.id, (series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN)));
+    if (!series) {
+      series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN);
+      all.set(column.id, series);
+    }
     return series;
   }
 
@@ -385,8 +388,10 @@ export class RunStore {
   private addStage(stage: CommandStage): void {
     const number = Number(stage.command);
     let row = this.commands.get(number);
-    if (!row)
-      this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
+    if (!row) {
+      row = { command: number, name: stage.name, arguments: '', stages: new Map() };
+      this.commands.set(number, row);
+    }
     if (stage.name) row.name = stage.name;
     if (stage.arguments) row.arguments = stage.arguments;
     row.stages.set(stage.stage, [...(row.stages.get(stage.stage) ?? []), stage]);
@@ -410,7 +415,10 @@ export class RunStore {
     const heard = this.lastUnit.sclk;
     if (!(heard - unit.sclk > LATE_S)) return;
     let late = this.late.get(unit.name);
-    if (!late) this.late.set(unit.name, (late = { sclk: [], heard: [] }));
+    if (!late) {
+      late = { sclk: [], heard: [] };
+      this.late.set(unit.name, late);
+    }
     if (late.sclk.length === LATE_LIMIT) this.forgetLate(unit.name, late);
     late.sclk.push(unit.sclk);
     late.heard.push(heard);
