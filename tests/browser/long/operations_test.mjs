@@ -6,7 +6,7 @@ import { once } from 'node:events';
 import { mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
-import { program, root, temporaryFolder } from './support.mjs';
+import { program, root, temporaryFolder } from '../support.mjs';
 
 const page = readFileSync(path.join(root, 'docs/operations.md'), 'utf8');
 /** The lines of shell under a heading. */
@@ -16,9 +16,7 @@ const shell_of = (heading) => {
   return [...section.matchAll(/^```sh\n(.*?)^```$/gms)].map((block) => block[1]);
 };
 
-test('the page of operations leads from a secured server with two users to a rehearsal, an export and a campaign', {
-  timeout: 180_000,
-}, async (t) => {
+test('the page of operations leads from a secured server with two users to a rehearsal, an export and a campaign', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const state = path.join(folder, 'state');

@@ -22,7 +22,7 @@ import { basename, dirname, join, resolve } from 'node:path';
 import test from 'node:test';
 
 const program = resolve(process.env.AEOLIS_PROGRAM ?? 'build/release/aeolis');
-const page = readFileSync(resolve(import.meta.dirname, '../../docs/operations.md'), 'utf8');
+const page = readFileSync(resolve(import.meta.dirname, '../../../docs/operations.md'), 'utf8');
 const folder = mkdtempSync(join(tmpdir(), 'aeolis-package-'));
 test.after(() => rmSync(folder, { recursive: true, force: true }));
 
