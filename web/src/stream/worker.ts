@@ -149,9 +149,9 @@ async function watchSilence(): Promise<void> {
   if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
   lookAt_ms = performance.now() + SILENT_MS;
   // A real venue is silent when nothing comes, and a rehearsal waits while its archive takes nothing.
-  const speaks =
-    state === 'live' && known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
-  if (answers && !(speaks && looks >= LOOKS)) return;
+  // What has been asked of it, to open or to bring what is there, it owes in any case.
+  const speaks = known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
+  if (answers && !((speaks || state !== 'live') && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
   lose(its);
