@@ -6,7 +6,7 @@ import { existsSync } from 'node:fs';
 import { request } from 'node:http';
 import path from 'node:path';
 import { test } from 'node:test';
-import { serve as serveOpenMct } from '../../web/openmct/serve.mjs';
+import { serve as serveOpenMct } from '../../../web/openmct/serve.mjs';
 import { browser, open, root, serve, temporaryFolder, waitFor } from '../support.mjs';
 
 const installed = existsSync(path.join(root, 'web/openmct/node_modules/openmct/dist/openmct.js'));

@@ -11,7 +11,7 @@ test('with tones alone the next moment, the phase, the count and the details go 
   const { page, problems, text, shows } = await open(server.address);
   await flyTo(server, -60);
   await shows('waiting', /Waiting for entry interface[^]*■ by tone, the last that was heard of: heartbeat/);
-  await flyTo(server, 240);
+  await flyTo(server, 258);
   await shows('phase-now', /Entry[^]*■ by tone/);
   await waitFor(
     () => text('waiting'),
@@ -39,7 +39,7 @@ test('the latest instant to send is that of the next timepoint one can reach, by
   const server = await serve(t, 'latest', ['--scenario', 'nominal_auto']);
   const { page, problems, text, shows } = await open(server.address);
   await shows('latest-send', /before coolant vent\s+E−13:46, in/);
-  await flyTo(server, -800);
+  await flyTo(server, -700);
   await shows('latest-send', /before entry antenna\s+E−10:40, in/);
   assert.match(await text('timepoints-fired'), /^[3-9] of/, 'timepoints have fired by then');
   assert.deepEqual(problems, []);
