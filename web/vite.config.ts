@@ -3,7 +3,7 @@ import type { Plugin } from 'vite';
 import { defineConfig } from 'vitest/config';
 
 // `npm run dev` shows the page from its sources; the server behind it is `aeolis serve`, at AEOLIS_SERVER.
-const server = process.env['AEOLIS_SERVER'] ?? 'http://127.0.0.1:8080';
+const server = process.env.AEOLIS_SERVER ?? 'http://127.0.0.1:8080';
 
 /** The page's first line imports the rest of its script: the document asks for all of it at once. */
 const preloadScript: Plugin = {

@@ -24,9 +24,7 @@ async function review(page, words) {
   await page.keyboard.press('Enter');
 }
 
-test('the ground says before it is sent what would become of a command, and refuses in place', {
-  timeout: 60_000,
-}, async (t) => {
+test('the ground says before it is sent what would become of a command, and refuses in place', async (t) => {
   const server = await serve(t, 'tried', ['--scenario', 'nominal_light_time']);
   const { page, problems, text, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
@@ -94,9 +92,7 @@ test('the ground says before it is sent what would become of a command, and refu
   await page.close();
 });
 
-test('what a changed offset would move is named and drawn before it is sent, and is gone with the form', {
-  timeout: 60_000,
-}, async (t) => {
+test('what a changed offset would move is named and drawn before it is sent, and is gone with the form', async (t) => {
   const server = await serve(t, 'moved', ['--scenario', 'nominal_light_time']);
   const { page, problems, text, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
@@ -125,9 +121,7 @@ test('what a changed offset would move is named and drawn before it is sent, and
   await page.close();
 });
 
-test('a held Enter chooses and goes no further, and nothing leaves before the ground has answered the review', {
-  timeout: 60_000,
-}, async (t) => {
+test('a held Enter chooses and goes no further, and nothing leaves before the ground has answered the review', async (t) => {
   const server = await serve(t, 'held', ['--scenario', 'nominal']);
   const { page, problems, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
@@ -150,9 +144,7 @@ test('a held Enter chooses and goes no further, and nothing leaves before the gr
   await page.close();
 });
 
-test('a failure of something else is a notice, and the command’s own answer is its answer', {
-  timeout: 60_000,
-}, async (t) => {
+test('a failure of something else is a notice, and the command’s own answer is its answer', async (t) => {
   const server = await serve(t, 'refusals', ['--scenario', 'nominal']);
   const { page, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
@@ -173,9 +165,7 @@ test('a failure of something else is a notice, and the command’s own answer is
   await page.close();
 });
 
-test('a command that needs a second person is asked for in one browser and approved in another, by somebody else', {
-  timeout: 60_000,
-}, async (t) => {
+test('a command that needs a second person is asked for in one browser and approved in another, by somebody else', async (t) => {
   const server = await serve(t, 'two_persons', ['--scenario', 'two_persons']);
   const [ann, bob] = [await open(server.address), await open(server.address)];
   await ann.shows('waiting', /set edl parameters/);
@@ -202,17 +192,14 @@ test('a command that needs a second person is asked for in one browser and appro
   await bob.page.keyboard.press('Tab');
   await bob.page.keyboard.press('Enter');
   await bob.shows('command-message', /#1 approved/);
-  for (const { page } of [ann, bob])
-    await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/, 30_000);
+  for (const { page } of [ann, bob]) await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
   await ann.page.getByRole('button', { name: 'EDL_SET_PARAMETERS #1' }).click();
   await ann.shows('command-details', /authorised[^]*bob/);
   assert.deepEqual([...ann.problems, ...bob.problems], []);
   await Promise.all([ann.page.close(), bob.page.close()]);
 });
 
-test('a command file is chosen, each of its commands looked at by the ground, and sent whole after one arming', {
-  timeout: 90_000,
-}, async (t) => {
+test('a command file is chosen, each of its commands looked at by the ground, and sent whole after one arming', async (t) => {
   const server = await serve(t, 'file', ['--scenario', 'nominal']);
   const { page, problems, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
@@ -249,7 +236,7 @@ test('a command file is chosen, each of its commands looked at by the ground, an
   await page.keyboard.press('Enter');
   await shows('file-message', /✓ all 2 taken: #1 to #2/);
   await shows('command-queue', /EDL_DO_EDL #2[^]*held until a controller releases it/);
-  await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/, 30_000);
+  await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'executed'), /ok/);
   assert.equal(await page.getByTestId('file-text').inputValue(), '', 'another Enter sends nothing');
   // What the ground refuses has a status that a browser logs by itself.
   assert.deepEqual(
@@ -259,20 +246,14 @@ test('a command file is chosen, each of its commands looked at by the ground, an
   await page.close();
 });
 
-test('commands are held, released, timed and cancelled by keyboard, and what the vehicle holds is compared field by field', {
-  timeout: 90_000,
-}, async (t) => {
+test('commands are held, released, timed and cancelled by keyboard, and what the vehicle holds is compared field by field', async (t) => {
   const server = await serve(t, 'queue', ['--scenario', 'nominal']);
   const { page, problems, text, shows } = await open(server.address);
   await shows('waiting', /set edl parameters/);
 
   // A hazardous command that would be refused is not armed.
   await review(page, 'do edl');
-  await shows(
-    'dry-run',
-    /✖ It would be refused: EDL_DO_EDL must not be sent now: parameters_received == 1: is 0/,
-    30_000,
-  );
+  await shows('dry-run', /✖ It would be refused: EDL_DO_EDL must not be sent now: parameters_received == 1: is 0/);
   await page.keyboard.press('Enter');
   await shows('command-message', /not armed: .*parameters_received/);
   assert.equal(await page.getByTestId('command-armed').count(), 0);
@@ -309,7 +290,7 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
   await waitFor(() => stageLook(page, 'NO_OP', 'released'), /failed/);
   await page.locator('[data-waiting="1"]').getByRole('button', { name: 'release' }).focus();
   await page.keyboard.press('Enter');
-  await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/, 30_000);
+  await waitFor(() => stageLook(page, 'EDL_SET_PARAMETERS', 'verified'), /ok/);
 
   await page.getByRole('button', { name: 'EDL_SET_PARAMETERS #1' }).focus();
   await page.keyboard.press('Enter');
@@ -331,14 +312,12 @@ test('commands are held, released, timed and cancelled by keyboard, and what the
   await waitFor(
     () => page.locator('[data-waiting="2"]').count(),
     (waiting) => waiting === 0,
-    30_000,
   );
   await waitFor(
     async () =>
       (await server.get('/runs/latest/commands')).commands.find((each) => each.command === '2').stages.at(-1)
         .command_stage,
     (stage) => stage.stage === 'executed' && stage.status === 'ok',
-    30_000,
   );
   assert.deepEqual(problems, []);
   await page.close();

@@ -70,7 +70,7 @@ export async function comparePicture(page, name, screenshot) {
       ];
 }
 
-const SETTLES_MS = 10_000;
+const SETTLES_MS = 60_000; // only what differs waits so long
 const RENEWED_AFTER_MS = 1500; // nothing is there to compare with: longer than history and a draw after it take
 
 /** Nothing once `what` looks as stored; else how it differs still. What a page asks for one after the other has come when it has come: on a busy machine that takes seconds. */

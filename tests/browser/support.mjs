@@ -16,7 +16,7 @@ const { chromium } = createRequire(path.join(root, 'web/package.json'))('playwri
 
 export const program =
   process.env.AEOLIS_PROGRAM ?? process.env.AEOLIS_BINARY ?? path.join(root, 'build/release/aeolis');
-const START_MS = 15_000;
+const DEADLINE_MS = 120_000; // ours: of anything that is waited for. Only what fails waits so long, and a busy machine fails nothing
 
 export async function temporaryFolder() {
   const folder = await mkdtemp(path.join(tmpdir(), 'aeolis-browser-'));
@@ -32,7 +32,10 @@ export async function serve({ archive, port = 0, more = [], web = path.join(root
   );
   let said = '';
   const address = await new Promise((resolve, reject) => {
-    const late = setTimeout(() => reject(new Error(`no address after ${START_MS} ms; it said: ${said}`)), START_MS);
+    const late = setTimeout(
+      () => reject(new Error(`no address after ${DEADLINE_MS} ms; it said: ${said}`)),
+      DEADLINE_MS,
+    );
     const listen = (chunk) => {
       said += chunk;
       const found = /http:\/\/127\.0\.0\.1:(\d+)/.exec(said);
@@ -105,6 +108,37 @@ export function workplace() {
   };
 }
 
+/** A landing that has been flown as fast as it goes: for tests that only look at it. It ends with the test `t`, or with the file. */
+export async function landed(serve, t) {
+  const server = await serve(t, 'landed', ['--scenario', 'nominal_auto', '--pace', '0']);
+  await waitFor(
+    async () => (await server.get('/runs')).runs[0]?.state,
+    (state) => state === 'finished',
+  );
+  return server;
+}
+
+/** Brings the rehearsal of `server` to `e_s` seconds from entry and holds it there: slower the nearer, so that a busy machine does not pass by. */
+export async function flyTo(server, e_s) {
+  const control = (body) =>
+    fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify(body) });
+  await control({ pause: false });
+  let pace;
+  await waitFor(
+    async () => {
+      const left_s = e_s - (await server.get('/runs')).runs[0].clocks.e_s;
+      const wanted = [100, 50, 20, 10, 5, 2, 1].find((each) => each * 2 <= left_s) ?? 1;
+      if (left_s > 0 && wanted !== pace) {
+        pace = wanted;
+        await control({ pace });
+      }
+      return left_s;
+    },
+    (left_s) => left_s <= 0,
+  );
+  await control({ pause: true });
+}
+
 /** A page that fails the test when its scripts do. */
 export async function open(chrome, address, size = { width: 1920, height: 1080 }, script = undefined) {
   const page = await chrome.newPage({ viewport: size });
@@ -116,7 +150,7 @@ export async function open(chrome, address, size = { width: 1920, height: 1080 }
     if (message.type() === 'error' && !/ERR_CONNECTION|WebSocket/.test(message.text()))
       problems.push(`${message.text()} ${message.location().url}`);
   });
-  page.setDefaultTimeout(20_000);
+  page.setDefaultTimeout(DEADLINE_MS);
   await page.goto(address);
   const text = (id) => page.getByTestId(id).innerText();
   return { page, problems, text, shows: (id, pattern, timeout) => waitFor(() => text(id), pattern, timeout) };
@@ -138,7 +172,7 @@ export async function findings(page, theme) {
 }
 
 /** Waits until what `read` gives matches; fails with what it was last. What could not be read does not match. */
-export async function waitFor(read, wanted, timeout_ms = 20_000) {
+export async function waitFor(read, wanted, timeout_ms = DEADLINE_MS) {
   const end = Date.now() + timeout_ms;
   const fits = (value) => (wanted instanceof RegExp ? wanted.test(value) : wanted(value));
   for (;;) {
@@ -156,11 +190,13 @@ export async function waitFor(read, wanted, timeout_ms = 20_000) {
   }
 }
 
-/** Waits until neither header nor panels nor pictures have moved for 150 ms, six seconds at most: what is measured after a resize is what stays. */
+/** Waits until neither header nor panels nor pictures have moved for ten frames: what is measured after a resize is what stays. */
 export async function comesToRest(page) {
   let before;
-  for (let tries = 0; tries < 40; ++tries) {
-    await page.waitForTimeout(150);
+  for (const end = Date.now() + DEADLINE_MS; Date.now() < end; ) {
+    await page.evaluate(async () => {
+      for (let frame = 0; frame < 10; ++frame) await new Promise(requestAnimationFrame);
+    });
     const now = await page.evaluate(() =>
       [...document.querySelectorAll('header, main, .panel, canvas')]
         .map((each) => Object.values(each.getBoundingClientRect().toJSON()).join())
@@ -226,7 +262,6 @@ export async function setPace(page, wanted) {
     await waitFor(
       () => page.getByTestId('pace').inputValue(),
       (value) => Number(value) !== now,
-      5_000,
     );
   }
   throw new Error(`the pace never became ${wanted}`);

@@ -13,7 +13,7 @@ import './style.css';
 const EMPTY_MS = 150; // ours: with no answer by then the page is shown without any, and says so
 
 void begin(); // before all else: while the server answers there is time for it
-document.documentElement.dataset['theme'] = localStorage.getItem('aeolis-theme') === 'light' ? 'light' : 'dark';
+document.documentElement.dataset.theme = localStorage.getItem('aeolis-theme') === 'light' ? 'light' : 'dark';
 const panel = new URL(location.href).searchParams.get('panel') ?? undefined;
 window.addEventListener('keydown', onKey);
 startLoop();

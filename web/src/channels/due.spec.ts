@@ -9,7 +9,13 @@ let shown: Map<number, number>;
 const stops: (() => void)[] = [];
 function rows(...places: number[]): void {
   shown = new Map(places.map((place) => [place, -1]));
-  for (const place of places) stops.push(effect(() => (whenDue(place), void shown.set(place, tick.peek()))));
+  for (const place of places)
+    stops.push(
+      effect(() => {
+        whenDue(place);
+        shown.set(place, tick.peek());
+      }),
+    );
 }
 const ticks = (count: number) => {
   for (let i = 0; i < count; ++i) tick.value += 1;
@@ -17,7 +23,7 @@ const ticks = (count: number) => {
 
 beforeEach(() => vi.useFakeTimers());
 afterEach(() => {
-  stops.splice(0).forEach((stop) => stop());
+  for (const stop of stops.splice(0)) stop();
   sight.value = { from: 0, to: Infinity };
   vi.useRealTimers();
 });

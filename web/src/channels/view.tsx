@@ -22,7 +22,7 @@ function Row({ channel, place }: { channel: DictionaryChannel; place: number }) 
   return (
     <tr class={`look-${row.look}`} data-testid={`channel-${row.name}`}>
       <td title={STATUS[row.look].word}>
-        <span class="shape" aria-label={STATUS[row.look].word}>
+        <span class="shape" role="img" aria-label={STATUS[row.look].word}>
           {STATUS[row.look].shape}
         </span>
       </td>
@@ -68,7 +68,7 @@ export function Channels() {
           {total > channels.length ? `, ${total} match` : ''}
         </span>
       </div>
-      <div class="table-scroll channels-scroll" ref={box} tabIndex={0} aria-label="channels">
+      <div class="table-scroll channels-scroll" ref={box} tabIndex={0} role="group" aria-label="channels">
         <table class="channels" data-testid="channel-table">
           <thead>
             <tr>

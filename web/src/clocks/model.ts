@@ -91,7 +91,7 @@ function radioLinks(store: RunStore, cutoff: number, lost: boolean): LinkLine[] 
   if (all.length <= FEW) return all;
   const names = [...store.links.keys()];
   const [own, others] = [[] as LinkLine[], [] as LinkLine[]];
-  all.forEach((line, i) => (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line));
+  for (const [i, line] of all.entries()) (['uhf_live', 'x_band'].includes(names[i] ?? '') ? own : others).push(line);
   const [missed, up, down] = (['lost', 'up', 'down'] as const).map((look) =>
     others.filter((line) => line.look === look),
   ) as [LinkLine[], LinkLine[], LinkLine[]];

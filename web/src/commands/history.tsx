@@ -196,11 +196,11 @@ function Details({
       </table>
       <ReadBack row={row} />
       {row.arguments && (
-        <p class="encoded" tabIndex={0} aria-label="arguments as sent">
+        <p class="encoded" tabIndex={0} role="group" aria-label="arguments as sent">
           {row.arguments}
         </p>
       )}
-      <p class="encoded" tabIndex={0} aria-label="octets as sent">
+      <p class="encoded" tabIndex={0} role="group" aria-label="octets as sent">
         {raw === undefined ? 'octets not known' : `${raw.length / 2} octets: ${raw.replace(/../g, '$& ')}`}
       </p>
     </div>

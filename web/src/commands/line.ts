@@ -153,7 +153,9 @@ export async function forward(): Promise<void> {
   }
   const wasArmed = step.value === 'armed';
   const sent = line.value;
-  const done = () => (line.value === sent ? (line.value = '') : undefined); // what was typed meanwhile is the next
+  const done = () => {
+    if (line.value === sent) line.value = ''; // what was typed meanwhile is the next
+  };
   step.value = 'sending';
   message.value = { good: undefined, text: `${command.name}: sending` };
   try {

@@ -228,13 +228,13 @@ function Told({ reply }: { reply: CommandReply }) {
           {reply.arguments && (
             <>
               <dt>as encoded</dt>
-              <dd class="encoded" tabIndex={0} aria-label="arguments as encoded">
+              <dd class="encoded" tabIndex={0}>
                 {reply.arguments}
               </dd>
             </>
           )}
           <dt>{octets} octets</dt>
-          <dd class="encoded" tabIndex={0} aria-label="octets">
+          <dd class="encoded" tabIndex={0}>
             {reply.octets.replace(/../g, '$& ')}
           </dd>
         </dl>
@@ -336,6 +336,7 @@ function Effect({ onKey }: Pick<Properties, 'onKey'>) {
   ];
   return (
     <details class="effect" data-testid="effect">
+      {/* biome-ignore lint/a11y/noStaticElementInteractions: a summary is interactive by itself */}
       <summary title={what + atMost} onKeyDown={(event) => event.key === 'Escape' && onKey(event)}>
         <b>{what}</b>
         {atMost}

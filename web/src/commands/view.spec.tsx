@@ -433,7 +433,9 @@ describe('the command line', () => {
       act(() => type('do edl'));
       await act(() => forward());
       await act(() => answered(forward()));
-      act(() => void (confirmation.value = 'EDL_DO_EDL'));
+      act(() => {
+        confirmation.value = 'EDL_DO_EDL';
+      });
       expect([step.value, heard.length]).toEqual(['armed', 1]);
     };
     await armed();

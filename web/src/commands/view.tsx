@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Commands: one line with completion; below it what would be sent, what waits, and what became of all that was.
+import type { ComponentChildren } from 'preact';
 import { mayAct } from '../access/model';
 import { Panel } from '../design/panel';
 import { hasNoCommands, pastRange, takesCommands } from '../run/shown';
@@ -40,11 +41,26 @@ function onKey(event: KeyboardEvent): void {
 
 const SHOWN = 8;
 
+/** One that can be picked. The command line keeps the focus and has the keys; here is only the pointer's way. */
+function Offer({ index, onPick, children }: { index: number; onPick: () => void; children: ComponentChildren }) {
+  const pick = () => {
+    onPick();
+    openCommandLine();
+  };
+  return (
+    // biome-ignore lint/a11y/useKeyWithClickEvents: the keys are the command line's
+    // biome-ignore lint/a11y/useFocusableInteractive: it is named by the command line's aria-activedescendant
+    <div id={`offer-${index}`} role="option" aria-selected={index === choiceIndex.value} onClick={pick}>
+      {children}
+    </div>
+  );
+}
+
 function Offers() {
   const within = inArguments.value;
   if (within) {
     return (
-      <ul
+      <div
         class="offers"
         role="listbox"
         id="offers"
@@ -54,15 +70,12 @@ function Offers() {
         {within.offers.slice(0, SHOWN).map((offer, index) => {
           const argument = within.command.arguments.find((each) => `${each.name}=` === offer);
           return (
-            <li
+            <Offer
               key={offer}
-              id={`offer-${index}`}
-              role="option"
-              aria-selected={index === choiceIndex.value}
-              onClick={() => {
+              index={index}
+              onPick={() => {
                 choiceIndex.value = index;
                 complete();
-                openCommandLine();
               }}
             >
               <b>
@@ -70,35 +83,26 @@ function Offers() {
                 {offer}
               </b>{' '}
               <span>{argument && `${unitText(argument)} ${rangeText(argument)} ${argument.text}`}</span>
-            </li>
+            </Offer>
           );
         })}
-        {within.offers.length === 0 && <li class="none">Enter goes on</li>}
-      </ul>
+        {within.offers.length === 0 && <div class="none">Enter goes on</div>}
+      </div>
     );
   }
   return (
-    <ul class="offers" role="listbox" id="offers" aria-label="commands of the dictionary">
+    <div class="offers" role="listbox" id="offers" aria-label="commands of the dictionary">
       {offered.value.slice(0, SHOWN).map((command, index) => (
-        <li
-          key={command.name}
-          id={`offer-${index}`}
-          role="option"
-          aria-selected={index === choiceIndex.value}
-          onClick={() => {
-            choose(command.name);
-            openCommandLine();
-          }}
-        >
+        <Offer key={command.name} index={index} onPick={() => choose(command.name)}>
           <b>
             {isHazardous(command) ? '▲ ' : ''}
             {command.name}
           </b>{' '}
           <span>{command.text}</span>
-        </li>
+        </Offer>
       ))}
-      {offered.value.length === 0 && <li class="none">no command has these words</li>}
-    </ul>
+      {offered.value.length === 0 && <div class="none">no command has these words</div>}
+    </div>
   );
 }
 

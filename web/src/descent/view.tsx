@@ -88,7 +88,10 @@ function drawCorridor({ context: c, width, height, colours }: Surface, { x, y, d
     sides[1]?.unshift([px + dy * half * decade_px[0], py - dx * half * decade_px[1]]);
   });
   c.beginPath();
-  sides.flat().forEach(([px, py], i) => (i === 0 ? c.moveTo(px, py) : c.lineTo(px, py)));
+  for (const [i, [px, py]] of sides.flat().entries()) {
+    if (i === 0) c.moveTo(px, py);
+    else c.lineTo(px, py);
+  }
   c.closePath();
   c.fillStyle = colours.ghost;
   c.strokeStyle = colours.ghost;

@@ -8,7 +8,10 @@ let next: FrameRequestCallback = () => undefined;
 let now_ms = 0;
 const FRAME_MS = 16;
 const frames = (count: number) => {
-  for (let i = 0; i < count; ++i) next((now_ms += FRAME_MS));
+  for (let i = 0; i < count; ++i) {
+    now_ms += FRAME_MS;
+    next(now_ms);
+  }
 };
 const column = (sclk: number) => ({ id: 3, recorded: false, sclk: Float64Array.of(sclk), value: Float64Array.of(1) });
 let onDraw: typeof import('./loop').onDraw;

@@ -25,7 +25,7 @@ export type Palette = Record<keyof typeof TOKENS, string> & { name: string; sans
 let read: Palette | undefined;
 
 export function palette(): Palette {
-  const name = document.documentElement.dataset['theme'] ?? 'dark';
+  const name = document.documentElement.dataset.theme ?? 'dark';
   if (read?.name === name) return read;
   const style = getComputedStyle(document.documentElement);
   const colours = { name, sans: style.getPropertyValue('--sans'), mono: style.getPropertyValue('--mono') } as Palette;

@@ -105,7 +105,7 @@ export function Links() {
           ▲ Counters are of the whole run; states and silences are those of the past that is shown.
         </p>
       )}
-      <div class="table-scroll" tabIndex={0} aria-label="links">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="links">
         {views.length === 0 ? (
           <p class="none">no link has been heard of yet</p>
         ) : (

@@ -27,7 +27,7 @@ describe('the mode', () => {
     for (const part of ['badge', 'mark', 'shape'] as const)
       expect(new Set(Object.values(MODES).map((each) => each[part])).size).toBe(6);
     for (const mode of ['live', 'rehearsal', 'ended', 'range', 'replay'])
-      expect(css).toContain(`.mode-${mode} { --mode: var(--mode-${mode})`);
+      expect(css).toMatch(new RegExp(`\\.mode-${mode} \\{\\s*--mode: var\\(--mode-${mode}\\);`));
     const border = (mode: string) => new RegExp(`\\.mode-${mode} \\{[^}]*\\}`).exec(css)?.[0].replaceAll(mode, '');
     expect(new Set(['range', 'replay', 'ended', 'live'].map(border)).size).toBe(4);
   });

@@ -83,7 +83,7 @@ describe('a packet, octet by octet', () => {
     { positionBits: 16, bits: 64 },
   ];
   it('is shown sixteen octets a line with their letters', () => {
-    expect(hexLines('41'.repeat(16) + '00')).toEqual([
+    expect(hexLines(`${'41'.repeat(16)}00`)).toEqual([
       { at: '0000', first: 0, octets: Array(16).fill('41'), text: Array(16).fill('A') },
       { at: '0010', first: 16, octets: ['00'], text: ['·'] },
     ]);

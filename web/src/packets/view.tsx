@@ -264,6 +264,7 @@ function Contents({ packet }: { packet: PacketRow }) {
     event.stopPropagation();
   };
   return (
+    // biome-ignore lint/a11y/noStaticElementInteractions: the pointer only lights what the keys of the fields light, too
     <div class="contents" onMouseLeave={() => (lit.value = undefined)}>
       <div class="table-scroll octets" tabIndex={0} role="region" aria-label="octets" data-testid="packet-octets">
         {hexLines(packet.hex).map((line) => (

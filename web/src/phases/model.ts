@@ -66,7 +66,9 @@ export function phaseSteps(
       }
     }
   }
-  toned?.since.forEach((sclk, group) => isByTone && sclk !== undefined && !since.has(group) && since.set(group, sclk));
+  toned?.since.forEach((sclk, group) => {
+    if (isByTone && sclk !== undefined && !since.has(group)) since.set(group, sclk);
+  });
   return groups.map((group, index) => {
     const start = entryKnown ? since.get(index) : undefined;
     const since_e_s = start === undefined || !store ? undefined : start - store.entrySclk;

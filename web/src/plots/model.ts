@@ -128,7 +128,7 @@ function thin(
         high = now;
         largest = i;
       }
-      if (now !== now && unknown < 0) unknown = i;
+      if (Number.isNaN(now) && unknown < 0) unknown = i;
       ++i;
     } while (i < end && (sclk[i] as number) < ends);
     const until = sclk[i - 1] as number;
@@ -141,7 +141,9 @@ function thin(
         : unknown < other
           ? [one, unknown, other]
           : [one, other, unknown]) {
-      if (index > last) into.add(series, (last = index), since, until);
+      if (index <= last) continue;
+      into.add(series, index, since, until);
+      last = index;
     }
     if (i === end && last < i - 1) into.add(series, i - 1, since, until);
   }

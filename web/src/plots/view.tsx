@@ -58,7 +58,7 @@ function options(width: number, height: number, channel: DictionaryChannel, per:
         gap: 3,
         splits: (plot, _index, from, to) => ticks(from, to, shortStep(from, to, plot.over.clientWidth)),
         values: (plot, splits) => {
-          const { min = 0, max = 1 } = plot.scales['x'] ?? {};
+          const { min = 0, max = 1 } = plot.scales.x ?? {};
           const step = shortStep(min, max, plot.over.clientWidth);
           return splits.map((e_s) => shortTime(e_s, step));
         },
@@ -105,7 +105,7 @@ function shadeSilence(plot: uPlot): void {
 /** What lies outside a limit, shaded while the limit held, under its name. The worst is named first: where there is no room for all, it is the one. */
 function alarmBands(plot: uPlot, channel: DictionaryChannel, per: number): void {
   const [run, words] = [shownRun(), dictionary.value];
-  const { min: from, max: to } = plot.scales['x'] ?? {};
+  const { min: from, max: to } = plot.scales.x ?? {};
   if (!run || !words || from === undefined || to === undefined) return;
   const { left, top, width, height } = plot.bbox;
   const [right, bottom] = [left + width, top + height];
@@ -192,7 +192,7 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
     let placed: number | undefined;
     const placeCursor = () => {
       const [at, line] = [cursor.peek(), mark.current];
-      const { min = 0, max = 0 } = plot?.scales['x'] ?? {};
+      const { min = 0, max = 0 } = plot?.scales.x ?? {};
       if (!plot || !line) return;
       placed = at;
       line.hidden = at === undefined || at < min || at > max;
@@ -238,8 +238,8 @@ function Plot({ title, channel, unit, per, digits }: Properties) {
               width,
             )
           : ([[], [], []] as Aligned);
-        element.dataset['holes'] = String(holesOf(data));
-        element.dataset['newest'] = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
+        element.dataset.holes = String(holesOf(data));
+        element.dataset.newest = String(Math.max(recorded?.newestSclk ?? -Infinity, live?.newestSclk ?? -Infinity));
         plot.batch(() => {
           plot?.setData(data as uPlot.AlignedData, false);
           plot?.setScale('x', { min: span.from, max: span.to });

@@ -25,8 +25,10 @@ export async function download(
     const { done, value } = await reader.read();
     if (done) break;
     parts.push(value);
-    if ((loose += value.byteLength) > LOOSE_MAX) [parts, loose] = [[new Blob(parts)], 0];
-    told((octets += value.byteLength), of);
+    loose += value.byteLength;
+    octets += value.byteLength;
+    if (loose > LOOSE_MAX) [parts, loose] = [[new Blob(parts)], 0];
+    told(octets, of);
   }
   return new Blob(parts, { type: response.headers.get('content-type') ?? '' });
 }

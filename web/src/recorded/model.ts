@@ -21,8 +21,8 @@ export function rangeRow({ name, unit, samples, thinned, columns }: SeriesAnswer
   let largest = -Infinity;
   for (const { value } of columns) {
     for (const each of value) {
-      least = each < least ? each : least;
-      largest = each > largest ? each : largest;
+      if (each < least) least = each; // false for what is undefined
+      if (each > largest) largest = each;
     }
   }
   const count = (recorded: boolean) => columns.find((column) => column.recorded === recorded)?.sclk.length ?? 0;

@@ -164,7 +164,7 @@ export function Recorded() {
             '; every panel now shows this range'}
         </p>
       )}
-      <div class="table-scroll" tabIndex={0} aria-label="recorded range">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="recorded range">
         {rows.value.length > 0 && (
           <table data-testid="range-table">
             <thead>

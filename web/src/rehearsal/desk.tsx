@@ -42,7 +42,9 @@ function NoteForm() {
       onSubmit={(event) => {
         event.preventDefault();
         const sent = text.value;
-        void write(sent).then((written) => written && text.value === sent && (text.value = '')); // what was typed meanwhile is the next
+        void write(sent).then((written) => {
+          if (written && text.value === sent) text.value = ''; // what was typed meanwhile is the next
+        });
       }}
     >
       <input

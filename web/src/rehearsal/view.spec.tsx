@@ -94,7 +94,7 @@ describe('a rehearsal', () => {
     expect(heard).toEqual([{ type: 'control', run: 1, control: { action: 'stop' } }]);
   });
   it('that is continued says what is known of how far it is, and can be left to itself: then nothing is shown unasked', async () => {
-    let answer = (_: object) => undefined as void;
+    let answer: (_: object) => void = () => undefined;
     server.routes['POST /rehearsals'] = () => new Promise((resolve) => (answer = resolve as typeof answer));
     for (const leave of [true, false]) {
       shown(aRun({ state: 'interrupted', lastSeq: 4711n }));
@@ -124,7 +124,9 @@ describe('a rehearsal', () => {
   });
   it('is not ended, continued or started from a past view, and says nothing there of what came later', () => {
     const clicks = () =>
-      root.querySelectorAll<HTMLButtonElement>('button').forEach((each) => !each.disabled && act(() => each.click()));
+      root.querySelectorAll<HTMLButtonElement>('button').forEach((each) => {
+        if (!each.disabled) act(() => each.click());
+      });
     shown(aRun({ lastSeq: 4711n }));
     expect(root.querySelector('[data-run="1"]')?.textContent).toContain('4711');
     for (const [state, replayed] of [
@@ -149,7 +151,9 @@ describe('a rehearsal', () => {
       clicks();
       clicks();
       expect([heard, server.asked.filter((each) => each.method !== 'GET')]).toEqual([[], []]);
-      act(() => void ([pastRange.value, replay.value] = [undefined, undefined]));
+      act(() => {
+        [pastRange.value, replay.value] = [undefined, undefined];
+      });
     }
   });
   it('is never offered beside a real vehicle: no instructor, no end, no pace', () => {
@@ -175,7 +179,9 @@ describe('a rehearsal', () => {
     ]).toEqual([null, true]);
   });
   it('gives those who may not rehearse nothing to press, and its keys do nothing', () => {
-    act(() => void (access.value = { state: 'in', user: 'eve', role: 'observer', rights: ['watch'] }));
+    act(() => {
+      access.value = { state: 'in', user: 'eve', role: 'observer', rights: ['watch'] };
+    });
     shown();
     expect(
       [...root.querySelectorAll<HTMLButtonElement>('button, select, input')].filter((each) => !each.disabled),

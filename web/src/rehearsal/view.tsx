@@ -17,15 +17,15 @@ import { Review } from './review';
 import './style.css';
 
 export function changePace(direction: 1 | -1): void {
-  if (replay.value) return changeReplayPace(direction);
   const run = store.value;
-  if (run && modeNow() === 'rehearsal' && mayRehearse())
+  if (replay.value) changeReplayPace(direction);
+  else if (run && modeNow() === 'rehearsal' && mayRehearse())
     control({ action: 'pace', pace: nextPace(run.run.pace, direction) });
 }
 export function togglePause(): void {
-  if (replay.value) return playOrHold();
   const run = store.value;
-  if (run && modeNow() === 'rehearsal' && mayRehearse())
+  if (replay.value) playOrHold();
+  else if (run && modeNow() === 'rehearsal' && mayRehearse())
     control({ action: 'pause', pause: run.run.state !== 'paused' });
 }
 
@@ -215,7 +215,7 @@ export function Rehearsal() {
       )}
       {going && run?.going && !isReal(run.run) && !past && <InstructorDesk />}
       {past && <p class="not-past">▲ The list is of now; of the run that is shown it says nothing that came later.</p>}
-      <div class="table-scroll" tabIndex={0} aria-label="runs">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="runs">
         <Review />
         <table data-testid="run-list">
           <thead>

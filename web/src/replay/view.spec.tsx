@@ -27,7 +27,9 @@ it('the past as it was heard says where it no longer knows what was heard when; 
     `▲ Too much came late to tell it all apart: ${LATE_LIMIT / 2} units of Navigation may be shown before they were heard.`,
     undefined,
   ]);
-  act(() => void (withRecording.value = true));
+  act(() => {
+    withRecording.value = true;
+  });
   expect(said(0)).toBe(undefined);
   act(() => {
     render(null, page);

@@ -37,7 +37,9 @@ it('a report of a run that is over is asked for until it has come, once, and of 
   await passes(1000);
   expect(asked).toHaveLength(2);
   const one = store.value;
-  await act(() => void (store.value = aStore([], aRun({ run: 2n }))));
+  await act(() => {
+    store.value = aStore([], aRun({ run: 2n }));
+  });
   await answer(asked[1]!, { ok: true, value: 1 }); // of the run of before
   expect([store.value === one, asked.map((each) => each.path), place.innerText]).toEqual([
     false,

@@ -24,15 +24,21 @@ export class Series {
     }
   }
 
-  /** History comes in: of what we hold, only what is newer than its last point is kept. */
-  replaceBefore(sclk: Float64Array, value: Float64Array): void {
-    this.replace(-Infinity, sclk[sclk.length - 1] ?? -Infinity, sclk, value);
+  /** Takes history in: keeps of what is held only what is newer than its last sample, or not newer than `through`. */
+  replaceBefore(sclk: Float64Array, value: Float64Array, through = -Infinity): void {
+    const first = sclk.findIndex((at) => at > through);
+    if (first < 0) return;
+    const endsAt = this.firstAfter(sclk[sclk.length - 1] as number);
+    this.exchange(this.firstAfter(through), endsAt, sclk.subarray(first), value.subarray(first));
   }
 
   /** All that lies within [from, to] gives way to these samples. */
   replace(from: number, to: number, sclk: Float64Array, value: Float64Array): void {
+    this.exchange(this.firstNotBefore(from), this.firstAfter(to), sclk, value);
+  }
+
+  private exchange(startsAt: number, endsAt: number, sclk: Float64Array, value: Float64Array): void {
     ++this.version;
-    const [startsAt, endsAt] = [this.firstNotBefore(from), this.firstAfter(to)];
     const tailSclk = this.sclk.slice(endsAt, this.length);
     const tailValue = this.value.slice(endsAt, this.length);
     this.length = startsAt;

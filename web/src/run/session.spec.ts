@@ -7,7 +7,7 @@ import { choose, forward, line, message, step, tryOut, type } from '../commands/
 import { CommandReplySchema } from '../gen/aeolis/v1/run_pb';
 import type { RunState } from '../gen/aeolis/v1/run_pb';
 import type { CommandIntent, ToWorker } from '../stream/messages';
-import { aDictionary, aRun, aStore } from '../testing/fixtures';
+import { aDictionary, aRun, aStore, samples } from '../testing/fixtures';
 import { ask, change, control, read, sendCommand } from './connection';
 import { backToLive, onMessage, refreshRuns, useForTest } from './session';
 import { dismissNotice, lookAtPast, notices, pastRange, runs, store, watched } from './shown';
@@ -74,6 +74,34 @@ describe('a server that does not answer', () => {
     await vi.advanceTimersByTimeAsync(31_000);
     answer(sent.at(-1)!.request, { accepted: true, dryRun: true });
     expect(notices.value).toEqual([]);
+  });
+});
+
+describe('history', () => {
+  const column = (recorded: boolean, ...sclk: number[]) => ({
+    id: 3,
+    recorded,
+    sclk: Float64Array.from(sclk),
+    value: Float64Array.from(sclk),
+  });
+  const answer = (live: boolean, ...columns: ReturnType<typeof column>[]) =>
+    onMessage({ type: 'history', run: 1, names: ['altitude_m'], columns, live });
+  const answers = {
+    whole: () => answer(false, column(false, 800, 892), column(true, 850, 880, 891)),
+    live: () => answer(true, column(false, 800, 860, 885, 890)),
+  };
+  it('of live samples alone stays as fine as it came, in whatever order the archive answers', () => {
+    for (const order of [
+      ['whole', 'live'],
+      ['live', 'whole'],
+      ['live', 'whole', 'live', 'whole'],
+    ] as const) {
+      useForTest(aStore([samples(892, { 3: 892 }), samples(893, { 3: 893 })]), aDictionary);
+      for (const which of order) answers[which]();
+      const [live, recorded] = [store.value?.live.get(3), store.value?.recorded.get(3)];
+      expect([...(live?.sclk.subarray(0, live.length) ?? [])], order.join()).toEqual([800, 860, 885, 890, 892, 893]);
+      expect(recorded?.length).toBe(3);
+    }
   });
 });
 

@@ -83,8 +83,7 @@ const askedLive = new WeakSet<RunStore>();
 function refreshHistory(of: RunStore): void {
   if (!of.going) of.thinnedSinceHistory = false;
   post({ type: 'refresh_history', all: !of.going, live: false });
-  if (asHeard.value)
-    post({ type: 'refresh_history', all: true, live: true }); // the answer above replaces the one of live alone
+  if (asHeard.value) post({ type: 'refresh_history', all: true, live: true });
   else askedLive.delete(of);
 }
 
@@ -117,7 +116,7 @@ export function onMessage(message: FromWorker): void {
     case 'history':
       if (store.value?.id === message.run) {
         wholeHistory.add(store.value);
-        store.value.addHistory(message.columns, message.names);
+        store.value.addHistory(message.columns, message.names, message.live);
       }
       break;
     case 'reply':
@@ -159,7 +158,10 @@ function takeRun(run: RunState | undefined): void {
   if (!run || run.run === 0n) return;
   const known = store.value;
   if (known?.id === Number(run.run)) {
-    if (!isSameRun(known.run, run)) return takeOtherArchive();
+    if (!isSameRun(known.run, run)) {
+      takeOtherArchive();
+      return;
+    }
     inDoubt.value = false;
     known.update(run);
   } else if (watched.value === 0 && known && pastRange.value) {
@@ -300,6 +302,7 @@ export async function begin(): Promise<void> {
   });
   effect(() => {
     const run = store.value;
+    if (run && stream.value.state === 'lost') askedLive.delete(run); // what was asked gets no answer any more
     if (!run || !asHeard.value || stream.value.state !== 'live' || askedLive.has(run)) return;
     askedLive.add(run);
     post({ type: 'refresh_history', all: true, live: true });
@@ -336,5 +339,5 @@ export function useForTest(
 }
 
 effect(() => {
-  document.documentElement.dataset['stream'] = stream.value.state;
+  document.documentElement.dataset.stream = stream.value.state;
 });

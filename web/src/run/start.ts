@@ -19,8 +19,10 @@ const typedNames = new Map<string, string>(); // a dictionary has few names, tho
 
 function typedName(name: string): string {
   let found = typedNames.get(name);
-  if (found === undefined)
-    typedNames.set(name, (found = name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase())));
+  if (found === undefined) {
+    found = name.replace(/_(\w)/g, (_, letter: string) => letter.toUpperCase());
+    typedNames.set(name, found);
+  }
   return found;
 }
 

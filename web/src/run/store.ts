@@ -118,6 +118,8 @@ export class RunStore {
   private readonly late = new Map<string, { sclk: number[]; heard: number[] }>();
   /** Of each packet, of how much that came late is not kept any more, from which SCLK on, and when the last of it was heard. */
   private readonly lateForgotten = new Map<string, { units: number; from: number; heard: number }>();
+  /** Of each channel, the SCLK of the last sample that an answer of live samples alone brought. */
+  private readonly liveAloneThrough = new Map<number, number>();
   private readonly heardSeries = new Map<number, { of: Series; version: number; key: string; series: Series }>();
   private lastUnit = { ert: '', sclk: NaN };
   /** Counts what came with samples of what is drawn. */
@@ -269,14 +271,21 @@ export class RunStore {
     if (this.events.length > EVENT_LIMIT) this.events.splice(0, this.events.length - EVENT_LIMIT);
   }
 
-  /** `names`: of the channels that were asked for; those without a column have no samples. */
-  addHistory(columns: Column[], names: readonly string[] = []): void {
+  /**
+   * An answer of the archive. `names`: the channels that were asked for; those without a column have no samples.
+   * `liveAlone`: the answer leaves out the recording. Answers come in any order. One that was thinned together with the
+   * recording holds few live samples, so it replaces none of those that an answer of live samples alone brought.
+   */
+  addHistory(columns: Column[], names: readonly string[] = [], liveAlone = false): void {
     ++this.version;
     for (const name of names) this.askedFor.add(name);
     ++this.samplesDrawn;
     for (const column of columns) {
-      this.series(column).replaceBefore(column.sclk, column.value);
-      this.sawSclk(column.sclk.at(-1));
+      const through = column.recorded ? undefined : this.liveAloneThrough.get(column.id);
+      this.series(column).replaceBefore(column.sclk, column.value, liveAlone ? undefined : through);
+      const last = column.sclk.at(-1) ?? -Infinity;
+      if (liveAlone) this.liveAloneThrough.set(column.id, Math.max(through ?? -Infinity, last));
+      this.sawSclk(last);
     }
   }
 
@@ -294,7 +303,10 @@ export class RunStore {
   private series(column: Column): Series {
     const all = column.recorded ? this.recorded : this.live;
     let series = all.get(column.id);
-    if (!series) all.set(column.id, (series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN)));
+    if (!series) {
+      series = new Series(this.isDrawn(column.id) ? undefined : LIMIT_NOT_DRAWN);
+      all.set(column.id, series);
+    }
     return series;
   }
 
@@ -376,8 +388,10 @@ export class RunStore {
   private addStage(stage: CommandStage): void {
     const number = Number(stage.command);
     let row = this.commands.get(number);
-    if (!row)
-      this.commands.set(number, (row = { command: number, name: stage.name, arguments: '', stages: new Map() }));
+    if (!row) {
+      row = { command: number, name: stage.name, arguments: '', stages: new Map() };
+      this.commands.set(number, row);
+    }
     if (stage.name) row.name = stage.name;
     if (stage.arguments) row.arguments = stage.arguments;
     row.stages.set(stage.stage, [...(row.stages.get(stage.stage) ?? []), stage]);
@@ -401,7 +415,10 @@ export class RunStore {
     const heard = this.lastUnit.sclk;
     if (!(heard - unit.sclk > LATE_S)) return;
     let late = this.late.get(unit.name);
-    if (!late) this.late.set(unit.name, (late = { sclk: [], heard: [] }));
+    if (!late) {
+      late = { sclk: [], heard: [] };
+      this.late.set(unit.name, late);
+    }
     if (late.sclk.length === LATE_LIMIT) this.forgetLate(unit.name, late);
     late.sclk.push(unit.sclk);
     late.heard.push(heard);

@@ -62,8 +62,8 @@ export function focusPanel(which: Tab): void {
 
 function toggleTheme(): void {
   const root = document.documentElement;
-  const next = root.dataset['theme'] === 'light' ? 'dark' : 'light';
-  root.dataset['theme'] = next;
+  const next = root.dataset.theme === 'light' ? 'dark' : 'light';
+  root.dataset.theme = next;
   localStorage.setItem('aeolis-theme', next);
 }
 

@@ -84,7 +84,10 @@ export class ColumnCollector {
 
   private push(key: string, sclk: number, value: number): void {
     let column = this.columns.get(key);
-    if (!column) this.columns.set(key, (column = new GrowingColumn()));
+    if (!column) {
+      column = new GrowingColumn();
+      this.columns.set(key, column);
+    }
     column.sclk.push(sclk);
     column.value.push(value);
   }

@@ -51,7 +51,7 @@ export type FromWorker =
   | { type: 'other_archive' } // and there another run of the number that is shown
   | { type: 'resumed'; run: number; after: number; through: number; attempts: number }
   | { type: 'batch'; batch: BatchOfFacts }
-  | { type: 'history'; run: number; names: readonly string[]; columns: Column[] } // names: of all that were asked for, with samples or without
+  | { type: 'history'; run: number; names: readonly string[]; columns: Column[]; live: boolean } // names: all that were asked for; live: samples that came so, and no other
   | { type: 'reply'; reply: CommandReply }
   | { type: 'refusal'; reason: string } // by the server, of something that is no command: it is nobody's answer
   | { type: 'not_sent'; request: number } // a command that never left the page

@@ -84,7 +84,8 @@ function fieldsOf(octets: Uint8Array): { number: number; value: number; part: Ui
     }
     if (type !== 0 && type !== 2) throw new Error(`samples: field ${number} of the answer has type ${type}`);
     const value = varint();
-    const part = type === 2 ? octets.subarray(at, (at += value)) : NONE;
+    const part = type === 2 ? octets.subarray(at, at + value) : NONE;
+    if (type === 2) at += value;
     if (at > octets.length) throw new Error('samples: the answer is cut off');
     fields.push({ number, value, part });
   }

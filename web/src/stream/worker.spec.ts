@@ -84,6 +84,14 @@ it('of a server that answers takes the socket for dead where a rehearsal that go
   await passes(5);
   expect(states()).toContain('lost');
 });
+it('takes a socket for dead that does not open, or brings nothing of what was asked, for fifteen seconds', async () => {
+  healthz = () => Promise.resolve({});
+  await passes(20);
+  expect(sockets.length).toBe(2);
+  sockets[1]?.opens();
+  await passes(20);
+  expect([states().includes('catching_up'), sockets.length]).toEqual([true, 3]);
+});
 it('leaves the socket in peace where silence is in order, as long as the server answers: paused, over, of a real venue, its archive refusing', async () => {
   healthz = () => Promise.resolve({});
   sockets[0]?.opens();

@@ -16,8 +16,8 @@ import {
   ScenarioListSchema,
   TimepointListSchema,
 } from '../gen/worker/aeolis/v1/run_pb';
-import { ClientMessageSchema, RehearsalControlSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
-import type { Batch } from '../gen/worker/aeolis/v1/stream_pb';
+import { ClientMessageSchema, ServerMessageSchema } from '../gen/worker/aeolis/v1/stream_pb';
+import type { Batch, RehearsalControlSchema, ServerMessage } from '../gen/worker/aeolis/v1/stream_pb';
 import type { RunState } from '../gen/worker/aeolis/v1/run_pb';
 import { Pace } from '../run/pace';
 import { isSameRun } from '../run/same';
@@ -42,7 +42,7 @@ const post = (message: FromWorker, columns: Column[] = []) =>
   });
 
 const apiUrl = new URL('/api/v1', self.location.origin).href;
-const socketUrl = apiUrl.replace(/^http/, 'ws') + '/stream';
+const socketUrl = `${apiUrl.replace(/^http/, 'ws')}/stream`;
 
 let socket: WebSocket | undefined;
 let attempt = 0;
@@ -149,9 +149,9 @@ async function watchSilence(): Promise<void> {
   if (socket !== its || lookAt_ms !== Infinity) return; // it has spoken, or was lost, meanwhile
   lookAt_ms = performance.now() + SILENT_MS;
   // A real venue is silent when nothing comes, and a rehearsal waits while its archive takes nothing.
-  const speaks =
-    state === 'live' && known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
-  if (answers && !(speaks && looks >= LOOKS)) return;
+  // What has been asked of it, to open or to bring what is there, it owes in any case.
+  const speaks = known?.state === 'running' && known.venue !== 'downlink' && known.archiveFault === '';
+  if (answers && !((speaks || state !== 'live') && looks >= LOOKS)) return;
   asks.abort();
   asks = new AbortController();
   lose(its);
@@ -179,7 +179,7 @@ function leave(): void {
 }
 
 function receive(bytes: Uint8Array): void {
-  let message;
+  let message: ServerMessage['message'];
   try {
     message = fromBinary(ServerMessageSchema, bytes).message;
   } catch (error) {
@@ -198,7 +198,10 @@ function receive(bytes: Uint8Array): void {
         break;
       }
       if (run === 0) say('live');
-      if (run === currentRun && known && welcome.runState && !isSameRun(known, welcome.runState)) return leave();
+      if (run === currentRun && known && welcome.runState && !isSameRun(known, welcome.runState)) {
+        leave();
+        return;
+      }
       const fresh = run !== currentRun || step === 'facts';
       if (run !== currentRun) restart(run);
       known = welcome.runState;
@@ -299,7 +302,7 @@ async function fetchHistory(all = true, live = false): Promise<void> {
           ),
         );
         if (run !== currentRun) return;
-        post({ type: 'history', run, names: some, columns }, columns);
+        post({ type: 'history', run, names: some, columns, live }, columns);
       }
     }
   } catch (error) {

@@ -268,10 +268,10 @@ function labels(
     if (!fired) known.set(id, { mark: { id, name, e_s, important: isImportant(name), bad: false }, done: false });
   for (const mark of [...lanes.heardByTone, ...lanes.recorded, ...lanes.live]) known.set(mark.id, { mark, done: true });
   const [run, dict] = [shownRun(), dictionary.value];
-  (run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : []).forEach(
-    ({ name, e_s, done }, i) =>
-      e_s !== undefined && known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done }),
-  );
+  const moments = run && dict ? momentsOf(run, dict, timepoints.value, cutoff.value) : [];
+  for (const [i, { name, e_s, done }] of moments.entries()) {
+    if (e_s !== undefined) known.set(-1 - i, { mark: { id: -1 - i, name, e_s, important: true, bad: false }, done });
+  }
   const all = [...known.values()]
     .filter(({ mark }) => mark.important || closeUp)
     .sort((a, b) => Number(b.mark.important) - Number(a.mark.important) || a.mark.e_s - b.mark.e_s);

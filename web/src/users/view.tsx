@@ -84,7 +84,9 @@ function CommandNames({ of, label, onType }: { of: string; label: string; onType
 function CommandsOf({ user, may }: { user: string; may: readonly string[] }) {
   const now = may.join(' ');
   const typed = useSignal(now);
-  useEffect(() => void (typed.value = now), [now]);
+  useEffect(() => {
+    typed.value = now;
+  }, [now]);
   return (
     <form
       onSubmit={(event) => {
@@ -124,10 +126,8 @@ function OwnPassword({ user }: { user: string }) {
       onSubmit={(event) => {
         event.preventDefault();
         const form = event.currentTarget;
-        const [current, chosen] = ['current', 'secret'].map(
-          (each) => form.elements.namedItem(each) as HTMLInputElement,
-        );
-        void setOwnPassword(user, current!.value, chosen!.value).then(() => form.reset());
+        const typed = (name: string) => (form.elements.namedItem(name) as HTMLInputElement).value;
+        void setOwnPassword(user, typed('current'), typed('secret')).then(() => form.reset());
       }}
     >
       <input
@@ -195,9 +195,9 @@ export function Users() {
             event.preventDefault();
             const secret = password.value;
             password.value = '';
-            void addUser(name.value.trim(), role.value, secret, commands.value).then(
-              (done) => done && (name.value = commands.value = ''),
-            );
+            void addUser(name.value.trim(), role.value, secret, commands.value).then((done) => {
+              if (done) [name.value, commands.value] = ['', ''];
+            });
           }}
         >
           <input
@@ -310,9 +310,9 @@ export function Users() {
           data-testid="add-token"
           onSubmit={(event) => {
             event.preventDefault();
-            void addToken(tokenName.value.trim(), tokenRole.value, tokenCommands.value).then(
-              (done) => done && (tokenName.value = tokenCommands.value = ''),
-            );
+            void addToken(tokenName.value.trim(), tokenRole.value, tokenCommands.value).then((done) => {
+              if (done) [tokenName.value, tokenCommands.value] = ['', ''];
+            });
           }}
         >
           <input

@@ -145,7 +145,7 @@ function Difference({ packet }: { packet: PacketRow }) {
           ×
         </button>
       </p>
-      <div class="table-scroll" tabIndex={0} aria-label="octets">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="octets">
         <table>
           <thead>
             <tr>
@@ -257,7 +257,7 @@ export function Verdicts() {
       {pastRange.value && (
         <p class="not-past">▲ Verdicts are of the whole run, not of the past that the other panels show.</p>
       )}
-      <div class="table-scroll" tabIndex={0} aria-label="verdicts">
+      <div class="table-scroll" tabIndex={0} role="group" aria-label="verdicts">
         <Packets />
         <Counts
           title="packet"

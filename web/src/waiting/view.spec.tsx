@@ -209,7 +209,9 @@ describe('waiting for', () => {
     });
     const classes = () => [...root.querySelectorAll('li')].map((line) => line.className);
     expect(classes()).toContain('holds');
-    act(() => void (stream.value = { ...stream.value, state: 'lost' }));
+    act(() => {
+      stream.value = { ...stream.value, state: 'lost' };
+    });
     expect(new Set(classes())).toEqual(new Set(['unknown']));
     useForTest(undefined, undefined);
     timepoints.value = [];

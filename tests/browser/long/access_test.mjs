@@ -4,8 +4,8 @@
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
-import { standIn } from './stand_in.mjs';
-import { findings, focused, temporaryFolder, waitFor, workplace } from './support.mjs';
+import { standIn } from '../stand_in.mjs';
+import { findings, focused, temporaryFolder, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
@@ -74,9 +74,7 @@ async function whatObserverDoes(page) {
   return asked;
 }
 
-test('with accounts: a log-in in place, an end of the session in the middle that loses and doubles nothing, and what each role may do', {
-  timeout: 120_000,
-}, async (t) => {
+test('with accounts: a log-in in place, an end of the session in the middle that loses and doubles nothing, and what each role may do', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const server = await serve(t, 'access', ['--scenario', 'nominal', '--accounts', path.join(folder, 'accounts.json')]);
@@ -233,9 +231,7 @@ test('with accounts: a log-in in place, an end of the session in the middle that
   await page.close();
 });
 
-test('alarms are acknowledged with a note, shelved and taken back by keyboard, and the header counts what no one has looked at', {
-  timeout: 60_000,
-}, async (t) => {
+test('alarms are acknowledged with a note, shelved and taken back by keyboard, and the header counts what no one has looked at', async (t) => {
   const server = await serve(t, 'alarms', ['--scenario', 'nominal']);
   const all = new Map([
     [

@@ -5,8 +5,8 @@
 import assert from 'node:assert/strict';
 import path from 'node:path';
 import { test } from 'node:test';
-import { comesToLook } from './picture.mjs';
-import { comesToRest, findings, temporaryFolder, waitFor, workplace } from './support.mjs';
+import { comesToLook } from '../picture.mjs';
+import { comesToRest, findings, temporaryFolder, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 const SIZE = { width: 1000, height: 640 };
@@ -85,9 +85,7 @@ async function flawsOf(page, name) {
   return flaws;
 }
 
-test('users, tokens and audit of a server with accounts look as stored, and nothing of them is cut off', {
-  timeout: 120_000,
-}, async (t) => {
+test('users, tokens and audit of a server with accounts look as stored, and nothing of them is cut off', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const server = await serve(t, 'users', ['--accounts', path.join(folder, 'accounts.json')]);
@@ -152,9 +150,7 @@ test('users, tokens and audit of a server with accounts look as stored, and noth
   await page.close();
 });
 
-test('a command that is reviewed or armed and a file that the ground has looked at look as stored, and nothing of them is cut off', {
-  timeout: 180_000,
-}, async (t) => {
+test('a command that is reviewed or armed and a file that the ground has looked at look as stored, and nothing of them is cut off', async (t) => {
   const server = await serve(t, 'commands', ['--scenario', 'nominal']);
   const { page, problems, shows } = await open(`${server.address}/?panel=commands`, SIZE);
   await shows('badge', /REHEARSAL/);
@@ -230,9 +226,7 @@ test('a command that is reviewed or armed and a file that the ground has looked 
   await page.close();
 });
 
-test('a command that waits for a second person looks as stored to who asked and to who may approve, and nothing of it is cut off', {
-  timeout: 120_000,
-}, async (t) => {
+test('a command that waits for a second person looks as stored to who asked and to who may approve, and nothing of it is cut off', async (t) => {
   const server = await serve(t, 'second', ['--scenario', 'two_persons']);
   const [ann, bob] = [
     await open(`${server.address}/?panel=commands`, SIZE),

@@ -2,13 +2,11 @@
 // An instructor breaks something in a rehearsal and writes about it; when it is over its review has both, with facts, and a score that is the sum of its terms.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { findings, secondsFromEntry, waitFor, workplace } from './support.mjs';
+import { findings, secondsFromEntry, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
-test('an instructor’s fault and note are folded away while a rehearsal goes on, and stand in its review with a score that can be checked', {
-  timeout: 240_000,
-}, async (t) => {
+test('an instructor’s fault and note are folded away while a rehearsal goes on, and stand in its review with a score that can be checked', async (t) => {
   const server = await serve(t, 'rehearsal', ['--scenario', 'nominal_auto', '--pace', '10']);
   const { page, problems, text, shows } = await open(server.address, { width: 1600, height: 900 });
   await waitFor(() => text('stream-state'), /connected/);
@@ -51,7 +49,7 @@ test('an instructor’s fault and note are folded away while a rehearsal goes on
     202,
   );
   await fetch(`${server.address}/api/v1/rehearsals/current`, { method: 'POST', body: JSON.stringify({ pace: 0 }) });
-  await shows('review', /Review of run 1/, 120_000);
+  await shows('review', /Review of run 1/);
   await page.locator('[data-testid="review"] > summary').click();
   await shows('review-facts', /landing\s+E\+07:\d\d\.\d\s+touchdown/);
   const facts = await text('review-facts');

@@ -6,7 +6,7 @@ import { once } from 'node:events';
 import { mkdirSync, readFileSync, statSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import test from 'node:test';
-import { program, root, temporaryFolder } from './support.mjs';
+import { program, root, temporaryFolder } from '../support.mjs';
 
 const page = readFileSync(path.join(root, 'docs/operations.md'), 'utf8');
 /** The lines of shell under a heading. */
@@ -16,9 +16,7 @@ const shell_of = (heading) => {
   return [...section.matchAll(/^```sh\n(.*?)^```$/gms)].map((block) => block[1]);
 };
 
-test('the page of operations leads from a secured server with two users to a rehearsal, an export and a campaign', {
-  timeout: 180_000,
-}, async (t) => {
+test('the page of operations leads from a secured server with two users to a rehearsal, an export and a campaign', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const state = path.join(folder, 'state');
@@ -46,7 +44,7 @@ test('the page of operations leads from a secured server with two users to a reh
   const given = /<<'END'\n(.*?)^END$/ms.exec(settings)[1];
   writeFileSync(
     path.join(folder, 'aeolis.conf'),
-    here(given).replace(/listen=\S+/, 'listen=127.0.0.1:0') + `archive=${path.join(state, 'aeolis.db')}\n`,
+    `${here(given).replace(/listen=\S+/, 'listen=127.0.0.1:0')}archive=${path.join(state, 'aeolis.db')}\n`,
   );
   const server = spawn(program, ['serve', '--config', 'aeolis.conf'], {
     cwd: folder,
@@ -78,7 +76,7 @@ test('the page of operations leads from a secured server with two users to a reh
   const made = run(way_in);
   const secret = /"token":"([^"]+)"/.exec(made)?.[1];
   assert.ok(secret, `a token has its secret in the answer: ${made}`);
-  const known = way_in.split('\n').slice(0, 2).join('\n') + '\n';
+  const known = `${way_in.split('\n').slice(0, 2).join('\n')}\n`;
   const audit = run(known + with_secret.replace('SECRET', secret));
   for (const word of ['dina', 'carl', 'exporter', 'log-in']) assert.match(audit, new RegExp(word));
 

@@ -2,7 +2,7 @@
 // What has to be in sight on screens of each size: all of a laptop's page, large figures on a wall, what is opened beside the timeline and not over it.
 import assert from 'node:assert/strict';
 import { before, test } from 'node:test';
-import { comesToRest, waitFor, workplace } from './support.mjs';
+import { comesToRest, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 const post = (server, body) =>
@@ -13,7 +13,6 @@ const held = async (t, scenario, e_s) => {
     waitFor(
       async () => (await server.get('/runs')).runs[0]?.clocks?.e_s,
       (now) => now > wanted,
-      120_000,
     );
   await passes(e_s - 90);
   await post(server, { pace: 10 });
@@ -38,9 +37,7 @@ function sight() {
   };
 }
 
-test('a laptop shows all of the page and all of the command line: before it begins, when it is too late to, and in flight', {
-  timeout: 180_000,
-}, async (t) => {
+test('a laptop shows all of the page and all of the command line: before it begins, when it is too late to, and in flight', async (t) => {
   const late = await held(t, 'nominal', -820);
   const early = await serve(t, 'early', ['--scenario', 'nominal']);
   for (const [state, { address }, title] of [
@@ -65,9 +62,7 @@ test('a laptop shows all of the page and all of the command line: before it begi
   }
 });
 
-test('alone on a large screen what is waited for, the lanes of the timeline and the figures of the descent are read from afar', {
-  timeout: 60_000,
-}, async () => {
+test('alone on a large screen what is waited for, the lanes of the timeline and the figures of the descent are read from afar', async () => {
   const { page } = await open(blackout.address);
   const px = (selector) =>
     page
@@ -104,9 +99,7 @@ test('alone on a large screen what is waited for, the lanes of the timeline and 
   await page.close();
 });
 
-test('what is opened stands beside the timeline, and a link’s reason takes no second row of the header', {
-  timeout: 60_000,
-}, async () => {
+test('what is opened stands beside the timeline, and a link’s reason takes no second row of the header', async () => {
   const { page, shows } = await open(blackout.address);
   await shows('link-UHF live', /plasma/);
   assert.ok((await page.locator('.links').evaluate((links) => links.getBoundingClientRect().height)) < 45);

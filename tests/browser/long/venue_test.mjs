@@ -6,13 +6,11 @@ import { once } from 'node:events';
 import { createServer } from 'node:net';
 import path from 'node:path';
 import { test } from 'node:test';
-import { findings, program, temporaryFolder, waitFor, workplace } from './support.mjs';
+import { findings, program, temporaryFolder, waitFor, workplace } from '../support.mjs';
 
 const { open, serve } = workplace();
 
-test('a real venue without commands offers none and has a dash for every clock that nobody knows, before a packet has come and after', {
-  timeout: 120_000,
-}, async (t) => {
+test('a real venue without commands offers none and has a dash for every clock that nobody knows, before a packet has come and after', async (t) => {
   const { folder, remove } = await temporaryFolder();
   t.after(remove);
   const xtce = path.join(folder, 'mission.xml');
@@ -21,7 +19,6 @@ test('a real venue without commands offers none and has a dash for every clock t
   const { packets } = await waitFor(
     () => rehearsal.get('/runs/latest/packets?limit=200'),
     (list) => list.packets?.length === 200,
-    60_000,
   );
   await rehearsal.stop();
 

@@ -6,13 +6,12 @@ import { existsSync } from 'node:fs';
 import { request } from 'node:http';
 import path from 'node:path';
 import { test } from 'node:test';
-import { serve as serveOpenMct } from '../../web/openmct/serve.mjs';
-import { browser, open, root, serve, temporaryFolder, waitFor } from './support.mjs';
+import { serve as serveOpenMct } from '../../../web/openmct/serve.mjs';
+import { browser, open, root, serve, temporaryFolder, waitFor } from '../support.mjs';
 
 const installed = existsSync(path.join(root, 'web/openmct/node_modules/openmct/dist/openmct.js'));
 
 test('Open MCT shows runs and channels of a server, with history and live values', {
-  timeout: 180_000,
   skip: installed ? false : 'openmct is not installed: npm ci in web/openmct',
 }, async () => {
   const { folder, remove } = await temporaryFolder();
@@ -26,7 +25,6 @@ test('Open MCT shows runs and channels of a server, with history and live values
     await waitFor(
       async () => (await server.get('/runs')).runs[0]?.clocks?.e_s,
       (e_s) => e_s > -1200,
-      60_000,
     ); // the landing is still to come, however slow this machine
     const { page } = await open(chrome, `http://127.0.0.1:${pages.address().port}/`);
     await page.waitForFunction(() => window.openmct !== undefined);
@@ -57,7 +55,6 @@ test('Open MCT shows runs and channels of a server, with history and live values
     await waitFor(
       async () => (await server.get('/runs')).runs[0].state,
       (state) => state === 'finished',
-      90_000,
     );
 
     const history = await page.evaluate(async () => {
@@ -104,7 +101,7 @@ const ask = (port, path, { method = 'GET', headers = {} } = {}) =>
       },
     );
     asked
-      .on('upgrade', (answer, socket) => {
+      .on('upgrade', (_, socket) => {
         socket.destroy();
         resolve('a socket');
       })
@@ -112,9 +109,7 @@ const ask = (port, path, { method = 'GET', headers = {} } = {}) =>
       .end();
   });
 
-test('what serves Open MCT answers its own page alone, gives no socket for commands, and no address ends it', {
-  timeout: 60_000,
-}, async () => {
+test('what serves Open MCT answers its own page alone, gives no socket for commands, and no address ends it', async () => {
   const { folder, remove } = await temporaryFolder();
   const chrome = await browser();
   const server = await serve({
@@ -127,7 +122,6 @@ test('what serves Open MCT answers its own page alone, gives no socket for comma
     await waitFor(
       async () => (await server.get('/runs')).runs[0]?.state,
       (state) => state === 'finished',
-      90_000,
     );
     const own = { origin: `http://127.0.0.1:${port}` };
     const live = '/live?run=1&after=0&channels=1,2';

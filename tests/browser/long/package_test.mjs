@@ -22,7 +22,7 @@ import { basename, dirname, join, resolve } from 'node:path';
 import test from 'node:test';
 
 const program = resolve(process.env.AEOLIS_PROGRAM ?? 'build/release/aeolis');
-const page = readFileSync(resolve(import.meta.dirname, '../../docs/operations.md'), 'utf8');
+const page = readFileSync(resolve(import.meta.dirname, '../../../docs/operations.md'), 'utf8');
 const folder = mkdtempSync(join(tmpdir(), 'aeolis-package-'));
 test.after(() => rmSync(folder, { recursive: true, force: true }));
 
@@ -60,8 +60,8 @@ const next_version = once(() => {
   execFileSync('cp', ['-a', unpacked(), there]);
   const control = join(there, 'DEBIAN/control');
   writeFileSync(control, readFileSync(control, 'utf8').replace(/^Version: .*$/m, '$&.1'));
-  execFileSync('dpkg-deb', ['--root-owner-group', '-Znone', '-b', there, there + '.deb'], { stdio: 'pipe' });
-  return there + '.deb';
+  execFileSync('dpkg-deb', ['--root-owner-group', '-Znone', '-b', there, `${there}.deb`], { stdio: 'pipe' });
+  return `${there}.deb`;
 });
 
 /** An empty root with dpkg in it. Its libraries are those of the machine, so it need not have them. */
@@ -70,11 +70,11 @@ const empty_root = (name) => {
   for (const part of ['info', 'updates', 'triggers']) mkdirSync(join(root, 'var/lib/dpkg', part), { recursive: true });
   for (const part of ['status', 'available']) writeFileSync(join(root, 'var/lib/dpkg', part), '');
   const options = [
-    '--root=' + root,
+    `--root=${root}`,
     '--force-depends',
     '--force-not-root',
     '--force-script-chrootless',
-    '--log=' + join(folder, 'log'),
+    `--log=${join(folder, 'log')}`,
   ];
   return {
     root,
@@ -133,9 +133,9 @@ test('the package installs into an empty root and its server runs from there, by
   const address = await address_of(server);
   const page = await fetch(address);
   assert.equal(page.status, 200, 'the console is in the package');
-  const scenarios = await (await fetch(address + 'api/v1/scenarios')).json();
+  const scenarios = await (await fetch(`${address}api/v1/scenarios`)).json();
   assert.ok(scenarios.scenarios.length > 5);
-  const started = await fetch(address + 'api/v1/rehearsals', {
+  const started = await fetch(`${address}api/v1/rehearsals`, {
     method: 'POST',
     body: '{"scenario":"nominal","pace":100}',
   });
@@ -230,10 +230,10 @@ test('installed, upgraded, removed and purged in a root, no link leads nowhere, 
   const purged = spawnSync(
     'dpkg',
     [
-      '--root=' + root,
+      `--root=${root}`,
       '--force-not-root',
       '--force-script-chrootless',
-      '--log=' + join(folder, 'log'),
+      `--log=${join(folder, 'log')}`,
       '--purge',
       'aeolis',
     ],
@@ -259,7 +259,7 @@ test("systemd understands the unit with the page's credentials, and finds it clo
   writeFileSync(unit, readFileSync(unit_path(), 'utf8').replace('ExecStart=', `ExecStart=${unpacked()}`));
   const lines = [...page.matchAll(/LoadCredential=\S+/g)].map(String);
   assert.equal(lines.length, 2);
-  writeFileSync(join(there, 'aeolis.service.d/override.conf'), '[Service]\n' + lines.join('\n') + '\n');
+  writeFileSync(join(there, 'aeolis.service.d/override.conf'), `[Service]\n${lines.join('\n')}\n`);
   const verified = spawnSync('systemd-analyze', ['verify', '--man=no', unit], { encoding: 'utf8' });
   assert.equal(verified.status, 0, verified.stderr);
   assert.doesNotMatch(verified.stderr, /aeolis/);
