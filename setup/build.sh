@@ -31,3 +31,11 @@ build_console() {
     (cd web && npm run --silent build </dev/null >&2) || { say "the build of the console failed"; return 1; }
     console_sources >$stamp
 }
+
+# test_names PROGRAM [Catch2 arguments]: the names of these tests, one a line, as --input-file takes them. Catch2 3 has another option for it.
+test_names() {
+    local program=$1 option=(--list-tests --verbosity quiet)
+    shift
+    "$program" --libidentify | grep -q '^version: *2\.' && option=(--list-test-names-only)
+    "$program" "${option[@]}" "$@" </dev/null
+}

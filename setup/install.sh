@@ -7,19 +7,35 @@ cd "$root" || exit 2
 say() { printf 'aeolis: %s\n' "$*" >&2; }
 stop() { say "$@"; exit 2; }
 
-# Names of the packages of the given kinds (run, test, check, node).
+# 12 or 13 on Debian, another number on another Debian, nothing elsewhere.
+debian_release() (
+    ID='' VERSION_ID=''
+    [ -r /etc/os-release ] && . /etc/os-release
+    if [ "$ID" = debian ]; then echo "$VERSION_ID"; fi
+)
+
+# packages_for RELEASE KIND...: names of the packages of these kinds (run, test, check, node) on that release.
 packages_for() {
-    awk -F'|' -v kinds=" $* " '!/^#/ && NF >= 4 { gsub(/ /, "", $1); gsub(/ /, "", $2); if (index(kinds, " " $2 " ")) print $1 }' \
-        setup/debian-packages.txt
+    local release=$1
+    shift
+    awk -F'|' -v kinds=" $* " -v release="$release" '!/^#/ && NF >= 4 {
+        gsub(/ /, "", $1); gsub(/ /, "", $2)
+        split($1, name, "@")
+        if (index(kinds, " " $2 " ") && (name[2] == "" || name[2] == release)) print name[1]
+    }' setup/debian-packages.txt
 }
 
 is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
-# need_packages KIND...: installs what is missing of these kinds.
+# need_packages KIND...: installs what is missing of these kinds. On a system that is not Debian 12 or 13 it only says what they are.
 need_packages() {
-    command -v dpkg-query >/dev/null || stop "this set-up knows Debian 12 only; install what setup/debian-packages.txt lists, then see README.md"
-    local missing=() package as_root=()
-    for package in $(packages_for "$@"); do is_installed "$package" || missing+=("$package"); done
+    local missing=() package as_root=() release
+    release=$(debian_release)
+    if [ "$release" != 12 ] && [ "$release" != 13 ]; then
+        say "not Debian 12 or 13, so install by hand, under your system's names (or see Containerfile): $(packages_for 13 "$@" | xargs)"
+        return
+    fi
+    for package in $(packages_for "$release" "$@"); do is_installed "$package" || missing+=("$package"); done
     [ ${#missing[@]} -eq 0 ] && return
     if [[ " ${missing[*]} " == *" libboost1.81-dev "* ]] && is_installed libboost1.74-dev; then
         stop "Debian allows one Boost's headers at a time: libboost1.74-dev is installed, Aeolis needs libboost1.81-dev." \
@@ -58,13 +74,14 @@ npm_ci() {
     touch "$stamp"
 }
 
-# A Node that the web build accepts: the system's, or else the one that setup/node pins (Debian 12's own is 18).
+# A Node that the web build accepts: the system's, Debian's (13), or else the one that setup/node pins (Debian 12's own is 18).
 need_node() {
+    node_is_new_enough && return
+    need_packages node
     node_is_new_enough && return
     local pinned=$root/setup/node/node_modules/.bin
     if [ ! -x "$pinned/node" ] || [ setup/node/package-lock.json -nt setup/node/node_modules/.aeolis-installed ]; then
         [ "$(uname -m)" = x86_64 ] || stop "the pinned Node is for x86_64; install Node >= 20.19 with npm, then start again"
-        need_packages node
         npm_ci setup/node
     fi
     PATH=$pinned:$PATH

@@ -25,7 +25,7 @@ struct Place {
 };
 
 Result<Place> place_of(const std::string& server) {
-    const auto url = boost::urls::parse_uri(boost::urls::string_view{server.data(), server.size()});
+    const auto url = boost::urls::parse_uri(server);
     const auto refused = Error{fmt::format("--server {}: http://HOST:PORT or https://HOST:PORT is wanted", server)};
     if (!url || (url->scheme() != "http" && url->scheme() != "https") || url->host().empty() || url->has_userinfo() ||
         url->has_query())

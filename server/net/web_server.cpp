@@ -327,8 +327,7 @@ Task<> WebServer::State::serve_requests(AnyStream& stream, std::string from) {
         std::optional<WaitingPeers::Waiting> waiting_here;
         std::optional<OctetsUnderWay::Taken> taken;
         decltype(HttpResponse::more) more;
-        const auto target =
-            boost::urls::parse_origin_form(boost::urls::string_view{request.target().data(), request.target().size()});
+        const auto target = boost::urls::parse_origin_form(request.target());
         if (const auto refusal = refusal_of(request); !refusal.empty()) {
             response = error_reply(request, http::status::forbidden, refusal);
         } else if (!target) {

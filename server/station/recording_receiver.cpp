@@ -106,7 +106,7 @@ void RecordingReceiver::answer(File& file) {
     while (const auto pdu = file.receiver.next()) {
         const auto content = cfdp::read(*pdu);
         if (content && std::holds_alternative<cfdp::Nak>(content->content)) ++asked_;
-        std::vector<std::uint8_t> packet(primary_header_octets);
+        std::vector<std::uint8_t> packet(primary_header_octets + pdu->size());
         write_primary_header({.telecommand = true,
                               .secondary_header = false,
                               .apid = file_delivery_apid,
@@ -114,7 +114,7 @@ void RecordingReceiver::answer(File& file) {
                               .length = static_cast<std::uint16_t>(pdu->size() - 1)},
                              packet);
         packet_count_ = (packet_count_ + 1) & 0x3FFF;
-        packet.insert(packet.end(), pdu->begin(), pdu->end());
+        std::ranges::copy(*pdu, packet.begin() + primary_header_octets);
         auto& pltu = pltus_.emplace_back(pltu_octets_max);
         pltu.resize(write_pltu(
             {.expedited = false, .spacecraft = spacecraft_id, .to_spacecraft = true, .sequence = frame_sequence_++},

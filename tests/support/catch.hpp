@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Catch2 by one name: version 2 of Debian 12, version 3 of newer systems.
+// Catch2 by the names of version 2: that version on Debian 12, version 3 on Debian 13.
 #if __has_include(<catch2/catch_all.hpp>)
 #include <catch2/catch_all.hpp>
+
+#include <string>
+
+using Catch::Approx;
+
+namespace Catch {
+
+using Matchers::EndsWith;
+using Matchers::StartsWith;
+using Matchers::VectorContains;
+
+inline auto Contains(const std::string& text) {
+    return Matchers::ContainsSubstring(text);
+}
+
+}  // namespace Catch
 #else
 #include <catch2/catch.hpp>
 #endif
