@@ -2,6 +2,7 @@
 // GET /metrics: figures of each queue, link, commit and client, in Prometheus' text format.
 
 #include "server/api/api.hpp"
+#include "server/version.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -88,6 +89,8 @@ void write(MetricsText& text, const StreamHub& hub) {
 
 void Api::metrics(const Asked& asked) {
     MetricsText text;
+    text.begin("build_info", "gauge", "1, labelled with the version of the program");
+    text.line("build_info", fmt::format("{{version=\"{}\"}}", version), 1);
     write(text, parts_.pipeline.figures());
     write(text, parts_.hub);
     text.gauge("connections", "open HTTP and WebSocket connections", parts_.connections());

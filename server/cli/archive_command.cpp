@@ -26,7 +26,7 @@ std::optional<archive::RunId> asked(const ArchiveOptions& options) {
 pipeline::GoesOn until_interrupted(ProgressLine& line) {
     stop_at_interrupt();
     return [&line](const pipeline::Work& work) {
-        line.draw(fmt::format("run {}: {} of {} units", work.run.value, work.units, work.of_units));
+        line.draw(fmt::format("run {}: {} of {} packets", work.run.value, work.units, work.of_units));
         return !stop_asked();
     };
 }
@@ -68,10 +68,10 @@ int archive_verify(const ArchiveOptions& options) {
                                 std::filesystem::temp_directory_path(), until_interrupted(line));
     }();
     if (!found) return failed_at("verify", found.error());
-    if (found->stopped) return failed("archive verify: stopped before all was compared");
+    if (found->stopped) return failed("archive verify: stopped before everything was compared");
     for (const auto& fault : found->faults) fmt::print("{}\n", fault);
     for (const auto& note : found->notes) fmt::print("note: {}\n", note);
-    fmt::print("{}: {} runs, {} units told again, {}\n", options.archive.string(), found->runs, found->units,
+    fmt::print("{}: {} runs, {} packets compared, {}\n", options.archive.string(), found->runs, found->units,
                found->faults.empty() ? "nothing wrong" : fmt::format("{} faults", found->faults.size()));
     return found->faults.empty() ? 0 : 1;
 }
@@ -86,16 +86,15 @@ int archive_rebuild(const ArchiveOptions& options) {
                                  until_interrupted(line));
     }();
     if (!rebuilt) return failed_at("rebuild", rebuilt.error());
-    for (const auto& run : rebuilt->runs) fmt::print("run {}: made again from its units\n", run.value);
-    for (const auto& left : rebuilt->left) fmt::print("left as it is: {}\n", left);
-    if (rebuilt->stopped)
-        return failed("archive rebuild: stopped; what is not named above is as it was, and can be rebuilt again");
+    for (const auto& run : rebuilt->runs) fmt::print("run {}: rebuilt from its packets\n", run.value);
+    for (const auto& left : rebuilt->left) fmt::print("unchanged: {}\n", left);
+    if (rebuilt->stopped) return failed("archive rebuild: stopped; runs not named above are unchanged");
     return rebuilt->left.empty() ? 0 : 1;
 }
 
 int archive_prune(const PruneOptions& options) {
     if (options.runs.empty() == !options.keep)
-        return failed("archive prune: either --run or --keep says which runs go", 2);
+        return failed("archive prune: --run or --keep must name the runs, not both", 2);
     auto archive = archive::Maintenance::open(options.archive);
     if (!archive) return failed_at("prune", archive.error());
     const auto all = archive::run_lines(archive->database());
@@ -105,16 +104,16 @@ int archive_prune(const PruneOptions& options) {
     std::vector<archive::RunId> numbers;
     for (const auto& run : *runs) {
         numbers.push_back(run.run);
-        fmt::print("run {:>4}  {}  {}  {} ({}), {} units\n", run.run.value, run.started, run.scenario, run.state,
+        fmt::print("run {:>4}  {}  {}  {} ({}), {} packets\n", run.run.value, run.started, run.scenario, run.state,
                    run.outcome, run.units);
     }
     if (!options.yes || runs->empty()) {
-        fmt::print("{} of {} runs would go; {}\n", runs->size(), all->size(),
-                   runs->empty() ? "nothing to do" : "--yes takes them away");
+        fmt::print("{} of {} runs would be removed; {}\n", runs->size(), all->size(),
+                   runs->empty() ? "nothing to do" : "--yes removes them");
         return 0;
     }
     if (auto done = archive::prune(*archive, numbers, by_this_user()); !done) return failed_at("prune", done.error());
-    fmt::print("{} of {} runs are gone; aeolis archive vacuum gives their room back to the disk\n", runs->size(),
+    fmt::print("{} of {} runs removed; aeolis archive vacuum returns their space to the disk\n", runs->size(),
                all->size());
     return 0;
 }

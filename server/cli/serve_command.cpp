@@ -71,7 +71,7 @@ int serve(const ServeOptions& options) {
     allow_open_files();
     const auto listen = listen_of(options.listen);
     if (!listen)
-        return failed(fmt::format("--listen {}: ADDRESS:PORT is wanted, as 127.0.0.1:8080", options.listen), 2);
+        return failed(fmt::format("--listen {}: expected ADDRESS:PORT, such as 127.0.0.1:8080", options.listen), 2);
     std::optional<DownlinkFollower::Settings> downlink;
     std::unique_ptr<telemetry::OtherMission> other;
     Result<dictionary::Dictionary> dictionary = dictionary::Dictionary{};

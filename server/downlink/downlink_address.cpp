@@ -7,7 +7,7 @@ namespace aeolis::server {
 
 Result<DownlinkAddress> DownlinkAddress::parse(std::string_view text) {
     const Error refused{"'" + std::string{text} +
-                        "': tcp://HOST:PORT or udp://HOST:PORT is wanted, as tcp://127.0.0.1:5000"};
+                        "': expected tcp://HOST:PORT or udp://HOST:PORT, such as tcp://127.0.0.1:5000"};
     DownlinkAddress address;
     address.udp = text.starts_with("udp://");
     if (!address.udp && !text.starts_with("tcp://")) return refused;

@@ -26,7 +26,7 @@ struct Place {
 
 Result<Place> place_of(const std::string& server) {
     const auto url = boost::urls::parse_uri(server);
-    const auto refused = Error{fmt::format("--server {}: http://HOST:PORT or https://HOST:PORT is wanted", server)};
+    const auto refused = Error{fmt::format("--server {}: expected http://HOST:PORT or https://HOST:PORT", server)};
     if (!url || (url->scheme() != "http" && url->scheme() != "https") || url->host().empty() || url->has_userinfo() ||
         url->has_query())
         return refused;

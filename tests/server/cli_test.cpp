@@ -169,7 +169,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"timeline frob", "there is no command 'timeline frob'"},
         {"timeline analyse /nope", "/nope"},
         {"archive frob", "there is no command 'archive frob'"},
-        {"archive prune --archive /nope", "either --run or --keep says which runs go"},
+        {"archive prune --archive /nope", "--run or --keep must name the runs, not both"},
         {"archive samples --run 1", "--out is required"},
         {"export --archive /nope", "--run is required"},
         {"export --run 1 --format xml", "xml not in {csv,jsonl}"},
@@ -180,7 +180,7 @@ TEST_CASE("bad use of the program is answered in one line that names it, with ex
         {"campaign --scenario campaign", "--cases"},
         {"campaign --scenario campaign --cases 0", "--cases: Value 0 not in range"},
         {"serve --pace 0.5", "neither 0 nor within 1 … 1000: 0.5"},
-        {"serve --listen nowhere", "ADDRESS:PORT is wanted"},
+        {"serve --listen nowhere", "expected ADDRESS:PORT"},
         {"dictionary check /nope", "/nope"},
         {"decode --packets /dev/null", "--xtce"},
         {"send", "--file is required"},
@@ -307,10 +307,10 @@ TEST_CASE("a landing's archive is verified, exported, backed up, tabulated and p
     says("archive samples --run 1 --channel altitude_m speed_mps --archive " + in("b.db") + " --out " +
              in("samples.db"),
          (std::to_string(std::count(objects.begin(), objects.end(), '\n')) + " samples of run 1").c_str());
-    says("archive rebuild --archive " + in("b.db"), "run 1: made again from its units");
+    says("archive rebuild --archive " + in("b.db"), "run 1: rebuilt from its packets");
     CHECK(run(program(), "export --run 1 --channel altitude_m speed_mps --archive " + in("b.db")).text == rows);
-    says("archive prune --keep 0 --archive " + in("b.db"), "1 of 1 runs would go; --yes takes them away");
-    says("archive prune --keep 0 --yes --archive " + in("b.db"), "1 of 1 runs are gone");
+    says("archive prune --keep 0 --archive " + in("b.db"), "1 of 1 runs would be removed; --yes removes them");
+    says("archive prune --keep 0 --yes --archive " + in("b.db"), "1 of 1 runs removed");
     says("archive vacuum --archive " + in("b.db"), "octets, before");
     CHECK(run(program(), "export --run 1 --archive " + in("b.db")).code == 1);
     std::filesystem::remove_all(folder);
@@ -460,7 +460,7 @@ TEST_CASE("what cannot be done is answered in one line, with exit code 1", "[cli
              {"campaign --scenario performance --cases 2", "performance: test_venue: "},
              {"serve --listen 192.0.2.1:0 --archive /dev/null", "loopback only"},
              {nobody.c_str(), "http://127.0.0.1:1: no connection: "},
-             {no_url.c_str(), "--server ftp://host: http://HOST:PORT or https://HOST:PORT is wanted"},
+             {no_url.c_str(), "--server ftp://host: expected http://HOST:PORT or https://HOST:PORT"},
          }}) {
         const auto ended = run(program(), arguments);
         INFO(arguments << " -> " << ended.code << ": " << ended.text);

@@ -39,6 +39,7 @@ TEST_CASE("every route answers what it can and refuses the rest by name", "[http
     }
     const Asked table[] = {
         {"GET", "/healthz", "", 200, "ok"},
+        {"GET", "/metrics", "", 200, "\naeolis_build_info{version=\""},
         {"GET", "/metrics", "", 200, "\naeolis_resident_memory_bytes "},
         {"GET", "/metrics", "", 200, "\naeolis_archive_commit_seconds_count "},
         {"GET", "/metrics", "", 200, "\naeolis_archive_pending_bytes "},

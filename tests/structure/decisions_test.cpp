@@ -24,11 +24,18 @@ std::vector<std::string> bullets_under(const std::string& file, const std::strin
     return bullets;
 }
 
+/// Every file of docs/decisions/ but the index.
+std::vector<std::string> decision_records() {
+    auto records = files_under("docs/decisions", {".md"});
+    std::erase(records, "docs/decisions/README.md");
+    return records;
+}
+
 }  // namespace
 
 TEST_CASE("each decision record lists what the chosen way costs, and what each refused one would have",
           "[structure][R49]") {
-    const auto records = files_under("docs/decisions", {".md"});
+    const auto records = decision_records();
     CHECK(records.size() >= 4);
     for (const std::string& record : records) {
         INFO(record);
@@ -39,6 +46,16 @@ TEST_CASE("each decision record lists what the chosen way costs, and what each r
             INFO(way);
             CHECK(way.find("ost") != std::string::npos);  // "Cost: …", "costs …"
         }
+    }
+}
+
+TEST_CASE("the index of decisions names each record, with its title", "[structure][R49]") {
+    const std::string index = text_of("docs/decisions/README.md");
+    for (const std::string& record : decision_records()) {
+        INFO(record);
+        const std::string title = lines_of(record).front().substr(2);  // behind "# "
+        const std::string file = record.substr(record.rfind('/') + 1);
+        CHECK(index.find("[" + title + "](" + file + ")") != std::string::npos);
     }
 }
 
