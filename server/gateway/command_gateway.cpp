@@ -45,26 +45,6 @@ std::string same_person(std::string_view name) {
 
 }  // namespace
 
-std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution) {
-    return {
-        {"solution_id", static_cast<double>(solution.solution_id)},
-        {"epoch_sclk", solution.epoch.seconds},
-        {"position_x_m", solution.p_MoB_M_m[0]},
-        {"position_y_m", solution.p_MoB_M_m[1]},
-        {"position_z_m", solution.p_MoB_M_m[2]},
-        {"velocity_x_mps", solution.v_MB_M_mps[0]},
-        {"velocity_y_mps", solution.v_MB_M_mps[1]},
-        {"velocity_z_mps", solution.v_MB_M_mps[2]},
-        {"entry_sclk", solution.entry.seconds},
-        {"target_latitude_deg", solution.target.latitude_deg},
-        {"target_longitude_deg", solution.target.longitude_deg},
-        {"target_radius_m", solution.target.radius_m},
-        {"parachute_speed_mps", solution.parachute_speed_mps},
-        {"heatshield_speed_mps", solution.heatshield_speed_mps},
-        {"backshell_altitude_m", solution.backshell_altitude_m},
-    };
-}
-
 CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
                                std::vector<commands::NamedValue> solution, std::vector<std::string> second_person,
                                commands::TrackingSchedule stations, std::optional<Scet> entry)

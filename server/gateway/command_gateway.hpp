@@ -12,7 +12,6 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 #include "server/gateway/planned_deadlines.hpp"
-#include "simulation/landing.hpp"
 #include "telemetry/decommutator.hpp"
 
 #include <cstdint>
@@ -33,9 +32,6 @@ namespace aeolis::server {
 /// that was another timeline, and another analysis is on its way.
 inline constexpr const char* timeline_holds_action = "timeline holds";
 inline constexpr const char* timeline_refuted_action = "timeline refuted";
-
-/// Ground's navigation solution as arguments of "set edl parameters", by argument name.
-std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution);
 
 /// The command path of one run: the only one. WebSocket, POST and the scenario's own script all come through here.
 ///

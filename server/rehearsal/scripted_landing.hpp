@@ -6,8 +6,8 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/records.hpp"
 #include "server/gateway/command_gateway.hpp"
-#include "server/station/ground_station.hpp"
 #include "simulation/landing.hpp"
+#include "telemetry/station/ground_station.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -20,7 +20,7 @@ namespace aeolis::server {
 
 /// A landing with its command path, and the scenario's own script, which goes through it.
 ///
-/// In       cycles to step; commands                    Out   the cycle's report; stages of commands
+/// In       cycles to step; commands                    Out   what the station received; stages of commands
 /// Rate     as fast as it is called                     Memory   the recording: some megabytes
 /// A value: copy it and the landing is forked, with what ground knows of it.
 class ScriptedLanding {
@@ -34,11 +34,15 @@ class ScriptedLanding {
     /// See Landing::take_case.
     void take_case(std::uint64_t case_number) { landing_.take_case(case_number); }
 
-    /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
-    const simulation::CycleReport& step();
-    /// What of a cycle reached Earth is taken in by the command path: for answers, and for the preconditions of what is
-    /// sent later.
-    void hear(const simulation::CycleReport& report);
+    /// The station decodes tones from samples, where the scenario has them so, and explains silences. Before the first
+    /// step.
+    void equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                       const dictionary::Dictionary& dictionary);
+
+    /// One cycle of 1/64 s, after the script's commands that are due. What was received stands until the next step.
+    const telemetry::Received& step();
+    /// What was received is taken in by the command path: for answers, and for the preconditions of what is sent later.
+    void hear(const telemetry::Received& received);
 
     v1::CommandReply submit(const v1::CommandRequest& request);
     /// See CommandGateway::look.
@@ -56,7 +60,7 @@ class ScriptedLanding {
 
     const simulation::Landing& landing() const { return landing_; }
     const CommandGateway& gateway() const { return gateway_; }
-    const GroundStation& station() const { return station_; }
+    const telemetry::GroundStation& station() const { return station_; }
     double recording_progress() const;  ///< 0 … 1 of the recording that has come down
 
   private:
@@ -65,7 +69,7 @@ class ScriptedLanding {
 
     Sclk entry_;
     simulation::Landing landing_;
-    GroundStation station_;
+    telemetry::GroundStation station_;
     CommandGateway gateway_;
     std::vector<simulation::ScriptedCommand> script_;  ///< not sent yet
     std::vector<archive::StageRecord> stages_;
@@ -73,6 +77,9 @@ class ScriptedLanding {
     bool dispersed_;
     std::uint64_t cycles_ = 0;
 };
+
+/// Ground's navigation solution as arguments of "set edl parameters", by argument name.
+std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution);
 
 /// What is told of a landing that a bug has ended.
 std::string text_of_bug(const CheckFailed& bug);

@@ -3,6 +3,7 @@
 #include "common/cltu.hpp"
 #include "common/tc_frame.hpp"
 #include "server/gateway/command_gateway.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 

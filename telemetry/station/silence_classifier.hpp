@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "server/station/predicted_silences.hpp"
-#include "simulation/landing.hpp"
+#include "telemetry/port.hpp"
+#include "telemetry/station/predicted_silences.hpp"
 
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
 
 /// What a link's silence is taken for.
 enum class SilenceClass : std::uint8_t {
@@ -34,8 +34,7 @@ bool is_lost(SilenceClass silence);
 std::string words_of(SilenceClass silence, const std::string& sentence);
 
 /// Says why a link brings nothing, by what ground knows: predictions, light time, which link it is, its last octet.
-/// What the simulation says of the reason is not looked at; that a receiver has lost or found a link is what a station
-/// tells.
+/// That a receiver has lost or found a link is what the port brings.
 ///
 /// In       changes of links as they reach Earth (name, up or down), time on Earth        Out   the same changes, with
 /// ground's reason and whether the link is lost Rate     any; a silence is looked at again with each call: when what
@@ -64,12 +63,11 @@ class SilenceClassifier {
     };
     /// @return what to tell of links now: `changes` with ground's reasons, and silences that became others. Empty:
     /// nothing.
-    std::vector<simulation::LinkState> tell(const std::vector<simulation::LinkState>& changes, Ert now,
-                                            const Station& station);
+    std::vector<LinkState> tell(const std::vector<LinkState>& changes, Ert now, const Station& station);
 
   private:
     struct Silence {
-        simulation::Link link;
+        Link link;
         bool cut = false;  ///< it began while the station failed
         SilenceClass told{};
     };
@@ -78,12 +76,12 @@ class SilenceClassifier {
         std::string sentence{};
     };
     Explanation explain(const Silence& silence, double e_s, const Station& station) const;
-    Explanation explain_by_link(const simulation::Link& link, double e_s, const Station& station) const;
+    Explanation explain_by_link(const Link& link, double e_s, const Station& station) const;
     Explanation explain_uhf(double e_s) const;
     Explanation explain_relay(double e_s, const Station& station) const;
     Explanation explain_x_band(double e_s) const;
     std::optional<Explanation> explain_by_passes(double e_s) const;
-    simulation::LinkState told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const;
+    LinkState told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const;
     double e_s(Ert ert) const;
 
     PredictedSilences predicted_;
@@ -92,4 +90,4 @@ class SilenceClassifier {
     std::vector<Silence> silent_;
 };
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

@@ -1,29 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/ground_station.hpp"
+#include "telemetry/station/ground_station.hpp"
 
 #include "common/space_packet.hpp"
 
 #include <algorithm>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
 
-const simulation::CycleReport& GroundStation::receive(const simulation::CycleReport& landed, Ert now) {
-    report_ = landed;
-    for (const simulation::LinkState& state : landed.links) note(state);
-    for (const simulation::ReceivedOctets& piece : landed.octets) receive(piece);
+const Received& GroundStation::receive(const Downlink& downlink) {
+    now_ = downlink.now;
+    out_ = downlink.station_out;
+    received_.clear();
+    received_.links = downlink.links;
+    received_.tones = downlink.tones;
+    for (const LinkState& state : downlink.links) note(state);
+    for (const ReceivedOctets& piece : downlink.octets) receive(piece);
     for (LinkReceiver& link : links_)
-        if (link.waits && static_cast<double>(now.microseconds - link.heard_at.microseconds) * 1e-6 > quiet_s)
-            search_to_the_end(link, now);
-    recording_.pass(now, relay_up_);
-    return report_;
+        if (link.waits && static_cast<double>(now_.microseconds - link.heard_at.microseconds) * 1e-6 > quiet_s)
+            search_to_the_end(link, now_);
+    recording_.pass(now_, relay_up_);
+    if (tones_) tones_->receive(downlink, received_);
+    return received_;
 }
 
-GroundStation::LinkReceiver& GroundStation::receiver_of(const simulation::Link& link) {
+void GroundStation::explain_silences(double recording_progress) {
+    if (!silences_) return;
+    SilenceClassifier::Station station{recording_progress, {}, out_ ? "nothing comes from the station" : ""};
+    for (const LinkReceiver& link : links_) station.heard.emplace_back(link.link.name, link.heard_at);
+    received_.links = silences_->tell(received_.links, now_, station);
+}
+
+GroundStation::LinkReceiver& GroundStation::receiver_of(const Link& link) {
     const auto known = std::ranges::find(links_, link, &LinkReceiver::link);
     return known != links_.end() ? *known : links_.emplace_back(LinkReceiver{link});
 }
 
-void GroundStation::receive(const simulation::ReceivedOctets& piece) {
+void GroundStation::receive(const ReceivedOctets& piece) {
     LinkReceiver& from = receiver_of(piece.link);
     from.rate.add(piece.ert, piece.octets.size());
     from.heard_at = piece.ert;
@@ -38,7 +50,8 @@ void GroundStation::receive_frames(LinkReceiver& from, Ert ert) {
         while (const auto packet = from.packets.next()) {
             const auto header = read_primary_header(*packet);
             if (!header || header->apid != file_delivery_apid)
-                report_.packets.push_back({.link = from.link, .ert = ert, .octets = {packet->begin(), packet->end()}});
+                received_.packets.push_back(
+                    {.link = from.link, .ert = ert, .octets = {packet->begin(), packet->end()}});
             else
                 recording_.receive(packet->subspan(primary_header_octets), ert,
                                    [&](std::span<const std::uint8_t> file) { take_file(file, ert); });
@@ -47,8 +60,8 @@ void GroundStation::receive_frames(LinkReceiver& from, Ert ert) {
 }
 
 /// A link that went down brings nothing that could complete a frame: what waits for octets is searched as it is.
-void GroundStation::note(const simulation::LinkState& state) {
-    if (state.link == simulation::relay_link) relay_up_ = state.up;
+void GroundStation::note(const LinkState& state) {
+    if (state.link == relay_link) relay_up_ = state.up;
     const auto known = std::ranges::find(links_, state.link, &LinkReceiver::link);
     if (known == links_.end() || state.up) return;
     search_to_the_end(*known, state.ert);
@@ -64,11 +77,10 @@ void GroundStation::take_file(std::span<const std::uint8_t> octets, Ert ert) {
     while (const auto size = space_packet_octets(octets)) {
         if (*size > octets.size()) break;
         const auto packet = octets.first(*size);
-        report_.packets.push_back(
-            {.link = simulation::relay_link, .ert = ert, .octets = {packet.begin(), packet.end()}});
+        received_.packets.push_back({.link = relay_link, .ert = ert, .octets = {packet.begin(), packet.end()}});
         octets = octets.subspan(*size);
     }
     unreadable_file_octets_ += octets.size();
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/ground_station.hpp"
+#include "telemetry/station/ground_station.hpp"
 
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
@@ -9,7 +9,7 @@
 #include <vector>
 
 using namespace aeolis;
-using namespace aeolis::server;
+using namespace aeolis::telemetry;
 
 namespace {
 
@@ -23,6 +23,11 @@ std::vector<std::uint8_t> pltu_of(std::uint8_t sequence, std::span<const std::ui
     std::vector<std::uint8_t> pltu(pltu_octets_max);
     pltu.resize(write_pltu({.sequence = sequence}, packets, pltu));
     return pltu;
+}
+
+const Received& receive(GroundStation& station, Downlink downlink, Ert now) {
+    downlink.now = now;
+    return station.receive(downlink);
 }
 
 }  // namespace
@@ -39,13 +44,13 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
     Ert last;
     for (std::size_t at = 0; at < air.size(); at += 16) {
         const auto end = std::min(at + 16, air.size());
-        simulation::CycleReport landed;
+        Downlink landed;
         landed.octets.push_back(
-            {simulation::uhf_live_link,
+            {uhf_live_link,
              Ert{static_cast<std::int64_t>(at)},
              {air.begin() + static_cast<std::ptrdiff_t>(at), air.begin() + static_cast<std::ptrdiff_t>(end)}});
-        for (const auto& packet : station.receive(landed, Ert{1000}).packets) {
-            CHECK(packet.link == simulation::uhf_live_link);
+        for (const auto& packet : receive(station, landed, Ert{1000}).packets) {
+            CHECK(packet.link == uhf_live_link);
             CHECK(packet.ert.microseconds == static_cast<std::int64_t>(at));
             found.push_back(packet.octets);
         }
@@ -58,35 +63,33 @@ TEST_CASE("the station finds the packets of the UHF link however its octets are 
 
 TEST_CASE("a spoilt frame costs its packets and no others, and the gap is counted", "[station]") {
     GroundStation station{0.0};
-    simulation::CycleReport landed;
+    Downlink landed;
     for (std::uint8_t i = 0; i < 5; ++i) {
         auto pltu = pltu_of(i, packet_of(i));
         if (i == 2) pltu[30] ^= 0x40;
-        landed.octets.push_back({simulation::uhf_live_link, Ert{i}, pltu});
+        landed.octets.push_back({uhf_live_link, Ert{i}, pltu});
     }
-    CHECK(station.receive(landed, Ert{1000}).packets.size() == 4);
+    CHECK(receive(station, landed, Ert{1000}).packets.size() == 4);
     CHECK(station.links().at(0).pltus.counters().bad_crc == 1);
     CHECK(station.links().at(0).pltus.counters().missing_frames == 1);
 }
 
-TEST_CASE("what comes by other ways passes through the station as it is", "[station]") {
+TEST_CASE("decisions of a modelled receiver pass through the station as they are", "[station]") {
     GroundStation station{0.0};
-    simulation::CycleReport landed;
-    landed.packets.push_back({simulation::relay_link, Ert{7}, packet_of(1)});
-    landed.tones.emplace_back();
-    const auto& report = station.receive(landed, Ert{1000});
-    REQUIRE(report.packets.size() == 1);
-    CHECK(report.packets[0].link == simulation::relay_link);
-    CHECK(report.tones.size() == 1);
+    Downlink landed;
+    landed.tones.emplace_back().tone = ToneId{42};
+    const auto& received = receive(station, landed, Ert{1000});
+    REQUIRE(received.tones.size() == 1);
+    CHECK(received.tones[0].tone == ToneId{42});
 }
 
 TEST_CASE("each link is received and counted by itself", "[station]") {
     GroundStation station{0.0};
-    simulation::CycleReport landed;
-    landed.octets.push_back({simulation::uhf_live_link, Ert{1}, pltu_of(0, packet_of(0))});
+    Downlink landed;
+    landed.octets.push_back({uhf_live_link, Ert{1}, pltu_of(0, packet_of(0))});
     landed.octets.push_back({{"uhf_mro", false}, Ert{1}, pltu_of(0, packet_of(0))});
     landed.octets.push_back({{"uhf_mro", false}, Ert{1}, pltu_of(2, packet_of(2))});
-    CHECK(station.receive(landed, Ert{1}).packets.size() == 3);
+    CHECK(receive(station, landed, Ert{1}).packets.size() == 3);
     REQUIRE(station.links().size() == 2);
     CHECK(station.links()[1].link.name == "uhf_mro");
     CHECK(station.links()[0].pltus.counters().missing_frames == 0);
@@ -95,16 +98,16 @@ TEST_CASE("each link is received and counted by itself", "[station]") {
 
 TEST_CASE("a damaged length holds the next frame back no longer than the link is up", "[station]") {
     GroundStation station{0.0};
-    simulation::CycleReport landed;
+    Downlink landed;
     auto damaged = pltu_of(0, packet_of(0));
     damaged[5] |= 0x07;  // the frame seems to go on for 2 kB
     const auto next = pltu_of(1, packet_of(1));
     damaged.insert(damaged.end(), next.begin(), next.end());
-    landed.octets.push_back({simulation::uhf_live_link, Ert{1}, damaged});
-    CHECK(station.receive(landed, Ert{1}).packets.empty());
-    simulation::CycleReport down;
-    down.links.push_back({simulation::uhf_live_link, Ert{2}, false, "plasma blackout"});
-    CHECK(station.receive(down, Ert{2}).packets.size() == 1);
+    landed.octets.push_back({uhf_live_link, Ert{1}, damaged});
+    CHECK(receive(station, landed, Ert{1}).packets.empty());
+    Downlink down;
+    down.links.push_back({uhf_live_link, Ert{2}, false});
+    CHECK(receive(station, down, Ert{2}).packets.size() == 1);
 }
 
 TEST_CASE("a damaged length holds the next frame back half a second on a link that has fallen quiet, and not while "
@@ -113,9 +116,9 @@ TEST_CASE("a damaged length holds the next frame back half a second on a link th
     GroundStation station{0.0};
     const auto at_ms = [](std::int64_t ms) { return Ert{ms * 1000}; };
     const auto bring = [&](std::int64_t ms, const std::vector<std::uint8_t>& octets) {
-        simulation::CycleReport landed;
-        if (!octets.empty()) landed.octets.push_back({simulation::uhf_live_link, at_ms(ms), octets});
-        return station.receive(landed, at_ms(ms)).packets.size();
+        Downlink landed;
+        if (!octets.empty()) landed.octets.push_back({uhf_live_link, at_ms(ms), octets});
+        return receive(station, landed, at_ms(ms)).packets.size();
     };
     auto damaged = pltu_of(0, packet_of(0));
     damaged[5] |= 0x07;  // the frame seems to go on for 2 kB

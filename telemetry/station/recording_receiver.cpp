@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/recording_receiver.hpp"
+#include "telemetry/station/recording_receiver.hpp"
 
 #include "common/ids.hpp"
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
-#include "flight/file_delivery/recording_delivery.hpp"
 
 #include <algorithm>
 #include <variant>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
 namespace {
 
 constexpr double answer_margin_s = 30.0;
 
-using Outcome = telemetry::Reception::Outcome;
+using Outcome = Reception::Outcome;
 
-bool ended(const telemetry::Reception& reception) {
+bool ended(const Reception& reception) {
     return reception.outcome != Outcome::under_way && reception.outcome_acknowledged;
 }
 
@@ -25,11 +24,10 @@ bool ended(const telemetry::Reception& reception) {
 RecordingReceiver::File* RecordingReceiver::file_of(const cfdp::Header& header) {
     const auto known = files_.find({header.source, header.sequence});
     if (known != files_.end()) return &known->second;
-    auto reception = telemetry::reception_of(header);
+    auto reception = reception_of(header);
     if (!reception || files_.size() >= files_max) return nullptr;
     if (files_under_way() >= files_under_way_max) forget_the_most_silent();
-    return &files_
-                .emplace(FileName{header.source, header.sequence}, File{telemetry::CfdpReceiver{std::move(*reception)}})
+    return &files_.emplace(FileName{header.source, header.sequence}, File{CfdpReceiver{std::move(*reception)}})
                 .first->second;
 }
 
@@ -51,8 +49,8 @@ std::uint64_t RecordingReceiver::refused() const {
 /// A file is as long as the octets that it is said to have: what says too many is not believed.
 bool RecordingReceiver::fits(const cfdp::Pdu& pdu) {
     const cfdp::Header& header = pdu.header;
-    if (header.source != spacecraft_id || header.destination != flight::RecordingDelivery::ground_entity ||
-        header.sequence == 0 || header.sequence > files_max)
+    if (header.source != spacecraft_id || header.destination != ground_entity || header.sequence == 0 ||
+        header.sequence > files_max)
         return false;
     if (const auto* data = std::get_if<cfdp::FileData>(&pdu.content))
         return data->offset <= file_octets_max && data->octets.size() <= file_octets_max - data->offset;
@@ -133,4 +131,4 @@ std::size_t RecordingReceiver::files_whole() const {
         files_, [](const auto& each) { return each.second.receiver.state().outcome == Outcome::complete; }));
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

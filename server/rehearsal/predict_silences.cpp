@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/predicted_silences.hpp"
+#include "server/rehearsal/predict_silences.hpp"
 
 #include "server/archive/timeline_plan.hpp"
 #include "simulation/entry_flight.hpp"
@@ -11,6 +11,8 @@
 
 namespace aeolis::server {
 namespace {
+
+using telemetry::PredictedSilences;
 
 constexpr double flown_step_s = 0.25, longest_entry_s = 900.0;  // ours
 constexpr double held_bank_rad =
@@ -70,7 +72,7 @@ std::optional<double> earth_set_s(const simulation::Scenario& scenario, const No
 
 }  // namespace
 
-PredictedSilences predict_silences(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
+telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
     const auto timepoints = archive::predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, {});
     const auto timepoint_s = [&](std::string_view action) -> std::optional<double> {
         const auto row = std::ranges::find(dictionary.timeline, action, &dictionary::TimelineRow::action);
@@ -87,7 +89,9 @@ PredictedSilences predict_silences(const simulation::Scenario& scenario, const d
     silences.uhf_stop_s = timepoint_s("stop_uhf");
     silences.earth_set_s = earth_set_s(scenario, entry, backshell_s);
     silences.carrier_weak = !simulation::XBandLink::can_lock(scenario.radio.x_band_c_n0_dbhz);
-    silences.passes = scenario.radio.relay_passes;
+    for (const simulation::RelayPass& pass : scenario.radio.relay_passes)
+        silences.passes.push_back({pass.orbiter, pass.rise_after_entry_s, pass.set_after_entry_s,
+                                   pass.set_after_entry_s + pass.delivery_after_set_s, pass.stored});
     silences.light_time_s = scenario.radio.light_time_s;
     return silences;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
 
 /// Receives the files in which the recording comes down (CFDP class 2), and asks for what of them is missing.
 ///
@@ -49,7 +49,7 @@ class RecordingReceiver {
 
     static bool fits(const cfdp::Pdu& pdu);
     struct File {
-        telemetry::CfdpReceiver receiver;
+        CfdpReceiver receiver;
         std::vector<std::uint8_t> octets{};
         bool given_out = false;
         Ert heard{};
@@ -69,4 +69,4 @@ class RecordingReceiver {
     std::uint8_t frame_sequence_ = 0;
 };
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

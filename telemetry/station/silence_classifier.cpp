@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/silence_classifier.hpp"
+#include "telemetry/station/silence_classifier.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <utility>
 
-namespace aeolis::server {
+namespace aeolis::telemetry {
 namespace {
 
 /// "E+45 s"
@@ -45,18 +45,17 @@ double SilenceClassifier::e_s(Ert ert) const {
     return static_cast<double>(ert.microseconds - entry_ert_.microseconds) * 1e-6;
 }
 
-std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<simulation::LinkState>& changes, Ert now,
-                                                           const Station& station) {
-    std::vector<simulation::LinkState> all;
+std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& changes, Ert now, const Station& station) {
+    std::vector<LinkState> all;
     if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
         const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
-        for (const simulation::Link& link : {simulation::uhf_live_link, simulation::x_band_link})
+        for (const Link& link : {uhf_live_link, x_band_link})
             all.push_back(told(silent_.emplace_back(Silence{link, false, {}}),
                                {SilenceClass::light_time,
                                 "what leaves the vehicle at the start is here at " + day_of_year_text(first)},
                                start_ert_, station));
     }
-    for (const simulation::LinkState& change : changes) {
+    for (const LinkState& change : changes) {
         const auto known = std::ranges::find(silent_, change.link, &Silence::link);
         if (change.up) {
             if (known != silent_.end()) silent_.erase(known);
@@ -78,8 +77,7 @@ std::vector<simulation::LinkState> SilenceClassifier::tell(const std::vector<sim
     return all;
 }
 
-simulation::LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert,
-                                              const Station& station) const {
+LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const {
     silence.told = why.silence;
     std::string sentence = why.sentence;
     if (why.silence == SilenceClass::unexplained) {
@@ -101,34 +99,30 @@ SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence
     return why;
 }
 
-SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const simulation::Link& link, double e_s,
+SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const Link& link, double e_s,
                                                                   const Station& station) const {
-    if (link == simulation::x_band_link) return explain_x_band(e_s);
-    if (link == simulation::relay_link) return explain_relay(e_s, station);
-    if (link == simulation::uhf_live_link) return explain_uhf(e_s);
+    if (link == x_band_link) return explain_x_band(e_s);
+    if (link == relay_link) return explain_relay(e_s, station);
+    if (link == uhf_live_link) return explain_uhf(e_s);
     return {SilenceClass::delivered, "nothing more comes until the orbiter's next pass"};
 }
 
 /// None: one that hands on at once is in view.
 std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_passes(double e_s) const {
     if (predicted_.passes.empty()) return {};
-    const simulation::RelayPass *recording = nullptr, *next = nullptr;
-    for (const simulation::RelayPass& pass : predicted_.passes) {
-        const bool in_view =
-            e_s >= pass.rise_after_entry_s + pass_margin_s && e_s < pass.set_after_entry_s - pass_margin_s;
+    const PredictedSilences::OrbiterPass *recording = nullptr, *next = nullptr;
+    for (const PredictedSilences::OrbiterPass& pass : predicted_.passes) {
+        const bool in_view = e_s >= pass.rise_s + pass_margin_s && e_s < pass.set_s - pass_margin_s;
         if (in_view && !pass.stored) return {};
         if (in_view) recording = &pass;
-        if (pass.rise_after_entry_s > e_s && !pass.stored &&
-            (next == nullptr || pass.rise_after_entry_s < next->rise_after_entry_s))
-            next = &pass;
+        if (pass.rise_s > e_s && !pass.stored && (next == nullptr || pass.rise_s < next->rise_s)) next = &pass;
     }
     if (recording != nullptr)
         return Explanation{SilenceClass::orbiter_records,
-                           fmt::format("{} delivers from {}", recording->orbiter,
-                                       after_entry(recording->set_after_entry_s + recording->delivery_after_set_s))};
+                           fmt::format("{} delivers from {}", recording->orbiter, after_entry(recording->delivery_s))};
     if (next != nullptr)
         return Explanation{SilenceClass::no_orbiter,
-                           fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_after_entry_s))};
+                           fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_s))};
     return Explanation{SilenceClass::no_orbiter, "no further pass is planned"};
 }
 
@@ -159,4 +153,4 @@ SilenceClassifier::Explanation SilenceClassifier::explain_x_band(double e_s) con
     return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::telemetry

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/station/predicted_silences.hpp"
+#include "server/rehearsal/predict_silences.hpp"
 
 #include "tests/server/running_server.hpp"
 #include "tests/support/catch.hpp"
