@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/predict_silences.hpp"
 
-#include "server/archive/timeline_plan.hpp"
+#include "dictionaries/timeline_plan.hpp"
 #include "simulation/entry_flight.hpp"
 #include "simulation/entry_reference.hpp"
 #include "simulation/links/x_band_link.hpp"
@@ -72,8 +72,9 @@ std::optional<double> earth_set_s(const simulation::Scenario& scenario, const No
 
 }  // namespace
 
-telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenario, const dictionary::Dictionary& dictionary) {
-    const auto timepoints = archive::predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, {});
+telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenario,
+                                              const dictionary::Dictionary& dictionary) {
+    const auto timepoints = dictionary::predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, {});
     const auto timepoint_s = [&](std::string_view action) -> std::optional<double> {
         const auto row = std::ranges::find(dictionary.timeline, action, &dictionary::TimelineRow::action);
         if (row == dictionary.timeline.end()) return {};

@@ -2,13 +2,14 @@
 #include "server/rehearsal/rehearsal.hpp"
 
 #include "generated/dictionary_flight.hpp"
+#include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <fmt/format.h>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
@@ -54,19 +55,29 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
 }
 
 std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file) {
-    if (takes_commands()) return flight_.look(file);
-    std::vector<v1::CommandReply> refusals;
-    std::ranges::transform(file, std::back_inserter(refusals),
-                           [this](const v1::CommandRequest& request) { return submit(request); });
-    return refusals;
+    std::vector<v1::CommandReply> replies;
+    if (!takes_commands()) {
+        for (const auto& request : file) replies.push_back(submit(request));
+        return replies;
+    }
+    std::vector<commands::Request> requests;
+    for (const auto& request : file) requests.push_back(request_of(request));
+    for (const auto& reply : flight_.look(requests)) replies.push_back(message_of(reply));
+    return replies;
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
-    if (takes_commands()) return flight_.submit(request);
+    if (takes_commands()) return message_of(flight_.submit(request_of(request)));
     v1::CommandReply refusal;
     refusal.set_request(request.request());
     refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));
     return refusal;
+}
+
+std::vector<archive::StageRecord> Rehearsal::take_stages() {
+    std::vector<archive::StageRecord> records;
+    for (auto& stage : flight_.take_stages()) records.push_back(record_of(std::move(stage)));
+    return records;
 }
 
 void Rehearsal::take(const telemetry::Received& received) {

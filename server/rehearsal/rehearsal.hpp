@@ -39,14 +39,14 @@ class Rehearsal {
     const telemetry::Received& step();
 
     v1::CommandReply submit(const v1::CommandRequest& request);
-    /// See CommandGateway::look.
+    /// See commands::CommandGateway::look.
     std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
 
     /// It begins with the next cycle. An Error names what of it cannot be.
     Result<void> inject(const v1::FaultInjection& injection);
 
     /// Stages since the last call; their `seq` is not given yet.
-    std::vector<archive::StageRecord> take_stages() { return flight_.take_stages(); }
+    std::vector<archive::StageRecord> take_stages();
     /// Reasons for which commands of the scenario's own script were refused.
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
@@ -60,7 +60,7 @@ class Rehearsal {
 
     const simulation::Scenario& scenario() const { return scenario_; }
     const simulation::Landing& landing() const { return flight_.landing(); }
-    const CommandGateway& gateway() const { return flight_.gateway(); }
+    const commands::CommandGateway& gateway() const { return flight_.gateway(); }
     const telemetry::GroundStation& station() const { return flight_.station(); }
     /// What each UHF link has brought so far.
     std::vector<archive::LinkTotals> link_totals() const;

@@ -3,6 +3,7 @@
 
 #include "server/rehearsal/predict_silences.hpp"
 #include "server/tones/predicted_doppler.hpp"
+#include "telemetry/text.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -76,15 +77,15 @@ std::vector<commands::NamedValue> solution_arguments(const simulation::Navigatio
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
-    : entry_(scenario.entry_sclk),
+    : dictionary_(dictionary), entry_(scenario.entry_sclk),
       landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
                stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk)),
-      script_(scenario.commands), dispersed_(landing_.dispersed()) {}
+      script_(scenario.commands), dispersed_(landing_.dispersed()), decommutator_(dictionary) {}
 
-void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed,
-                                    std::uint64_t case_number, const dictionary::Dictionary& dictionary) {
+void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                                    const dictionary::Dictionary& dictionary) {
     // When what leaves the vehicle at the entry that ground predicts is heard on Earth.
     const Ert entry{landing_.correlation().scet_of(scenario.entry_sclk).microseconds +
                     static_cast<std::int64_t>(landing_.light_time_s() * 1e6)};
@@ -108,11 +109,20 @@ const telemetry::Received& ScriptedLanding::step() {
 }
 
 void ScriptedLanding::hear(const telemetry::Received& received) {
-    for (const auto& packet : received.packets)
-        gateway_.receive(packet.octets, packet.link == telemetry::uhf_live_link, packet.ert, stages_);
+    for (const auto& packet : received.packets) receive(packet);
     // Once a second is enough for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
     radiate();
+}
+
+void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
+    const bool live = packet.link == telemetry::uhf_live_link;
+    if (!live && !gateway_.awaits_answers()) return;
+    if (decommutator_.decode(packet.octets, decoded_)) return;
+    const auto* event = telemetry::event_of(dictionary_, decoded_);
+    gateway_.receive({decoded_, packet.octets, live, packet.ert, event,
+                      event != nullptr ? telemetry::event_text(dictionary_, *event, decoded_) : ""},
+                     stages_);
 }
 
 void ScriptedLanding::send_script() {
@@ -122,26 +132,23 @@ void ScriptedLanding::send_script() {
         if (landing_.sclk() < entry_ - next->send_before_entry_s) return;
         const auto command = std::move(*next);
         script_.erase(next);
-        v1::CommandRequest request;
-        request.set_command(command.command);
-        request.set_from_solution(command.from_solution);
-        for (const auto& [name, value] : command.arguments) {
-            auto& argument = *request.add_arguments();
-            argument.set_name(name);
-            argument.set_value(value);
-        }
+        commands::Request request;
+        request.command = command.command;
+        request.from_solution = command.from_solution;
+        for (const auto& [name, value] : command.arguments) request.arguments.push_back({name, value});
         // Who wrote the command into the scenario has armed and named it.
-        request.set_armed(true);
-        request.set_confirmation(command.command);
-        const auto reply = gateway_.submit(request, landing_.ert_now(), stages_, CommandGateway::Asker::script);
+        request.armed = true;
+        request.confirmation = command.command;
+        const auto reply =
+            gateway_.submit(request, landing_.ert_now(), stages_, commands::CommandGateway::Asker::script);
         radiate();
-        if (reply.accepted()) continue;
-        script_refusals_.push_back(reply.reason());
-        gateway_.note_refused(request, reply.reason(), landing_.ert_now(), stages_);
+        if (reply.accepted) continue;
+        script_refusals_.push_back(reply.reason);
+        gateway_.note_refused(request, reply.reason, landing_.ert_now(), stages_);
     }
 }
 
-v1::CommandReply ScriptedLanding::submit(const v1::CommandRequest& request) {
+commands::Reply ScriptedLanding::submit(const commands::Request& request) {
     auto reply = gateway_.submit(request, landing_.ert_now(), stages_);
     radiate();
     return reply;
@@ -164,7 +171,7 @@ std::string text_of_bug(const CheckFailed& bug) {
     return fmt::format("a check failed in the simulation: {} ({}:{})", bug.what(), bug.file(), bug.line());
 }
 
-std::vector<archive::StageRecord> ScriptedLanding::take_stages() {
+std::vector<commands::StageReport> ScriptedLanding::take_stages() {
     return std::exchange(stages_, {});
 }
 

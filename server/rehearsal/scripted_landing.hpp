@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "aeolis/v1/run.pb.h"
+#include "commands/command_gateway.hpp"
 #include "common/check.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "server/archive/records.hpp"
-#include "server/gateway/command_gateway.hpp"
 #include "simulation/landing.hpp"
+#include "telemetry/decommutator.hpp"
 #include "telemetry/station/ground_station.hpp"
 
 #include <cstdint>
@@ -44,38 +43,42 @@ class ScriptedLanding {
     /// What was received is taken in by the command path: for answers, and for the preconditions of what is sent later.
     void hear(const telemetry::Received& received);
 
-    v1::CommandReply submit(const v1::CommandRequest& request);
+    commands::Reply submit(const commands::Request& request);
     /// See CommandGateway::look.
-    std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file) {
+    std::vector<commands::Reply> look(std::span<const commands::Request> file) {
         return gateway_.look(file, landing_.ert_now());
     }
 
     void inject(const simulation::Fault& fault) { landing_.inject(fault); }
 
     bool script_sent() const { return script_.empty(); }
-    /// Stages since the last call; their `seq` is not given yet.
-    std::vector<archive::StageRecord> take_stages();
+    /// Stages since the last call.
+    std::vector<commands::StageReport> take_stages();
     /// Reasons for which commands of the script were refused.
     const std::vector<std::string>& script_refusals() const { return script_refusals_; }
 
     const simulation::Landing& landing() const { return landing_; }
-    const CommandGateway& gateway() const { return gateway_; }
+    const commands::CommandGateway& gateway() const { return gateway_; }
     const telemetry::GroundStation& station() const { return station_; }
     double recording_progress() const;  ///< 0 … 1 of the recording that has come down
 
   private:
+    void receive(const telemetry::ReceivedPacket& packet);
     void send_script();
     void radiate();
 
+    const dictionary::Dictionary& dictionary_;
     Sclk entry_;
     simulation::Landing landing_;
     telemetry::GroundStation station_;
-    CommandGateway gateway_;
+    commands::CommandGateway gateway_;
     std::vector<simulation::ScriptedCommand> script_;  ///< not sent yet
-    std::vector<archive::StageRecord> stages_;
+    std::vector<commands::StageReport> stages_;
     std::vector<std::string> script_refusals_;
     bool dispersed_;
     std::uint64_t cycles_ = 0;
+    telemetry::Decommutator decommutator_;
+    telemetry::Decoded decoded_;
 };
 
 /// Ground's navigation solution as arguments of "set edl parameters", by argument name.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dictionaries/timeline_plan.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
-#include "server/archive/timeline_plan.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"

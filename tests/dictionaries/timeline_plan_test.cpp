@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/archive/timeline_plan.hpp"
+#include "dictionaries/timeline_plan.hpp"
 
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
@@ -7,7 +7,6 @@
 #include <algorithm>
 
 using namespace aeolis;
-using namespace aeolis::archive;
 
 namespace {
 
@@ -21,7 +20,7 @@ std::size_t row_of(const dictionary::Dictionary& dictionary, const std::string& 
 
 }  // namespace
 
-TEST_CASE("what the plan alone gives is predicted as planned, while nothing was heard", "[archive][timeline]") {
+TEST_CASE("what the plan alone gives is predicted as planned, while nothing was heard", "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto planned = planned_from_entry_s(dictionary);
     const auto predicted = predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, Heard(planned.size()));
@@ -32,7 +31,7 @@ TEST_CASE("what the plan alone gives is predicted as planned, while nothing was 
 }
 
 TEST_CASE("after entry a timepoint is predicted by its anchor in the design, and by the minimum offsets before it",
-          "[archive][timeline]") {
+          "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto predicted =
         predicted_from_entry_s(dictionary, dictionary.predicted_anchor_e_s, Heard(dictionary.timeline.size()));
@@ -47,7 +46,7 @@ TEST_CASE("after entry a timepoint is predicted by its anchor in the design, and
 }
 
 TEST_CASE("an entry that was heard of as later moves all that comes after it, and not the prediction of what had fired",
-          "[archive][timeline]") {
+          "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     Heard heard(dictionary.timeline.size());
     const auto vent = row_of(dictionary, "coolant_vent"), uhf = row_of(dictionary, "uhf_start");
@@ -59,14 +58,14 @@ TEST_CASE("an entry that was heard of as later moves all that comes after it, an
     CHECK(predicted[row_of(dictionary, "parachute_deploy")] == Approx(260.9));
 }
 
-TEST_CASE("a timepoint whose anchor nobody predicts has no prediction", "[archive][timeline]") {
+TEST_CASE("a timepoint whose anchor nobody predicts has no prediction", "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     const auto predicted = predicted_from_entry_s(dictionary, {}, Heard(dictionary.timeline.size()));
     CHECK(predicted[row_of(dictionary, "entry_interface")] == 0.0);
     CHECK_FALSE(predicted[row_of(dictionary, "parachute_deploy")].has_value());
 }
 
-TEST_CASE("it is the design that is given which predicts, not the one of the dictionary", "[archive][timeline]") {
+TEST_CASE("it is the design that is given which predicts, not the one of the dictionary", "[timeline]") {
     const auto& dictionary = tests::shipped_dictionary();
     auto design_e_s = dictionary.predicted_anchor_e_s;
     const auto parachute = dictionary.timeline[row_of(dictionary, "parachute_deploy")].anchor;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/gateway/planned_deadlines.hpp"
+#include "commands/planned_deadlines.hpp"
 
-#include "server/archive/timeline_plan.hpp"
+#include "dictionaries/timeline_plan.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
 #include <algorithm>
 
 using namespace aeolis;
-using server::PlannedDeadlines;
+using commands::PlannedDeadlines;
 
 namespace {
 
@@ -62,7 +62,8 @@ TEST_CASE("a command that changes an offset must be there before what it moves, 
     const auto predicted = deadlines.of(change, in_flight, before_entry(3000.0));
     REQUIRE(predicted);
     CHECK(predicted->timepoint == "parachute_deploy");
-    const auto e_s = archive::predicted_from_entry_s(words, words.predicted_anchor_e_s, {})[row_of("parachute_deploy")];
+    const auto e_s =
+        dictionary::predicted_from_entry_s(words, words.predicted_anchor_e_s, {})[row_of("parachute_deploy")];
     REQUIRE(e_s);
     CHECK(std::abs(static_cast<double>(predicted->latest.microseconds -
                                        before_entry(light_time_s - *e_s).microseconds)) <= 1.0);

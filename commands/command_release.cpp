@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How commands leave: out of the queue, while a station sees the vehicle, by the uplink; and what the vehicle's reports
 // say of their frames.
-#include "server/gateway/command_gateway.hpp"
+#include "commands/command_gateway.hpp"
 
 #include "commands/timeline_change.hpp"
 #include "common/bytes.hpp"
@@ -11,11 +11,9 @@
 #include <array>
 #include <fmt/format.h>
 
-namespace aeolis::server {
+namespace aeolis::commands {
 
-void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& stages) {
-    using commands::Stage;
-    using commands::Status;
+void CommandGateway::release_due(Ert now, std::vector<StageReport>& stages) {
     for (const std::uint64_t number : std::exchange(doubted_, {}))
         if (auto* command = underway(number)) tell_wait(*command, now, stages);
     if (!stations_.sees(now)) return await_pass(now, stages);
@@ -40,8 +38,7 @@ void CommandGateway::release_due(Ert now, std::vector<archive::StageRecord>& sta
     radiate(now, stages);
 }
 
-void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stages) {
-    using commands::Stage;
+void CommandGateway::await_pass(Ert now, std::vector<StageReport>& stages) {
     unseen_ = true;
     const auto not_radiated = link_.take_back();
     if (const auto* next = stations_.next_after(now)) {
@@ -55,7 +52,7 @@ void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stag
         auto* command = underway(number);
         if (command == nullptr) return;
         changes_.clear();
-        command->lifecycle.ground_stage(stage, commands::Status::failed, stations_.refusal(now), now, changes_);
+        command->lifecycle.ground_stage(stage, Status::failed, stations_.refusal(now), now, changes_);
         append(*command, changes_, stages);
     };
     for (const std::uint64_t number : not_radiated) fail(number, Stage::radiated);
@@ -63,24 +60,21 @@ void CommandGateway::await_pass(Ert now, std::vector<archive::StageRecord>& stag
 }
 
 void CommandGateway::wait_again(std::uint64_t number, std::optional<Ert> until, const std::string& why, Ert now,
-                                std::vector<archive::StageRecord>& stages) {
+                                std::vector<StageReport>& stages) {
     auto* command = underway(number);
     if (command == nullptr) return;
-    const commands::CommandQueue::Entry entry{
-        number, command->priority, until, false, false, commands::changes_offsets(command->lifecycle.command().name),
-        false};
+    const CommandQueue::Entry entry{
+        number, command->priority, until, false, false, changes_offsets(command->lifecycle.command().name), false};
     queue_.add(entry);
-    std::vector<commands::StageChange> changes;
+    std::vector<StageChange> changes;
     command->lifecycle.taken_back(
         "taken back from the uplink, which had not radiated it " + why + "; " + leaving_text(entry), now, changes);
     append(*command, changes, stages);
 }
 
-void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<archive::StageRecord>& stages) {
-    using commands::Stage;
-    using commands::Status;
+void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<StageReport>& stages) {
     const auto after = [&](const Underway& each) {
-        return each.number > undone && commands::changes_offsets(each.lifecycle.command().name);
+        return each.number > undone && changes_offsets(each.lifecycle.command().name);
     };
     const auto reached = [](const Underway& each, Stage stage) { return each.lifecycle.status(stage) == Status::ok; };
     const auto at_uplink = [&](const Underway& each) {
@@ -93,7 +87,7 @@ void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<arch
     for (const std::uint64_t number : queue_.doubt_after(undone)) doubted_.push_back(number);
     for (Underway& each : underway_) {
         if (!after(each) || !reached(each, Stage::radiated) || each.lifecycle.finished()) continue;
-        std::vector<commands::StageChange> changes;
+        std::vector<StageChange> changes;
         each.lifecycle.radiated_in_doubt(
             fmt::format("has left Earth, and its timeline was analysed with command {}, which came to nothing", undone),
             now, changes);
@@ -101,7 +95,7 @@ void CommandGateway::doubt_after(std::uint64_t undone, Ert now, std::vector<arch
     }
 }
 
-void CommandGateway::begin_pass(Ert now, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::begin_pass(Ert now, std::vector<StageReport>& stages) {
     if (!std::exchange(unseen_, false)) return;
     bool any = false;
     for (const std::uint64_t number : link_.unacknowledged()) {
@@ -120,7 +114,7 @@ void CommandGateway::begin_pass(Ert now, std::vector<archive::StageRecord>& stag
     note_frames(now, stages);
 }
 
-void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<StageReport>& stages) {
     const auto* entry = waiting(underway.number);
     if (entry == nullptr) return;
     const std::string when = leaving_text(*entry);
@@ -139,7 +133,7 @@ void CommandGateway::tell_wait(Underway& underway, Ert now, std::vector<archive:
     append(underway, changes_, stages);
 }
 
-std::string CommandGateway::leaving_text(const commands::CommandQueue::Entry& entry) const {
+std::string CommandGateway::leaving_text(const CommandQueue::Entry& entry) const {
     std::string when = entry.release_at ? "leaves at " + day_of_year_text(*entry.release_at) : "then leaves at once";
     const auto* pass = entry.release_at ? stations_.pass_at(*entry.release_at) : nullptr;
     if (pass != nullptr) when += " by " + pass->station;
@@ -149,7 +143,7 @@ std::string CommandGateway::leaving_text(const commands::CommandQueue::Entry& en
     return when;
 }
 
-void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::radiate(Ert now, std::vector<StageReport>& stages) {
     const bool seen = stations_.sees(now);
     if (seen) begin_pass(now, stages);
     const auto* pass = stations_.pass_at(now);
@@ -161,7 +155,7 @@ void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages)
                             command->lifecycle.count(), unit->sequence, name_of(unit->service), light_time_s_);
             changes_.clear();
             if (unit->transmission == 1)
-                command->lifecycle.ground_stage(commands::Stage::radiated, commands::Status::ok, frame, now, changes_);
+                command->lifecycle.ground_stage(Stage::radiated, Status::ok, frame, now, changes_);
             else
                 command->lifecycle.radiated_again(fmt::format("transmission {}: {}", unit->transmission, frame), now,
                                                   changes_);
@@ -172,8 +166,8 @@ void CommandGateway::radiate(Ert now, std::vector<archive::StageRecord>& stages)
     note_frames(now, stages);
 }
 
-void CommandGateway::note_frames(Ert now, std::vector<archive::StageRecord>& stages) {
-    using Fate = commands::Fop::Fate;
+void CommandGateway::note_frames(Ert now, std::vector<StageReport>& stages) {
+    using Fate = Fop::Fate;
     for (const auto& frame : link_.take_reports()) {
         auto* command = underway(frame.tag);
         if (command == nullptr || frame.fate == Fate::radiated) continue;
@@ -191,7 +185,7 @@ void CommandGateway::note_frames(Ert now, std::vector<archive::StageRecord>& sta
     }
 }
 
-void CommandGateway::hear_clcw(std::uint32_t word, Ert ert, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::hear_clcw(std::uint32_t word, Ert ert, std::vector<StageReport>& stages) {
     std::array<std::uint8_t, clcw_octets> octets{};
     BitWriter{octets}.put(word, 32);
     const auto clcw = read_clcw(octets);
@@ -200,7 +194,7 @@ void CommandGateway::hear_clcw(std::uint32_t word, Ert ert, std::vector<archive:
     radiate(ert, stages);
 }
 
-void CommandGateway::pass(Ert now, std::vector<archive::StageRecord>& stages) {
+void CommandGateway::pass(Ert now, std::vector<StageReport>& stages) {
     for (auto& underway : underway_) {
         changes_.clear();
         underway.lifecycle.pass(now, changes_);
@@ -210,4 +204,4 @@ void CommandGateway::pass(Ert now, std::vector<archive::StageRecord>& stages) {
     release_due(now, stages);
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::commands

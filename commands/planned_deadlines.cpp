@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/gateway/planned_deadlines.hpp"
+#include "commands/planned_deadlines.hpp"
 
 #include "commands/timeline_change.hpp"
-#include "server/archive/timeline_plan.hpp"
+#include "dictionaries/timeline_plan.hpp"
 
 #include <algorithm>
 
-namespace aeolis::server {
+namespace aeolis::commands {
 
 PlannedDeadlines::PlannedDeadlines(const dictionary::Dictionary& dictionary, std::optional<Scet> entry,
                                    double light_time_s)
@@ -19,8 +19,8 @@ void PlannedDeadlines::plan() {
     predicted_.clear();
     if (!entry_) return;
     const auto at = [&](double e_s) { return Scet{entry_->microseconds + static_cast<std::int64_t>(e_s * 1.0e6)}; };
-    const auto planned_s = archive::planned_from_entry_s(timeline());
-    const auto predicted_s = archive::predicted_from_entry_s(timeline(), timeline().predicted_anchor_e_s, {});
+    const auto planned_s = dictionary::planned_from_entry_s(timeline());
+    const auto predicted_s = dictionary::predicted_from_entry_s(timeline(), timeline().predicted_anchor_e_s, {});
     for (std::size_t i = 0; i < planned_s.size(); ++i) {
         if (planned_s[i]) planned_.push_back({i, at(*planned_s[i])});
         if (const auto e_s = planned_s[i] ? planned_s[i] : predicted_s[i]) predicted_.push_back({i, at(*e_s)});
@@ -29,10 +29,10 @@ void PlannedDeadlines::plan() {
     std::ranges::stable_sort(predicted_, {}, &Planned::at);
 }
 
-void PlannedDeadlines::executed(const dictionary::Command& command, std::span<const commands::NamedValue> arguments) {
-    if (!commands::changes_offsets(command.name)) return;
+void PlannedDeadlines::executed(const dictionary::Command& command, std::span<const NamedValue> arguments) {
+    if (!changes_offsets(command.name)) return;
     if (!changed_) changed_ = dictionary_;
-    commands::apply_offsets(*changed_, command.name, arguments);
+    apply_offsets(*changed_, command.name, arguments);
     plan();
 }
 
@@ -46,10 +46,9 @@ std::optional<PlannedDeadlines::Deadline> PlannedDeadlines::next(Ert now) const 
     return after == planned_.end() ? std::nullopt : std::optional{deadline(*after)};
 }
 
-std::optional<PlannedDeadlines::Deadline> PlannedDeadlines::of(const dictionary::Command& command,
-                                                               std::span<const commands::NamedValue> arguments,
-                                                               Ert leaves) const {
-    const auto moved = commands::moved_timepoints(dictionary_, command.name, arguments);
+std::optional<PlannedDeadlines::Deadline>
+PlannedDeadlines::of(const dictionary::Command& command, std::span<const NamedValue> arguments, Ert leaves) const {
+    const auto moved = moved_timepoints(dictionary_, command.name, arguments);
     if (moved.empty()) return next(leaves);
     const auto first = std::ranges::find_if(
         predicted_, [&](const Planned& each) { return std::ranges::find(moved, each.timepoint) != moved.end(); });
@@ -65,4 +64,4 @@ std::vector<std::string> PlannedDeadlines::missed(Ert now, Ert leaves) const {
     return names;
 }
 
-}  // namespace aeolis::server
+}  // namespace aeolis::commands

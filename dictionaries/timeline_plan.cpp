@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/archive/timeline_plan.hpp"
+#include "dictionaries/timeline_plan.hpp"
 
 #include <algorithm>
 
-namespace aeolis::archive {
+namespace aeolis::dictionary {
 
 namespace {
 
@@ -14,7 +14,7 @@ std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
 
 using Times = std::vector<std::optional<double>>;
 
-Times anchors_from_entry_s(const dictionary::Dictionary& dictionary) {
+Times anchors_from_entry_s(const Dictionary& dictionary) {
     Times anchors(dictionary.anchors.size());
     for (std::size_t i = 0; i < anchors.size(); ++i) {
         const auto& row = dictionary.anchors[i];
@@ -28,7 +28,7 @@ Times anchors_from_entry_s(const dictionary::Dictionary& dictionary) {
 
 /// What firings tell of their anchors. A timepoint can be later than its anchor says, never earlier: the earliest tells
 /// it best.
-Times told_anchors(const dictionary::Dictionary& dictionary, const Times& heard_e_s) {
+Times told_anchors(const Dictionary& dictionary, const Times& heard_e_s) {
     Times told(dictionary.anchors.size());
     for (std::size_t i = 0; i < heard_e_s.size(); ++i) {
         const auto& row = dictionary.timeline[i];
@@ -45,7 +45,7 @@ struct Anchors {
     Times now;
 };
 
-Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times& design_e_s, const Times& told) {
+Anchors predicted_anchors(const Dictionary& dictionary, const Times& design_e_s, const Times& told) {
     Anchors anchors{anchors_from_entry_s(dictionary), Times(dictionary.anchors.size())};
     std::optional<std::size_t> last;  ///< of those that the design predicts
     for (std::size_t i = 0; i < anchors.now.size(); ++i) {
@@ -64,7 +64,7 @@ Anchors predicted_anchors(const dictionary::Dictionary& dictionary, const Times&
 }
 
 /// The rule of R11 over these anchors; what has been heard of counts from when it fired.
-Times fires_from_entry_s(const dictionary::Dictionary& dictionary, const Anchors& anchors, const Times& heard_e_s) {
+Times fires_from_entry_s(const Dictionary& dictionary, const Anchors& anchors, const Times& heard_e_s) {
     Times all(dictionary.timeline.size());
     std::optional<double> previous;
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -82,16 +82,16 @@ Times fires_from_entry_s(const dictionary::Dictionary& dictionary, const Anchors
 
 }  // namespace
 
-std::vector<std::optional<double>> planned_from_entry_s(const dictionary::Dictionary& dictionary) {
+std::vector<std::optional<double>> planned_from_entry_s(const Dictionary& dictionary) {
     const auto planned = anchors_from_entry_s(dictionary);
     return fires_from_entry_s(dictionary, {planned, planned}, {});
 }
 
-std::vector<std::optional<double>> predicted_from_entry_s(const dictionary::Dictionary& dictionary,
+std::vector<std::optional<double>> predicted_from_entry_s(const Dictionary& dictionary,
                                                           const std::vector<std::optional<double>>& design_e_s,
                                                           const std::vector<std::optional<double>>& heard_e_s) {
     return fires_from_entry_s(
         dictionary, predicted_anchors(dictionary, design_e_s, told_anchors(dictionary, heard_e_s)), heard_e_s);
 }
 
-}  // namespace aeolis::archive
+}  // namespace aeolis::dictionary

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace aeolis::server {
+namespace aeolis::commands {
 
 /// Until when a command is of use: what is planned by the clock, and the light time before it.
 ///
@@ -31,10 +31,10 @@ class PlannedDeadlines {
     PlannedDeadlines(const dictionary::Dictionary& dictionary, std::optional<Scet> entry, double light_time_s);
 
     /// Flight has executed it. What changes no offset changes nothing here.
-    void executed(const dictionary::Command& command, std::span<const commands::NamedValue> arguments);
+    void executed(const dictionary::Command& command, std::span<const NamedValue> arguments);
 
     /// Of a command that leaves then; none: nothing that anyone knows the time of waits for it.
-    std::optional<Deadline> of(const dictionary::Command& command, std::span<const commands::NamedValue> arguments,
+    std::optional<Deadline> of(const dictionary::Command& command, std::span<const NamedValue> arguments,
                                Ert leaves) const;
     /// Of any that can still leave.
     std::optional<Deadline> next(Ert now) const;
@@ -58,4 +58,4 @@ class PlannedDeadlines {
     std::vector<Planned> planned_, predicted_;  ///< in order of their time; the latter all of which anyone says when
 };
 
-}  // namespace aeolis::server
+}  // namespace aeolis::commands
