@@ -144,21 +144,21 @@ Cost archive_append(const std::filesystem::path& file, const std::vector<std::ui
 constexpr std::size_t landing_units = 100'000;
 
 /// Packets made beforehand: only the ground's work is measured.
-std::vector<simulation::ReceivedPacket> landing() {
-    std::vector<simulation::ReceivedPacket> packets(landing_units);
+std::vector<telemetry::ReceivedPacket> landing() {
+    std::vector<telemetry::ReceivedPacket> packets(landing_units);
     for (std::size_t i = 0; i < landing_units; ++i) {
         std::vector<std::uint8_t> octets(tm_overhead_octets + 4 * fields);
         BitWriter bits{std::span<std::uint8_t>(octets).subspan(tm_data_offset_octets)};
         for (std::size_t f = 0; f < fields; ++f)
             bits.put_float(static_cast<float>(std::sin(static_cast<double>(i * (f + 1)) * 1e-4)));
         seal_tm_packet(octets, apid, static_cast<std::uint16_t>(i & 0x3FFFU), Sclk{static_cast<double>(i) / 64.0}, 1);
-        packets[i] = {simulation::relay_link, Ert{static_cast<std::int64_t>(i)}, std::move(octets)};
+        packets[i] = {telemetry::relay_link, Ert{static_cast<std::int64_t>(i)}, std::move(octets)};
     }
     return packets;
 }
 
 Cost store_landing(const std::filesystem::path& file, const dictionary::Dictionary& dictionary,
-                   const std::vector<simulation::ReceivedPacket>& packets, bool items, bool finished = true) {
+                   const std::vector<telemetry::ReceivedPacket>& packets, bool items, bool finished = true) {
     auto opened = archive::Archive::open(file);
     must(opened.ok(), "Archive::open");
     pipeline::Pipeline pipeline(*opened, dictionary);

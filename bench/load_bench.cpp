@@ -302,16 +302,16 @@ void under_load(Channels channels) {
                 seal_tm_packet(octets, Apid{static_cast<std::uint16_t>(kind + 1)},
                                static_cast<std::uint16_t>(sent_packets / packet_kinds & 0x3FFFU), Sclk{now},
                                dictionary.id);
-                delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets});
+                delivery.entries.emplace_back(telemetry::ReceivedPacket{telemetry::uhf_live_link, Ert{0}, octets});
             }
             for (; static_cast<double>(sent_events) < (now - begin) * events_per_s; ++sent_events) {
                 BitWriter told{std::span<std::uint8_t>(event).subspan(tm_data_offset_octets)};
                 told.put(1, 16);
                 seal_tm_packet(event, event_apid, static_cast<std::uint16_t>(sent_events), Sclk{now}, dictionary.id);
-                delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, event});
+                delivery.entries.emplace_back(telemetry::ReceivedPacket{telemetry::uhf_live_link, Ert{0}, event});
             }
             for (; static_cast<double>(sent_tones) < (now - begin) * tones_per_s; ++sent_tones)
-                delivery.entries.emplace_back(simulation::ReceivedTone{});
+                delivery.entries.emplace_back(telemetry::ReceivedTone{});
             for (; static_cast<double>(sent_stages) < (now - begin) * stages_per_s; ++sent_stages) {
                 archive::StageRecord stage;
                 stage.command = sent_stages + 1;
@@ -393,7 +393,7 @@ void start() {
             must(pipeline.begin({}).ok(), "begin");
             for (std::uint16_t k = 0; k < 640; ++k) {
                 seal_tm_packet(octets, Apid{1}, k, Sclk{k / 64.0}, dictionary.id);
-                must(pipeline.accept(simulation::ReceivedPacket{simulation::uhf_live_link, Ert{0}, octets}).ok(),
+                must(pipeline.accept(telemetry::ReceivedPacket{telemetry::uhf_live_link, Ert{0}, octets}).ok(),
                      "accept");
             }
             must(pipeline.finish({}).ok(), "finish");

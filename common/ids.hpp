@@ -27,6 +27,8 @@ using AnchorId = Id<struct AnchorTag, std::uint16_t>;        ///< row of the anc
 /// no more.
 inline constexpr std::uint16_t spacecraft_id = 76;
 inline constexpr std::uint8_t telecommand_channel = 0;
+/// The end of file deliveries on the ground; the vehicle's end has the spacecraft's number. Chosen.
+inline constexpr std::uint16_t ground_entity = 1;
 
 }  // namespace aeolis
 

@@ -50,6 +50,12 @@ const Packet* Dictionary::packet(std::string_view name) const {
     return first(packets, [&](const Packet& p) { return p.name == name; });
 }
 
+std::optional<std::size_t> field_index(const Packet& packet, std::string_view name) {
+    for (std::size_t i = 0; i < packet.fields.size(); ++i)
+        if (packet.fields[i].name == name) return i;
+    return std::nullopt;
+}
+
 std::string Finding::text() const {
     return file + ":" + std::to_string(line) + ": " + message;
 }

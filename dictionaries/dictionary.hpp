@@ -119,6 +119,8 @@ struct Packet {
     std::optional<double> expected_rate_hz;
     std::optional<Content> content;
 };
+/// The field's index in the packet, by name; for people and for the few fields that ground itself interprets.
+std::optional<std::size_t> field_index(const Packet& packet, std::string_view name);
 
 enum class EventLevel { fatal, warning_hi, warning_lo, command, activity_hi, activity_lo, diagnostic };
 

@@ -37,30 +37,20 @@ std::int64_t microseconds(double seconds) {
     return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
 }
 
-/// What ground has of a symbol of which nothing reached it.
-ReceivedTone erased(const ReceivedTone& tone) {
-    ReceivedTone nothing;
-    nothing.start = tone.start;
-    nothing.end = tone.end;
-    nothing.sent = tone.sent;
-    nothing.sent_at = tone.sent_at;
-    return nothing;
-}
-
 }  // namespace
 
-/// A link's last told state: a change is sent to Earth like everything else.
+/// A link's last state: a change is sent to Earth like everything else.
 struct LinkTeller {
-    Link link;
+    telemetry::Link link;
     bool told = false, up = false;
     std::string reason{};
 
-    std::optional<LinkState> change(bool up_now, const std::string& reason_now, Ert ert) {
+    std::optional<LinkTruth> change(bool up_now, const std::string& reason_now, Ert ert) {
         if (told && up_now == up && reason == reason_now) return {};
         told = true;
         up = up_now;
         reason = reason_now;
-        return LinkState{link, ert, up, reason_now};
+        return LinkTruth{link, ert, up, reason_now};
     }
 };
 
@@ -103,15 +93,18 @@ struct Landing::State {
     std::int64_t light_time_us;
     ErrorBursts uplink_errors;
     InFlight<std::vector<std::uint8_t>> uplinks;
-    InFlight<ReceivedTone> tones;
+    InFlight<telemetry::ReceivedTone> tones;
+    InFlight<SentSymbol> symbols;
     InFlight<XBandField> fields;
-    InFlight<LinkState> links;
+    InFlight<LinkTruth> links;
     InFlight<std::vector<std::uint8_t>> forwards;
-    LinkTeller uhf_told{.link = simulation::uhf_live_link}, x_band_told{.link = simulation::x_band_link},
-        relay_told{.link = simulation::relay_link};
+    LinkTeller uhf_told{.link = telemetry::uhf_live_link}, x_band_told{.link = telemetry::x_band_link},
+        relay_told{.link = telemetry::relay_link};
     std::vector<StoredLinks> stored_told;  ///< one a pass
-    InFlight<ReceivedOctets> octets;
-    std::vector<LinkState> at_station;  ///< how each link was last when that reached Earth
+    InFlight<telemetry::ReceivedOctets> octets;
+    std::vector<LinkTruth> at_station;   ///< how each link was last when that reached Earth
+    std::vector<LinkTruth> told_ground;  ///< and as ground was told last
+    std::optional<XBandFrontEnd> antenna;
 
     std::array<TruthState, remembered_ticks> remembered{};
     std::int64_t ticks_without_computer = 0;
@@ -168,7 +161,7 @@ struct Landing::State {
     void receive_tone(std::optional<ToneId> sent, std::int64_t cycle_start_us);
     void relay_recording(std::int64_t cycle_start_us);
     /// Octets that leave Mars with this cycle.
-    void send_octets(const Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us);
+    void send_octets(const telemetry::Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us);
     void deliver_stored(std::int64_t cycle_start_us);
     OrbiterPass* first_in_view(bool also_stored);
     void hand_down(OrbiterPass& pass);
@@ -177,6 +170,8 @@ struct Landing::State {
     void read_event_reports();
     void tell(LinkTeller& teller, bool up, const std::string& reason, std::int64_t at_us);
     bool station_out() const;
+    /// What of a link's change ground hears of: that it brings something again, or nothing any more.
+    void tell(const LinkTruth& state, Ert ert);
     /// What ground sees of links while the station, or the line from it, fails, and after that.
     void tell_station(bool out, std::int64_t now_us);
     bool tones_from_samples() const { return scenario.radio.tones_from_samples.value_or(false); }
@@ -277,7 +272,7 @@ void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t c
     OrbiterPass* live = first_in_view(false);
     for (OrbiterPass& pass : passes) {
         if (!pass.in_view(e_s()) || (!pass.row().stored && &pass != live)) continue;
-        send_octets(simulation::uhf_live_link, pass.hear(Traffic::realtime, left, e_s()), cycle_start_us);
+        send_octets(telemetry::uhf_live_link, pass.hear(Traffic::realtime, left, e_s()), cycle_start_us);
     }
     const bool up = uhf.up() && live != nullptr;
     tell(uhf_told, up,
@@ -287,7 +282,8 @@ void Landing::State::radiate(std::span<const std::uint8_t> pltus, std::int64_t c
          cycle_start_us);
 }
 
-void Landing::State::send_octets(const Link& link, std::span<const std::uint8_t> what, std::int64_t cycle_start_us) {
+void Landing::State::send_octets(const telemetry::Link& link, std::span<const std::uint8_t> what,
+                                 std::int64_t cycle_start_us) {
     const Ert ert{cycle_start_us + microseconds(seconds_per_tick) + light_time_us};
     if (!what.empty()) octets.send(ert.microseconds, {link, ert, {what.begin(), what.end()}});
 }
@@ -323,7 +319,7 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
     const double range_rate_mps = earth_range_rate_mps(vector3(truth.p_MoB_M_m), vector3(truth.v_MB_M_mps), truth.e_s);
     const double doppler_hz = -range_rate_mps / light_mps * x_band_hz;
     const World::EarthView earth = world.earth_view();
-    auto tone = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
+    const auto ended = x_band.cycle(sent, {truth.sclk, truth.e_s, doppler_hz, earth.up, earth.gain});
     if (tones_from_samples()) {
         XBandField field;
         field.ert = {cycle_start_us + light_time_us};
@@ -337,10 +333,16 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         }
         fields.send(field.ert.microseconds, field);
     }
-    if (tone) {
-        tone->start = {correlation().scet_of(tone->sent_at).microseconds + light_time_us};
-        tone->end = {std::min(tone->start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
-        tones.send(tone->end.microseconds, *tone);
+    if (ended) {
+        SentSymbol symbol{ended->tone, ended->at, {}, {}};
+        symbol.start = {correlation().scet_of(symbol.at).microseconds + light_time_us};
+        symbol.end = {std::min(symbol.start.microseconds + microseconds(symbol_s), cycle_start_us + light_time_us)};
+        symbols.send(symbol.end.microseconds, symbol);
+        if (auto heard = ended->heard) {
+            heard->start = symbol.start;
+            heard->end = symbol.end;
+            tones.send(symbol.end.microseconds, std::move(*heard));
+        }
     }
     tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
 }
@@ -353,20 +355,31 @@ bool Landing::State::station_out() const {
     });
 }
 
+void Landing::State::tell(const LinkTruth& state, Ert ert) {
+    report.links.push_back({state.link, ert, state.up, state.reason});
+    // With samples the receiver on the ground finds the carrier, or does not.
+    if (state.link == telemetry::x_band_link && tones_from_samples()) return;
+    const auto same = std::ranges::find(told_ground, state.link, &LinkTruth::link);
+    if (same != told_ground.end() && same->up == state.up && (!state.up || same->reason == state.reason)) return;
+    (same != told_ground.end() ? *same : told_ground.emplace_back(state)) = state;
+    report.earth.links.push_back({state.link, ert, state.up, state.up ? state.reason : ""});
+}
+
 void Landing::State::tell_station(bool out, std::int64_t now_us) {
-    const bool begins = out && !report.station_out, ends = !out && report.station_out;
-    report.station_out = out;
+    const bool begins = out && !report.earth.station_out, ends = !out && report.earth.station_out;
+    report.earth.station_out = out;
     if (begins)
-        for (const LinkState& state : at_station)
-            if (state.up) report.links.push_back({state.link, Ert{now_us}, false, station_out_reason});
-    links.arrive(now_us, [&](std::int64_t, LinkState&& state) {
-        const auto known = std::ranges::find(at_station, state.link, &LinkState::link);
+        for (const LinkTruth& state : at_station)
+            if (state.up) tell({state.link, {}, false, station_out_reason}, Ert{now_us});
+    links.arrive(now_us, [&](std::int64_t, LinkTruth&& state) {
+        const auto known = std::ranges::find(at_station, state.link, &LinkTruth::link);
         (known != at_station.end() ? *known : at_station.emplace_back(state)) = state;
-        if (!out && !ends) report.links.push_back(std::move(state));
+        if (!out && !ends) tell(state, state.ert);
     });
-    if (ends)
-        for (const LinkState& state : at_station)
-            report.links.push_back({state.link, Ert{now_us}, state.up, state.reason});
+    if (ends) {
+        told_ground.clear();  // a station that is back says how each of its links is
+        for (const LinkTruth& state : at_station) tell(state, Ert{now_us});
+    }
 }
 
 bool Landing::State::relaying() const {
@@ -400,7 +413,7 @@ void Landing::State::relay_recording(std::int64_t cycle_start_us) {
     if (serving != nullptr) hand_down(*serving);
     const auto sent = relay_radio.cycle(recording(), serving != nullptr ? serving->file_rate_bps(e_s()) : 0.0);
     if (serving != nullptr)
-        send_octets(simulation::relay_link, serving->hear(Traffic::files, sent, e_s()), cycle_start_us);
+        send_octets(telemetry::relay_link, serving->hear(Traffic::files, sent, e_s()), cycle_start_us);
     const bool complete = relay_radio.done(recording());
     const bool up = !complete && serving != nullptr && !serving->row().stored;
     const std::string by =
@@ -461,9 +474,7 @@ const CycleReport& Landing::step() {
     s.report.ticks_skipped = 0;
     s.report.recorded = {};
     s.report.radiated = {};
-    s.report.octets.clear();
-    s.report.packets.clear();
-    s.report.tones.clear();
+    s.report.earth.clear();
     s.report.x_band.clear();
     s.report.symbols.clear();
     s.report.links.clear();
@@ -481,19 +492,30 @@ const CycleReport& Landing::step() {
 
     const std::int64_t now_us = s.now_us();
     const bool out = s.station_out();
-    s.octets.arrive(now_us, [&](std::int64_t, ReceivedOctets&& o) {
-        if (!out) s.report.octets.push_back(std::move(o));
+    telemetry::Downlink& earth = s.report.earth;
+    earth.now = Ert{now_us};
+    s.octets.arrive(now_us, [&](std::int64_t, telemetry::ReceivedOctets&& o) {
+        if (!out) earth.octets.push_back(std::move(o));
     });
-    auto& tones = s.tones_from_samples() ? s.report.symbols : s.report.tones;
-    s.tones.arrive(now_us, [&](std::int64_t, const ReceivedTone& t) {
-        tones.push_back(out && !s.tones_from_samples() ? erased(t) : t);
+    s.tones.arrive(now_us, [&](std::int64_t, telemetry::ReceivedTone&& t) {
+        if (!out) earth.tones.push_back(std::move(t));
     });
+    s.symbols.arrive(now_us, [&](std::int64_t, const SentSymbol& symbol) { s.report.symbols.push_back(symbol); });
     s.fields.arrive(now_us, [&](std::int64_t, XBandField f) {
         f.up = f.up && !out;
         s.report.x_band.push_back(f);
+        if (s.antenna) earth.x_band.push_back(s.antenna->sample(f));
     });
     s.tell_station(out, now_us);
     return s.report;
+}
+
+const CycleReport& Landing::report() const {
+    return state_->report;
+}
+
+void Landing::listen_by(XBandFrontEnd antenna) {
+    state_->antenna.emplace(std::move(antenna));
 }
 
 bool Landing::dispersed() const {
@@ -576,7 +598,7 @@ bool Landing::flown() const {
 
 bool Landing::finished() const {
     const State& s = *state_;
-    return !s.computer_on && s.recording_down() && s.stored_down() && s.octets.empty() && s.tones.empty() &&
+    return !s.computer_on && s.recording_down() && s.stored_down() && s.octets.empty() && s.symbols.empty() &&
            s.fields.empty() && s.links.empty();
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "common/space_packet.hpp"
+#include "common/ids.hpp"
 #include "common/time.hpp"
-#include "common/tone_evidence.hpp"
 #include "flight/computer.hpp"
+#include "simulation/links/x_band_front_end.hpp"
 #include "simulation/scenario.hpp"
+#include "telemetry/port.hpp"
 
 #include <array>
 #include <cstdint>
@@ -31,63 +32,19 @@ struct NavigationSolution {
     double backshell_altitude_m = 1660.0;
 };
 
-/// A way to Earth, by name: "uhf_live" through a bent pipe, "uhf_<orbiter>" recorded by one, "relay" and
-/// "relay_<orbiter>" the same for files after landing, "x_band".
-struct Link {
-    std::string name;
-    bool recorded = false;  ///< it brings the recording; else what was sent live, however late
-    bool operator==(const Link&) const = default;
-};
-inline const Link uhf_live_link{"uhf_live", false}, relay_link{"relay", true}, x_band_link{"x_band", false};
-
-/// A space packet as it reaches Earth.
-struct ReceivedPacket {
-    Link link;
-    Ert ert;
-    std::vector<std::uint8_t> octets;
+/// A symbol that was sent on X-band: truth, for the run's score only.
+struct SentSymbol {
+    ToneId tone;
+    Sclk at;         ///< when it began on board
+    Ert start, end;  ///< of what of it arrives on Earth
 };
 
-/// Octets of a link as they reach Earth, in order; what they are is for ground to find out.
-struct ReceivedOctets {
-    Link link;
-    Ert ert;  ///< of the last
-    std::vector<std::uint8_t> octets;
-};
-
-/// A tone decision of the receiver and its evidence (statistical model: drawn from the exact symbol error at the
-/// scenario's C/N0).
-struct ReceivedTone {
-    Ert start, end;                        ///< of the symbol; 10 s
-    std::optional<ToneId> tone;            ///< none: erasure
-    double likelihood = 0.0;               ///< 0 … 1 that the decision is right
-    std::optional<BestTones> best;         ///< none: nothing was there to weigh
-    std::optional<ToneSpectrum> spectrum;  ///< none: the decision does not come from samples
-    double c_n0_dbhz = 0.0;                ///< total power to noise density as the receiver estimates it; 0 when erased
-    double doppler_hz = 0.0;  ///< one way at 8.4 GHz, from the flown trajectory and a fixed direction to Earth
-    CarrierLock lock = CarrierLock::searching;
-    std::optional<ToneId> sent;  ///< truth, for the run's score only: never shown as received
-    Sclk sent_at;
-};
-
-/// X-band as it reaches Earth over a cycle: carrier, and what modulates it. For an antenna to make samples of.
-struct XBandField {
-    Ert ert;                     ///< of the cycle's start
-    double e_s = 0.0;            ///< when it left the vehicle, from the scenario's entry
-    double doppler_hz = 0.0;     ///< one way, at the cycle's start
-    bool up = false;             ///< else Earth has set, or no antenna is selected: nothing but noise
-    double gain_db = 0.0;        ///< of the antenna towards Earth, against its best direction
-    std::optional<ToneId> tone;  ///< none: the carrier alone
-    double tone_age_s = 0.0;     ///< since the symbol began
-};
-
-/// The state of a link, told when it changes.
-struct LinkState {
-    Link link;
+/// Whether a link brings anything, and why it does not: truth, which ground is not told.
+struct LinkTruth {
+    telemetry::Link link;
     Ert ert;
     bool up = false;
     std::string reason;  ///< "plasma blackout", "Earth set", "not switched on", "no orbiter in view", "nominal"
-    bool lost = false;   ///< down, and ground knows no reason, or one on the ground: it should be there. Ground's word,
-                         ///< never told here
 };
 
 /// A moment of the truth, named as in the design's table.
@@ -138,13 +95,10 @@ struct CycleReport {
     int ticks_skipped = 0;  ///< that went by in it beyond its own; nil but for a venue's real-time clock
     std::span<const std::uint8_t> recorded;  ///< whole packets appended to NVM in this cycle
     std::span<const std::uint8_t> radiated;  ///< PLTUs given to the UHF transmitter
-    std::vector<ReceivedOctets> octets;      ///< that reach Earth by the end of this cycle
-    std::vector<ReceivedPacket> packets;     ///< that ground finds in them
-    std::vector<ReceivedTone> tones;
-    std::vector<XBandField> x_band;     ///< when tones come from samples: what then arrives instead of `tones`
-    std::vector<ReceivedTone> symbols;  ///< and the symbols that were sent in it, undecided: for the score only
-    std::vector<LinkState> links;
-    bool station_out = false;  ///< nothing of what reaches Earth in it reaches ground, and ground knows why
+    telemetry::Downlink earth;               ///< that reaches Earth by the end of this cycle: all that ground is given
+    std::vector<XBandField> x_band;          ///< when tones come from samples: what then arrives instead of decisions
+    std::vector<SentSymbol> symbols;         ///< whose end arrives by then
+    std::vector<LinkTruth> links;
     std::vector<TruthEvent> events;
 };
 
@@ -189,6 +143,11 @@ class Landing {
     /// One cycle of 1/64 s, and as many ticks more as a venue's real-time clock lost in it. After the outcome is known
     /// and the last packet has arrived, finished() is true.
     const CycleReport& step();
+    /// Of the last step.
+    const CycleReport& report() const;
+
+    /// X-band reaches Earth as samples of this antenna from here on.
+    void listen_by(XBandFrontEnd antenna);
 
     /// Whether the dispersions were drawn: from the start, or since the tick at which the scenario has them drawn.
     bool dispersed() const;

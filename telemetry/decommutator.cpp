@@ -157,10 +157,4 @@ std::optional<double> Decommutator::calibrated(const Step& step, std::uint64_t r
     return value;
 }
 
-std::optional<std::size_t> field_index(const dictionary::Packet& packet, std::string_view name) {
-    for (std::size_t i = 0; i < packet.fields.size(); ++i)
-        if (packet.fields[i].name == name) return i;
-    return std::nullopt;
-}
-
 }  // namespace aeolis::telemetry

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/space_packet.hpp"
+#include "dictionaries/decoded.hpp"
 #include "dictionaries/dictionary.hpp"
 
 #include <compare>
@@ -25,13 +26,7 @@ enum class Refusal {
 inline constexpr std::size_t refusal_count = 6;
 const char* name_of(Refusal refusal);
 
-/// What one packet says. Keep one and give it to every decode(): its vectors keep their capacity.
-struct Decoded {
-    std::size_t packet = 0;  ///< index in Dictionary::packets
-    TmHeader header;
-    std::vector<std::uint64_t> raw;            ///< a field each: the bits as they stand, zero-extended
-    std::vector<std::optional<double>> value;  ///< a field each: calibrated; none when undefined
-};
+using dictionary::Decoded;
 
 /// Packets to calibrated values, by a flat plan compiled once from the dictionary's containers.
 ///
@@ -85,7 +80,6 @@ class Decommutator {
     std::vector<EventPlan> events_;       ///< sorted by APID, then event id
 };
 
-/// The field's index in the packet, by name; for people and for the few fields that ground itself interprets.
-std::optional<std::size_t> field_index(const dictionary::Packet& packet, std::string_view name);
+using dictionary::field_index;
 
 }  // namespace aeolis::telemetry

@@ -26,7 +26,6 @@ class RecordingDelivery {
   public:
     static constexpr std::uint32_t file_octets = 262144;  ///< ours: 1 s at 2 Mb/s
     static constexpr std::size_t open_max = 32;  ///< ours: 8 MiB on their way, for answers that take two light times
-    static constexpr std::uint16_t ground_entity = 1;  ///< ours; this end is named by the spacecraft's number
 
     struct Recording {
         std::span<const std::uint8_t> octets;  ///< whole packets, one after another

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/timeline_change.hpp"
+#include "dictionaries/timeline_plan.hpp"
 #include "server/archive/items.hpp"
 #include "server/archive/reader_state.hpp"
 #include "server/archive/row_reader.hpp"
 #include "server/archive/schema.hpp"
-#include "server/archive/timeline_plan.hpp"
 #include "telemetry/text.hpp"
 
 #include <algorithm>

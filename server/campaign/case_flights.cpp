@@ -49,12 +49,13 @@ CaseFlights::CaseFlights(const simulation::Scenario& scenario, std::uint64_t see
 }
 
 void CaseFlights::Flight::step() {
-    const auto& report = landing.step();
+    const auto& received = landing.step();
     ++cycles;
     if (!landing.script_sent()) {
-        landing.hear(report);
+        landing.hear(received);
         landing.take_stages();
     }
+    const auto& report = landing.landing().report();
     firings.read(report.recorded);
     for (const auto& event : report.events)
         events.push_back({event.name, event.e_s, event.altitude_m, event.speed_mps});

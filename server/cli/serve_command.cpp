@@ -133,7 +133,7 @@ int serve(const ServeOptions& options) {
     if (downlink)
         if (auto following = (*backend)->follow(*downlink); !following)
             return failed("--downlink " + following.error().message);
-    if (scenario) (*backend)->start(*scenario, options.seed, options.pace);
+    if (scenario) (*backend)->start({*scenario, options.seed, options.pace});
 
     fmt::print("Aeolis is at {}://{}:{}/\n  {}\n  archive {}; {}; end with Ctrl-C\n",
                (*backend)->secure() ? "https" : "http",

@@ -2,7 +2,7 @@
 #include "server/downlink/downlink_follower.hpp"
 
 #include "server/rehearsal/wall_clock.hpp"
-#include "server/station/silence_classifier.hpp"
+#include "telemetry/station/silence_classifier.hpp"
 
 #include <algorithm>
 #include <spdlog/spdlog.h>
@@ -159,7 +159,8 @@ void DownlinkFollower::deliver_packets() {
     Delivery delivery;
     const Ert ert = now_on_earth();
     while (const auto packet = source_->next())
-        delivery.entries.emplace_back(pipeline::DownlinkPacket{{packet->begin(), packet->end()}, ert});
+        delivery.entries.emplace_back(
+            telemetry::ReceivedPacket{telemetry::downlink_link, ert, {packet->begin(), packet->end()}});
     if (delivery.entries.empty()) return;
     packets_ += delivery.entries.size();
     wait_ = settings_.retry_first;
@@ -172,7 +173,7 @@ void DownlinkFollower::pass() {
     if (now.microseconds - passed_.microseconds < pass_interval_us) return;
     passed_ = now;
     Delivery delivery;
-    delivery.entries.emplace_back(pipeline::EarthTime{now});
+    delivery.entries.emplace_back(telemetry::EarthTime{now});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
 }
 
@@ -186,7 +187,8 @@ void DownlinkFollower::say(bool up, const std::string& reason) {
     Delivery delivery;
     // What is known of such a mission explains no silence: a way that does not work is ground's.
     delivery.entries.emplace_back(
-        pipeline::DownlinkState{up, up ? reason : words_of(SilenceClass::ground_fault, reason), now_on_earth()});
+        telemetry::LinkState{telemetry::downlink_link, now_on_earth(), up,
+                             up ? reason : words_of(telemetry::SilenceClass::ground_fault, reason), !up});
     if (!pipeline_.deliver(std::move(delivery))) stop_ = true;
     on_state_(state("running"));
 }

@@ -274,9 +274,10 @@ void ConsoleBackend::note_resets() {
     }
 }
 
-void ConsoleBackend::start(simulation::Scenario scenario, std::uint64_t seed, double pace) {
-    const auto detail = fmt::format("serve --scenario {} --seed {} --pace {}", scenario.name, seed, pace);
-    desk_->start(std::move(scenario), seed, pace, [this, detail](const Result<v1::RunState>& began) {
+void ConsoleBackend::start(RehearsalDesk::Flight flight) {
+    const auto detail =
+        fmt::format("serve --scenario {} --seed {} --pace {}", flight.scenario.name, flight.seed, flight.pace);
+    desk_->start(std::move(flight), [this, detail](const Result<v1::RunState>& began) {
         pipeline_->audit(
             audit_record(by_command_line(), "rehearsal", detail, began ? "done" : "refused: " + began.error().message));
         if (!began) spdlog::error("the rehearsal could not be started: {}", began.error().message);

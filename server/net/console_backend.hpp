@@ -5,8 +5,8 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/api/api.hpp"
 #include "server/downlink/downlink_follower.hpp"
-#include "server/gateway/timeline_check.hpp"
 #include "server/net/web_server.hpp"
+#include "server/rehearsal/timeline_check.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -31,7 +31,7 @@ class ConsoleBackend {
     ~ConsoleBackend();  ///< a run that goes on is stopped, and its end is in the archive
 
     /// Before run(): a rehearsal to start with.
-    void start(simulation::Scenario scenario, std::uint64_t seed, double pace);
+    void start(RehearsalDesk::Flight flight);
     /// Before run(), with another mission: follows its packets in a run of its own. No rehearsal can be started then.
     Result<void> follow(DownlinkFollower::Settings settings);
     std::uint16_t downlink_port() const { return downlink_ ? downlink_->port() : std::uint16_t{0}; }

@@ -127,13 +127,10 @@ Result<std::optional<std::size_t>> derive(sqlite::Database& database, const RunT
         const auto stored = archive::row::unit(*units);
         const auto octets = units->octets(archive::row::unit_octets_column);
         Numbering numbering(stored.seq);
-        if (other != nullptr)
-            intake.take(DownlinkPacket{{octets.begin(), octets.end()}, stored.ert}, numbering, batch);
-        else
-            intake.take(simulation::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
-                                                   stored.ert,
-                                                   {octets.begin(), octets.end()}},
-                        numbering, batch, {});
+        intake.take(telemetry::ReceivedPacket{{stored.link, stored.source == archive::Source::recorded},
+                                              stored.ert,
+                                              {octets.begin(), octets.end()}},
+                    numbering, batch, {});
         ++count;
         if (batch.units.size() < batch_units) continue;
         if (stopped()) return std::optional<std::size_t>{};

@@ -53,7 +53,7 @@ std::optional<PacketIntake::FiringFields> PacketIntake::find_firing_fields(const
                         *verdict};
 }
 
-void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
+void PacketIntake::take(const telemetry::ReceivedPacket& packet, Numbering& numbering, Batch& batch,
                         const Observer& observer) {
     const bool recorded = packet.link.recorded;
     UnitRecord unit;
@@ -65,42 +65,14 @@ void PacketIntake::take(const simulation::ReceivedPacket& packet, Numbering& num
     batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
     if (recorded) recorded_octets_ += packet.octets.size();
 
-    AEOLIS_CHECK(decommutator_.has_value());
-    if (const auto refusal = decommutator_->decode(packet.octets, decoded_)) {
-        ++not_decoded_;
-        unit.refusal = telemetry::name_of(*refusal);
-        if (const auto header = read_primary_header(packet.octets)) unit.apid = header->apid;
-        batch.units.push_back(std::move(unit));
-        return;
+    const bool has_apid = other_ != nullptr ? packet.octets.size() >= primary_header_octets
+                                            : read_primary_header(packet.octets).has_value();
+    if (has_apid) unit.apid = Apid{static_cast<std::uint16_t>((packet.octets[0] & 7U) << 8U | packet.octets[1])};
+    if (other_ != nullptr) {
+        ++of_others_;
+        unit.standing = Standing::unregistered;
     }
-    unit.apid = decoded_.header.primary.apid;
-    unit.packet = static_cast<std::uint16_t>(decoded_.packet);
-    unit.sclk = decoded_.header.time;
-    unit.standing = register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
-    const bool fresh = unit.standing == Standing::first || unit.standing == Standing::unregistered;
-    unit.sampled = fresh && !columns_.channels(decoded_.packet).empty();
-    batch.units.push_back(unit);
-    if (unit.standing == Standing::again) return;
-    note_phase(unit);
-    if (unit.sampled) sample(unit, numbering, batch);
-    interpret(unit, numbering, batch);
-    if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
-}
-
-void PacketIntake::take(const DownlinkPacket& packet, Numbering& numbering, Batch& batch) {
-    AEOLIS_CHECK(other_ != nullptr);
-    UnitRecord unit;
-    unit.seq = numbering.next(batch);
-    unit.ert = packet.ert;
-    unit.link = "downlink";
-    unit.source = Source::realtime;
-    unit.standing = Standing::unregistered;  // what names a unit of ours is not in the packets of others
-    unit.octets = {batch.octets.size(), packet.octets.size()};
-    batch.octets.insert(batch.octets.end(), packet.octets.begin(), packet.octets.end());
-    ++downlinked_;
-    if (packet.octets.size() >= primary_header_octets)
-        unit.apid = Apid{static_cast<std::uint16_t>((packet.octets[0] & 7U) << 8U | packet.octets[1])};
-    if (auto refusal = other_->decode(packet.octets, decoded_)) {
+    if (auto refusal = decode(packet.octets)) {
         ++not_decoded_;
         unit.refusal = std::move(*refusal);
         batch.units.push_back(std::move(unit));
@@ -108,10 +80,23 @@ void PacketIntake::take(const DownlinkPacket& packet, Numbering& numbering, Batc
     }
     unit.packet = static_cast<std::uint16_t>(decoded_.packet);
     unit.sclk = decoded_.header.time;
-    unit.sampled = !columns_.channels(decoded_.packet).empty();
+    if (other_ == nullptr)
+        unit.standing = register_.add(packet.octets, recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
+    const bool fresh = unit.standing == Standing::first || unit.standing == Standing::unregistered;
+    unit.sampled = fresh && !columns_.channels(decoded_.packet).empty();
     batch.units.push_back(unit);
+    if (unit.standing == Standing::again) return;
     note_phase(unit);
     if (unit.sampled) sample(unit, numbering, batch);
+    if (other_ != nullptr) return;
+    interpret(unit, numbering, batch);
+    if (observer) observer(decoded_, packet.octets, unit.source, unit.ert);
+}
+
+std::optional<std::string> PacketIntake::decode(std::span<const std::uint8_t> packet) {
+    if (other_ != nullptr) return other_->decode(packet, decoded_);
+    const auto refusal = decommutator_->decode(packet, decoded_);
+    return refusal ? std::optional<std::string>{telemetry::name_of(*refusal)} : std::nullopt;
 }
 
 void PacketIntake::sample(const UnitRecord& unit, Numbering& numbering, Batch& batch) {
@@ -164,7 +149,7 @@ archive::RecordingTotals PacketIntake::totals() const {
     archive::RecordingTotals totals;
     totals.recorded = proof.recorded;
     totals.recorded_octets = recorded_octets_;
-    totals.realtime = proof.realtime + downlinked_;
+    totals.realtime = proof.realtime + of_others_;
     totals.realtime_not_recorded = proof.realtime_not_recorded;
     totals.realtime_differs = proof.realtime_differs;
     totals.never_seen_live = proof.never_seen_live;

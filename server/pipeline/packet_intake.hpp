@@ -4,7 +4,6 @@
 #include "server/archive/packet_columns.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "server/pipeline/segment_builder.hpp"
-#include "simulation/landing.hpp"
 #include "telemetry/alarms.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/other_mission.hpp"
@@ -12,6 +11,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace aeolis::pipeline {
@@ -46,19 +46,17 @@ class Numbering {
 /// In       packets in the order of receipt               Out   records, appended to a batch
 /// Rules    a unit that came before on the other path is kept (it is the proof) and marked, but its samples are not
 ///          added again; one that came before on the same path says nothing new at all. Alarms are judged in real
-///          time only: the recording tells what was, not what is.
+///          time only: the recording tells what was, not what is. Another mission's packets come in real time, each
+///          for itself: nothing in them names a unit of ours.
 /// Memory   the register of units (telemetry/unit_identity.hpp) and the open segments
 class PacketIntake {
   public:
     PacketIntake(const dictionary::Dictionary& dictionary, const archive::PacketColumns& columns,
                  const telemetry::OtherMission* other);
 
-    void take(const simulation::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
+    void take(const telemetry::ReceivedPacket& packet, Numbering& numbering, archive::Batch& batch,
               const Observer& observer);
     void seal(archive::Batch& batch) { segments_.seal(batch); }
-
-    /// Of another mission: packets in real time only, each for itself.
-    void take(const DownlinkPacket& packet, Numbering& numbering, archive::Batch& batch);
 
     archive::RecordingTotals totals() const;
     const std::vector<std::optional<LatestValue>>& latest() const { return latest_; }
@@ -74,6 +72,8 @@ class PacketIntake {
     };
     static std::optional<FiringFields> find_firing_fields(const dictionary::Dictionary& dictionary);
 
+    /// Into decoded_; why not, or nothing.
+    std::optional<std::string> decode(std::span<const std::uint8_t> packet);
     void sample(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch);
     void interpret(const archive::UnitRecord& unit, Numbering& numbering, archive::Batch& batch) const;
     void judge(const archive::UnitRecord& unit, std::span<const double> values, Numbering& numbering,
@@ -97,7 +97,7 @@ class PacketIntake {
     std::vector<std::optional<LatestValue>> latest_;
     std::uint64_t recorded_octets_ = 0;
     std::uint64_t not_decoded_ = 0;
-    std::uint64_t downlinked_ = 0;
+    std::uint64_t of_others_ = 0;  ///< packets of another mission
 };
 
 }  // namespace aeolis::pipeline

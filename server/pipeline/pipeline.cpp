@@ -42,12 +42,12 @@ struct Pipeline::State {
 
     Result<void> room();
     std::size_t pending_octets() const;
-    void take(const simulation::ReceivedPacket& packet);
+    void take(const telemetry::ReceivedPacket& packet);
     /// The newest unit of the batch was heard.
     void heard();
     void add(std::span<const telemetry::StalenessChange> changes, Ert ert);
-    void take(const simulation::ReceivedTone& tone);
-    void take(const simulation::LinkState& link);
+    void take(const telemetry::ReceivedTone& tone);
+    void take(const telemetry::LinkState& link);
     void hold_against_archive();
     Result<void> go_on_where_it_was_cut_off();
     std::shared_ptr<const PublishedBatch> published(RunId of, const archive::Batch& batch, bool built) const;
@@ -163,56 +163,35 @@ Result<void> Pipeline::State::room() {
                  " MB wait to be stored; the run is held until they are"};
 }
 
-Result<void> Pipeline::accept(const simulation::CycleReport& report) {
-    if (report.packets.empty() && report.tones.empty() && report.links.empty()) return {};
-    // All of the report or none of it: otherwise what is given again would be doubled.
+Result<void> Pipeline::accept(const telemetry::Received& received) {
+    if (received.packets.empty() && received.tones.empty() && received.links.empty()) return {};
+    // All of it or nothing: otherwise what is given again would be doubled.
     if (auto room = state_->room(); !room) return room;
-    for (const auto& link : report.links) state_->take(link);
-    for (const auto& packet : report.packets) state_->take(packet);
-    for (const auto& tone : report.tones) state_->take(tone);
+    for (const auto& link : received.links) state_->take(link);
+    for (const auto& packet : received.packets) state_->take(packet);
+    for (const auto& tone : received.tones) state_->take(tone);
     return {};
 }
 
-Result<void> Pipeline::accept(const simulation::ReceivedPacket& packet) {
+Result<void> Pipeline::accept(const telemetry::ReceivedPacket& packet) {
     if (auto room = state_->room(); !room) return room;
     state_->take(packet);
     return {};
 }
 
-Result<void> Pipeline::accept(const simulation::ReceivedTone& tone) {
+Result<void> Pipeline::accept(const telemetry::ReceivedTone& tone) {
     if (auto room = state_->room(); !room) return room;
     state_->take(tone);
     return {};
 }
 
-Result<void> Pipeline::accept(const simulation::LinkState& link) {
+Result<void> Pipeline::accept(const telemetry::LinkState& link) {
     if (auto room = state_->room(); !room) return room;
     state_->take(link);
     return {};
 }
 
-Result<void> Pipeline::accept(const DownlinkPacket& packet) {
-    if (auto room = state_->room(); !room) return room;
-    auto& run = *state_->run;
-    run.intake.take(packet, run.numbering, run.pending);
-    state_->heard();
-    return {};
-}
-
-Result<void> Pipeline::accept(const DownlinkState& state) {
-    if (auto room = state_->room(); !room) return room;
-    auto& run = *state_->run;
-    run.pending.links.push_back(
-        {run.numbering.next(run.pending), "downlink", state.up, state.reason, state.ert, !state.up});
-    std::vector<telemetry::StalenessChange> changes;
-    // Nothing is predicted of another mission: that its packets cannot come is a fault on the ground.
-    run.staleness.link("downlink", state.up ? telemetry::LinkIs::up : telemetry::LinkIs::lost, state.reason, state.ert,
-                       changes);
-    state_->add(changes, state.ert);
-    return {};
-}
-
-Result<void> Pipeline::accept(const EarthTime& time) {
+Result<void> Pipeline::accept(const telemetry::EarthTime& time) {
     if (auto room = state_->room(); !room) return room;
     std::vector<telemetry::StalenessChange> changes;
     state_->run->staleness.pass(time.now, changes);
@@ -254,7 +233,7 @@ Result<void> Pipeline::accept(archive::StageRecord stage) {
     return {};
 }
 
-void Pipeline::State::take(const simulation::ReceivedPacket& packet) {
+void Pipeline::State::take(const telemetry::ReceivedPacket& packet) {
     run->intake.take(packet, run->numbering, run->pending, observer);
     if (!packet.link.recorded) heard();
 }
@@ -275,7 +254,7 @@ void Pipeline::State::add(std::span<const telemetry::StalenessChange> changes, E
                                           change.stale, change.silent_s, change.expected_s, change.reason, ert});
 }
 
-void Pipeline::State::take(const simulation::LinkState& link) {
+void Pipeline::State::take(const telemetry::LinkState& link) {
     run->pending.links.push_back(
         {run->numbering.next(run->pending), link.link.name, link.up, link.reason, link.ert, link.lost});
     if (link.link.recorded) return;
@@ -289,7 +268,7 @@ void Pipeline::State::take(const simulation::LinkState& link) {
     add(changes, link.ert);
 }
 
-void Pipeline::State::take(const simulation::ReceivedTone& tone) {
+void Pipeline::State::take(const telemetry::ReceivedTone& tone) {
     archive::ToneRecord record;
     record.seq = run->numbering.next(run->pending);
     record.start = tone.start;
@@ -311,7 +290,7 @@ void Pipeline::State::take(const simulation::ReceivedTone& tone) {
     record.lock = to_text(tone.lock);
     record.locked = tone.lock == CarrierLock::locked;
     record.model = run->start.tone_model;
-    // Ground knows when the symbol began on board by light time alone; what was sent is the simulation's secret.
+    // Ground knows when the symbol began on board by light time alone; that is all it knows.
     const double sent_s =
         static_cast<double>(tone.start.microseconds - run->start.correlation.scet.microseconds) * 1e-6 -
         run->start.light_time_s;

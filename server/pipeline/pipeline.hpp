@@ -6,9 +6,9 @@
 #include "dictionaries/dictionary.hpp"
 #include "server/archive/archive.hpp"
 #include "server/archive/records.hpp"
-#include "simulation/landing.hpp"
 #include "telemetry/decommutator.hpp"
 #include "telemetry/other_mission.hpp"
+#include "telemetry/station/received.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -49,23 +49,6 @@ struct LatestValue {
     Ert ert;
 };
 
-/// A packet of another mission, as it came.
-struct DownlinkPacket {
-    std::vector<std::uint8_t> octets;
-    Ert ert;
-};
-/// Whether such packets can come.
-struct DownlinkState {
-    bool up = false;
-    std::string reason;
-    Ert ert;
-};
-
-/// Time goes on at the station: what does not come is told by nothing else.
-struct EarthTime {
-    Ert now;
-};
-
 /// Turns what one run's links and gateway deliver into numbered items: commits them to the archive, then publishes.
 ///
 /// In       received packets, tones, link changes, command stages; the caller's steady clock
@@ -104,17 +87,15 @@ class Pipeline {
     /// A controller's request that was taken: stored with the next commit.
     Result<void> accept(archive::RequestRecord request);
 
-    /// All of a cycle's packets, tones and link changes. The report is not kept.
-    Result<void> accept(const simulation::CycleReport& report);
-    Result<void> accept(const simulation::ReceivedPacket& packet);
-    Result<void> accept(const simulation::ReceivedTone& tone);
-    Result<void> accept(const simulation::LinkState& link);
-    Result<void> accept(const DownlinkPacket& packet);
-    Result<void> accept(const DownlinkState& state);
+    /// All of it or, with an Error, nothing.
+    Result<void> accept(const telemetry::Received& received);
+    Result<void> accept(const telemetry::ReceivedPacket& packet);
+    Result<void> accept(const telemetry::ReceivedTone& tone);
+    Result<void> accept(const telemetry::LinkState& link);
     /// `stage.seq` is given here.
     Result<void> accept(archive::StageRecord stage);
     /// Once a second of the run or so: tells what has become stale.
-    Result<void> accept(const EarthTime& time);
+    Result<void> accept(const telemetry::EarthTime& time);
     /// What a person adds to any run: to the one that goes on, durable with the next commit; to another, durable and
     /// published when it returns. @return with its number
     Result<archive::Annotation> annotate(RunId run, archive::Annotation annotation);

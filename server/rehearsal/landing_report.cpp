@@ -37,7 +37,7 @@ std::string landing_json(const Rehearsal& rehearsal, double wall_s) {
     const auto touchdown = landing.touchdown();
     const auto separation = landing.separation();
     const auto proof = rehearsal.proof();
-    const auto& tones = rehearsal.tones();
+    const auto tones = rehearsal.tones();
     const auto event_json = [](const simulation::TruthEvent& event) {
         return JsonObject{}
             .text("name", event.name)
@@ -113,7 +113,7 @@ std::string landing_table(const Rehearsal& rehearsal, double wall_s) {
     const auto separation = landing.separation();
     text += nearest_text("heatshield", separation.heatshield_least_m) +
             nearest_text("backshell", separation.backshell_least_m);
-    const auto& tones = rehearsal.tones();
+    const auto tones = rehearsal.tones();
     text += fmt::format("{} timepoints fired; tones: {} sent, {} decoded, {} wrong, {} missed\n",
                         rehearsal.firings().size(), tones.sent, tones.decoded, tones.wrong, tones.missed);
     const auto proof = rehearsal.proof();

@@ -46,14 +46,14 @@ Result<void> same_items(archive::Reader& stored, const pipeline::PublishedBatch&
 
 }  // namespace
 
-void Delivery::add(const simulation::CycleReport& report) {
-    entries.insert(entries.end(), report.packets.begin(), report.packets.end());
-    entries.insert(entries.end(), report.tones.begin(), report.tones.end());
-    entries.insert(entries.end(), report.links.begin(), report.links.end());
+void Delivery::add(const telemetry::Received& received) {
+    entries.insert(entries.end(), received.packets.begin(), received.packets.end());
+    entries.insert(entries.end(), received.tones.begin(), received.tones.end());
+    entries.insert(entries.end(), received.links.begin(), received.links.end());
 }
 
 void Delivery::pass(std::uint64_t cycles, Ert now) {
-    if (cycles % cycles_a_second == 0) entries.emplace_back(pipeline::EarthTime{now});
+    if (cycles % cycles_a_second == 0) entries.emplace_back(telemetry::EarthTime{now});
 }
 
 PipelineThread::PipelineThread(archive::Archive archive, const dictionary::Dictionary& dictionary, Faults faults,
@@ -207,10 +207,9 @@ void PipelineThread::note_received(const Delivery& delivery) {
         received.octets += octets;
     };
     for (const auto& entry : delivery.entries) {
-        if (const auto* packet = std::get_if<simulation::ReceivedPacket>(&entry))
+        if (const auto* packet = std::get_if<telemetry::ReceivedPacket>(&entry))
             add(packet->link.name, packet->octets.size());
-        if (const auto* packet = std::get_if<pipeline::DownlinkPacket>(&entry)) add("downlink", packet->octets.size());
-        if (std::holds_alternative<simulation::ReceivedTone>(entry)) add("tones", 0);
+        if (std::holds_alternative<telemetry::ReceivedTone>(entry)) add("tones", 0);
     }
 }
 

@@ -6,7 +6,6 @@
 #include "server/pipeline/pipeline.hpp"
 #include "server/rehearsal/bounded_queue.hpp"
 #include "server/rehearsal/refusal_budget.hpp"
-#include "simulation/landing.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -22,9 +21,8 @@ namespace aeolis::server {
 
 /// What a run hands to the archive at once, in the order in which it reached Earth.
 struct Delivery {
-    using Entry =
-        std::variant<simulation::ReceivedPacket, simulation::ReceivedTone, simulation::LinkState, archive::StageRecord,
-                     archive::RequestRecord, pipeline::DownlinkPacket, pipeline::DownlinkState, pipeline::EarthTime>;
+    using Entry = std::variant<telemetry::ReceivedPacket, telemetry::ReceivedTone, telemetry::LinkState,
+                               telemetry::EarthTime, archive::StageRecord, archive::RequestRecord>;
     std::vector<Entry> entries;
     double relay_progress = 0.0;
     std::vector<archive::LinkTotals> links;           ///< empty: as told before
@@ -33,7 +31,7 @@ struct Delivery {
     /// Who waits for an answer is not kept waiting by a disk.
     std::vector<std::function<void(const std::string& fault)>> answers;
 
-    void add(const simulation::CycleReport& report);
+    void add(const telemetry::Received& received);
     /// Once a second of the run: that time goes on.
     void pass(std::uint64_t cycles, Ert now);
 };

@@ -2,26 +2,19 @@
 #include "server/rehearsal/rehearsal.hpp"
 
 #include "generated/dictionary_flight.hpp"
+#include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/wall_clock.hpp"
 #include "server/scenario/scenario_text.hpp"
-#include "server/tones/predicted_doppler.hpp"
 #include "telemetry/packet_stream.hpp"
 #include "telemetry/text.hpp"
 
-#include <algorithm>
-#include <iterator>
+#include <fmt/format.h>
+#include <utility>
 
 namespace aeolis::server {
 namespace {
 
-constexpr std::uint64_t cycles_between_silences = 64;  // a second: who watches a silence waits no longer
 constexpr const char* product_packet_name = "DataProduct";
-
-/// When what leaves the vehicle at the entry that ground predicts is heard on Earth.
-Ert heard_at_entry(const simulation::Scenario& scenario, const simulation::Landing& landing) {
-    return {landing.correlation().scet_of(scenario.entry_sclk).microseconds +
-            static_cast<std::int64_t>(landing.light_time_s() * 1e6)};
-}
 
 }  // namespace
 
@@ -30,49 +23,28 @@ Rehearsal::Rehearsal(const simulation::Scenario& scenario, std::uint64_t seed, s
                      const std::optional<ClockCorrelation>& clock)
     : scenario_(scenario), dictionary_(dictionary), seed_(seed), case_number_(case_number),
       flight_(scenario, seed, case_number, dictionary, clock), product_packet_(dictionary.packet(product_packet_name)),
-      decommutator_(dictionary), firings_(dictionary),
-      silences_(predict_silences(scenario, dictionary), landing().ert_now(), heard_at_entry(scenario, landing())) {
+      decommutator_(dictionary), firings_(dictionary) {
     if (runner == nullptr && scenario.test_venue == simulation::TestVenue::performance) {
         ThreadedExecutive::Options options;
         options.measure = true;
         runner = executive_ = std::make_shared<ThreadedExecutive>(options);
     }
     if (runner != nullptr) flight_.run_prime_by(std::move(runner));
-    if (scenario.radio.tones_from_samples.value_or(false))
-        tones_from_samples_.emplace(dictionary.mfsk, scenario.radio, predicted_doppler_hz(scenario, dictionary.mfsk),
-                                    seed, case_number);
+    flight_.equip_station(scenario, seed, case_number, dictionary);
 }
 
-const simulation::CycleReport& Rehearsal::step() {
+const telemetry::Received& Rehearsal::step() {
     if (!broken_.empty()) return nothing_;
     try {
-        const auto& report = explain_silences(hear_tones(flight_.step()));
+        const auto& received = flight_.step();
         ++cycles_;
-        take(report);
-        return report;
+        take(received);
+        score(landing().report(), received);
+        return received;
     } catch (const CheckFailed& bug) {
         broken_ = text_of_bug(bug);
         return nothing_;
     }
-}
-
-const simulation::CycleReport& Rehearsal::hear_tones(const simulation::CycleReport& landed) {
-    if (!tones_from_samples_) return landed;
-    heard_ = landed;
-    tones_from_samples_->receive(landed, heard_.tones);
-    return heard_;
-}
-
-const simulation::CycleReport& Rehearsal::explain_silences(const simulation::CycleReport& heard) {
-    if (heard.links.empty() && cycles_ % cycles_between_silences != 0) return heard;
-    SilenceClassifier::Station at_station{
-        recording_progress(), {}, heard.station_out ? "nothing comes from the station" : ""};
-    for (const auto& link : station().links()) at_station.heard.emplace_back(link.link.name, link.heard_at);
-    auto links = silences_.tell(heard.links, landing().ert_now(), at_station);
-    if (links.empty() && heard.links.empty()) return heard;  // else what the simulation says of them would be told
-    if (&heard != &heard_) heard_ = heard;
-    heard_.links = std::move(links);
-    return heard_;
 }
 
 Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
@@ -83,37 +55,45 @@ Result<void> Rehearsal::inject(const v1::FaultInjection& injection) {
 }
 
 std::vector<v1::CommandReply> Rehearsal::look(std::span<const v1::CommandRequest> file) {
-    if (takes_commands()) return flight_.look(file);
-    std::vector<v1::CommandReply> refusals;
-    std::ranges::transform(file, std::back_inserter(refusals),
-                           [this](const v1::CommandRequest& request) { return submit(request); });
-    return refusals;
+    std::vector<v1::CommandReply> replies;
+    if (!takes_commands()) {
+        for (const auto& request : file) replies.push_back(submit(request));
+        return replies;
+    }
+    std::vector<commands::Request> requests;
+    for (const auto& request : file) requests.push_back(request_of(request));
+    for (const auto& reply : flight_.look(requests)) replies.push_back(message_of(reply));
+    return replies;
 }
 
 v1::CommandReply Rehearsal::submit(const v1::CommandRequest& request) {
-    if (takes_commands()) return flight_.submit(request);
+    if (takes_commands()) return message_of(flight_.submit(request_of(request)));
     v1::CommandReply refusal;
     refusal.set_request(request.request());
     refusal.set_reason(fmt::format("the test venue {} has no computer", name_of(scenario_.test_venue)));
     return refusal;
 }
 
-void Rehearsal::take(const simulation::CycleReport& report) {
-    add_to_digest(report.recorded);
-    firings_.read(report.recorded);
-    flight_.hear(report);
-    for (const auto& packet : report.packets) {
+std::vector<archive::StageRecord> Rehearsal::take_stages() {
+    std::vector<archive::StageRecord> records;
+    for (auto& stage : flight_.take_stages()) records.push_back(record_of(std::move(stage)));
+    return records;
+}
+
+void Rehearsal::take(const telemetry::Received& received) {
+    flight_.hear(received);
+    for (const auto& packet : received.packets) {
         units_.add(packet.octets, packet.link.recorded ? telemetry::Path::recorded : telemetry::Path::realtime);
         note_product(packet.octets);
     }
-    for (const auto& tone : report.tones) {
-        if (tone.sent) ++tones_.sent;
-        if (tone.tone)
-            ++(tone.tone == tone.sent ? tones_.decoded : tones_.wrong);
-        else if (tone.sent)
-            ++tones_.missed;
-    }
-    events_.insert(events_.end(), report.events.begin(), report.events.end());
+}
+
+void Rehearsal::score(const simulation::CycleReport& truth, const telemetry::Received& received) {
+    add_to_digest(truth.recorded);
+    firings_.read(truth.recorded);
+    for (const auto& symbol : truth.symbols) tones_.sent(symbol);
+    for (const auto& tone : received.tones) tones_.heard(tone);
+    events_.insert(events_.end(), truth.events.begin(), truth.events.end());
 }
 
 void Rehearsal::add_to_digest(std::span<const std::uint8_t> recorded) {
@@ -174,7 +154,7 @@ archive::RunStart Rehearsal::run_start(double pace) const {
     start.entry = scenario_.entry_sclk;
     start.correlation = landing().correlation();
     start.light_time_s = landing().light_time_s();
-    start.tone_model = tones_from_samples_ ? "signal" : "statistical";
+    start.tone_model = scenario_.radio.tones_from_samples.value_or(false) ? "signal" : "statistical";
     start.scenario_text = scenario_to_text(scenario_);
     for (const auto& [name, value] : solution_arguments(landing().solution())) start.solution.emplace_back(name, value);
     return start;

@@ -7,8 +7,7 @@
 #include "server/rehearsal/digest.hpp"
 #include "server/rehearsal/recorded_firings.hpp"
 #include "server/rehearsal/scripted_landing.hpp"
-#include "server/station/silence_classifier.hpp"
-#include "server/station/tone_station.hpp"
+#include "server/rehearsal/tone_score.hpp"
 #include "server/venue/threaded_executive.hpp"
 #include "simulation/landing.hpp"
 #include "telemetry/product_assembler.hpp"
@@ -23,13 +22,9 @@
 
 namespace aeolis::server {
 
-struct ToneScore {
-    std::uint64_t sent = 0, decoded = 0, wrong = 0, missed = 0;
-};
-
 /// One run: the landing, its command path, its script, and what is summed up over it. No thread, no clock, no disk.
 ///
-/// In       cycles to step; commands                    Out   the cycle's report; stages of commands; the score
+/// In       cycles to step; commands                    Out   what ground received; stages of commands; the score
 /// Rate     as fast as it is called                     Memory   the recording and its register: some tens of megabytes
 /// Faults   a bug found in the simulation ends the run as lost, with the broken condition as reason
 class Rehearsal {
@@ -40,18 +35,18 @@ class Rehearsal {
               const dictionary::Dictionary& dictionary, std::shared_ptr<flight::CycleRunner> runner = {},
               const std::optional<ClockCorrelation>& clock = {});
 
-    /// One cycle of 1/64 s, after the script's commands that are due. The report stands until the next step.
-    const simulation::CycleReport& step();
+    /// One cycle of 1/64 s, after the script's commands that are due. What was received stands until the next step.
+    const telemetry::Received& step();
 
     v1::CommandReply submit(const v1::CommandRequest& request);
-    /// See CommandGateway::look.
+    /// See commands::CommandGateway::look.
     std::vector<v1::CommandReply> look(std::span<const v1::CommandRequest> file);
 
     /// It begins with the next cycle. An Error names what of it cannot be.
     Result<void> inject(const v1::FaultInjection& injection);
 
     /// Stages since the last call; their `seq` is not given yet.
-    std::vector<archive::StageRecord> take_stages() { return flight_.take_stages(); }
+    std::vector<archive::StageRecord> take_stages();
     /// Reasons for which commands of the scenario's own script were refused.
     const std::vector<std::string>& script_refusals() const { return flight_.script_refusals(); }
 
@@ -65,8 +60,8 @@ class Rehearsal {
 
     const simulation::Scenario& scenario() const { return scenario_; }
     const simulation::Landing& landing() const { return flight_.landing(); }
-    const CommandGateway& gateway() const { return flight_.gateway(); }
-    const GroundStation& station() const { return flight_.station(); }
+    const commands::CommandGateway& gateway() const { return flight_.gateway(); }
+    const telemetry::GroundStation& station() const { return flight_.station(); }
     /// What each UHF link has brought so far.
     std::vector<archive::LinkTotals> link_totals() const;
     double recording_progress() const { return flight_.recording_progress(); }  ///< 0 … 1 that has come down
@@ -76,7 +71,7 @@ class Rehearsal {
     // ---- the score ---------------------------------------------------------------------------------------------
     const std::vector<simulation::TruthEvent>& events() const { return events_; }
     const std::vector<RecordedFiring>& firings() const { return firings_.all(); }
-    const ToneScore& tones() const { return tones_; }
+    ToneScore::Figures tones() const { return tones_.figures(); }
     /// Real time against the recording: as it came down; when none comes (no touchdown), as it lies in NVM.
     telemetry::Proof proof() const;
     /// Data products as ground put them together from what came, real time or recording.
@@ -90,11 +85,8 @@ class Rehearsal {
     bool takes_commands() const {
         return scenario_.test_venue != simulation::TestVenue::gnc_alone;
     }  ///< it has a computer
-    /// The same with the tones that were decoded from its samples.
-    const simulation::CycleReport& hear_tones(const simulation::CycleReport& landed);
-    /// The same with ground's own reasons for what links do not bring.
-    const simulation::CycleReport& explain_silences(const simulation::CycleReport& heard);
-    void take(const simulation::CycleReport& report);
+    void take(const telemetry::Received& received);
+    void score(const simulation::CycleReport& truth, const telemetry::Received& received);
     /// What the run recorded, but for measured times, which are never alike; where nothing is recorded the path flown.
     void add_to_digest(std::span<const std::uint8_t> recorded);
     void note_product(std::span<const std::uint8_t> packet);
@@ -116,9 +108,7 @@ class Rehearsal {
     ToneScore tones_;
     telemetry::UnitRegister units_;
     telemetry::ProductAssembler products_;
-    std::optional<ToneStation> tones_from_samples_;  ///< where the scenario has them so
-    SilenceClassifier silences_;
-    simulation::CycleReport heard_, nothing_;
+    telemetry::Received nothing_;
 };
 
 }  // namespace aeolis::server

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/rehearsal_desk.hpp"
 
+#include "commands/command_gateway.hpp"
 #include "server/api/annotations.hpp"
-#include "server/gateway/command_gateway.hpp"
 #include "server/scenario/scenario_text.hpp"
 #include "server/scenario/script_check.hpp"
 
@@ -77,20 +77,19 @@ void RehearsalDesk::start(const v1::StartRehearsal& request, Began began) {
     auto scenario = request.has_inline_scenario() ? scenario_from_message(request.inline_scenario())
                                                   : scenarios_.scenario(request.scenario());
     if (!scenario) return began(scenario.error());
-    start(std::move(*scenario), request.seed(), *pace, std::move(began));
+    start({std::move(*scenario), request.seed(), *pace}, std::move(began));
 }
 
-void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
+void RehearsalDesk::start(Flight flight, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
-    if (const auto script = check_script(scenario, dictionary_); !script) return began(script.error());
-    const auto changes = timeline_changes(scenario);
-    if (changes.empty()) return fly(std::move(scenario), seed, pace, std::move(began));
+    if (const auto script = check_script(flight.scenario, dictionary_); !script) return began(script.error());
+    const auto changes = timeline_changes(flight.scenario);
+    if (changes.empty()) return fly(std::move(flight), std::move(began));
     timeline_.check(
         archive::RunId{}, changes, false,
-        [this, scenario = std::move(scenario), seed, pace, began = std::move(began),
-         changes](Result<std::string> timeline) {
-            post_([this, scenario, seed, pace, began, changes, timeline = std::move(timeline)] {
-                if (timeline) return fly(scenario, seed, pace, began);
+        [this, flight = std::move(flight), began = std::move(began), changes](Result<std::string> timeline) {
+            post_([this, flight, began, changes, timeline = std::move(timeline)] {
+                if (timeline) return fly(flight, began);
                 std::string names;
                 for (const auto& change : changes) names += (names.empty() ? "" : ", ") + change.command();
                 began(Error{fmt::format("commands: its script sends {}: {}", names, timeline.error().message)});
@@ -98,12 +97,12 @@ void RehearsalDesk::start(simulation::Scenario scenario, std::uint64_t seed, dou
         });
 }
 
-void RehearsalDesk::fly(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began) {
+void RehearsalDesk::fly(Flight flight, Began began) {
     if (const auto busy = refusal_while_going_on(); !busy) return began(busy.error());
     runner_.reset();
     begun_ = false;
-    runner_ = std::make_unique<RehearsalRunner>(std::move(scenario), seed, pace, dictionary_, pipeline_,
-                                                callbacks_for(std::move(began)));
+    runner_ = std::make_unique<RehearsalRunner>(std::move(flight.scenario), flight.seed, flight.pace, dictionary_,
+                                                pipeline_, callbacks_for(std::move(began)));
 }
 
 void RehearsalDesk::continue_run(archive::CutOffRun cut, double pace, Began began) {
@@ -175,7 +174,7 @@ void RehearsalDesk::look_again() {
 void RehearsalDesk::tell_looks(const TimelineCheck::Look& look) {
     for (const auto& each : look.known) {
         v1::CommandRequest said;
-        said.set_action(each.refuted ? timeline_refuted_action : timeline_holds_action);
+        said.set_action(each.refuted ? commands::timeline_refuted_action : commands::timeline_holds_action);
         said.set_number(each.number);
         said.set_request(look.undone);
         said.set_analysis(each.words);
@@ -230,7 +229,8 @@ void RehearsalDesk::sequence(std::vector<v1::CommandRequest> requests, bool only
     if (!only_check && pipeline_.blocked())
         return refuse("the run waits until its archive can be written again: " + pipeline_.fault());
     for (const auto& request : requests)
-        if (request.action() == timeline_holds_action || request.action() == timeline_refuted_action)
+        if (request.action() == commands::timeline_holds_action ||
+            request.action() == commands::timeline_refuted_action)
             return refuse(fmt::format("unknown action '{}': that is for the server itself", request.action()));
     for (const auto& request : requests)
         if (request.run() != 0 && request.run() != state_.run()) return refuse(not_going_on(request.run()));

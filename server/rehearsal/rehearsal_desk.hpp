@@ -5,8 +5,8 @@
 #include "aeolis/v1/stream.pb.h"
 #include "common/result.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "server/gateway/timeline_check.hpp"
 #include "server/rehearsal/rehearsal_runner.hpp"
+#include "server/rehearsal/timeline_check.hpp"
 #include "server/scenario/scenario_library.hpp"
 
 #include <deque>
@@ -49,7 +49,12 @@ class RehearsalDesk {
     /// Fails at once when one goes on, the scenario is unknown or impossible; else `began` comes when the run is in the
     /// archive, or when the analysis refuses what its script does to the timeline.
     void start(const v1::StartRehearsal& request, Began began);
-    void start(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
+    struct Flight {
+        simulation::Scenario scenario;
+        std::uint64_t seed = 1;
+        double pace = 1.0;
+    };
+    void start(Flight flight, Began began);
     Result<void> control(const v1::RehearsalControl& control, Began began);
     /// `may` is asked about what waited for something else, when its turn comes: rights change meanwhile, and so do the
     /// commands that have its number.
@@ -73,7 +78,7 @@ class RehearsalDesk {
     }
 
   private:
-    void fly(simulation::Scenario scenario, std::uint64_t seed, double pace, Began began);
+    void fly(Flight flight, Began began);
     void continue_run(archive::CutOffRun cut, double pace, Began began);
     RehearsalRunner::Callbacks callbacks_for(Began began);
     /// What waits and changes the timeline was analysed with another that has come to nothing since: it leaves only

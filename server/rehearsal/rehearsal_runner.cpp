@@ -355,8 +355,8 @@ bool RehearsalRunner::repeat(Rehearsal& rehearsal, const std::string& request) {
     return intervention != nullptr && (!intervention->has_fault() || rehearsal.inject(intervention->fault()).ok());
 }
 
-void RehearsalRunner::collect(Rehearsal& rehearsal, const simulation::CycleReport& report) {
-    delivery_.add(report);
+void RehearsalRunner::collect(Rehearsal& rehearsal, const telemetry::Received& received) {
+    delivery_.add(received);
     delivery_.pass(rehearsal.cycles(), rehearsal.landing().ert_now());
     take_stages(rehearsal);
 }

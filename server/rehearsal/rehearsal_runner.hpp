@@ -126,7 +126,7 @@ class RehearsalRunner {
     static bool repeat(Rehearsal& rehearsal, const std::string& request);
     /// @return the replies of those that were refused, or of all in a dry run; empty: each may be taken
     static std::vector<v1::CommandReply> look_at(Rehearsal& rehearsal, const Order& order);
-    void collect(Rehearsal& rehearsal, const simulation::CycleReport& report);
+    void collect(Rehearsal& rehearsal, const telemetry::Received& received);
     void take_stages(Rehearsal& rehearsal);
     bool deliver(const Rehearsal& rehearsal, Clock::time_point now);
     void tell(const Rehearsal& rehearsal, Clock::time_point now, bool changed);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/rehearsal/scripted_landing.hpp"
 
+#include "server/rehearsal/predict_silences.hpp"
+#include "server/tones/predicted_doppler.hpp"
+#include "telemetry/text.hpp"
+
 #include <algorithm>
 #include <cstdlib>
 #include <fmt/format.h>
@@ -47,34 +51,78 @@ commands::TrackingSchedule stations_of(const simulation::Scenario& scenario) {
     return commands::TrackingSchedule{std::move(passes)};
 }
 
+constexpr std::uint64_t cycles_between_silences = 64;  // a second: who watches a silence waits no longer
+
 }  // namespace
+
+std::vector<commands::NamedValue> solution_arguments(const simulation::NavigationSolution& solution) {
+    return {
+        {"solution_id", static_cast<double>(solution.solution_id)},
+        {"epoch_sclk", solution.epoch.seconds},
+        {"position_x_m", solution.p_MoB_M_m[0]},
+        {"position_y_m", solution.p_MoB_M_m[1]},
+        {"position_z_m", solution.p_MoB_M_m[2]},
+        {"velocity_x_mps", solution.v_MB_M_mps[0]},
+        {"velocity_y_mps", solution.v_MB_M_mps[1]},
+        {"velocity_z_mps", solution.v_MB_M_mps[2]},
+        {"entry_sclk", solution.entry.seconds},
+        {"target_latitude_deg", solution.target.latitude_deg},
+        {"target_longitude_deg", solution.target.longitude_deg},
+        {"target_radius_m", solution.target.radius_m},
+        {"parachute_speed_mps", solution.parachute_speed_mps},
+        {"heatshield_speed_mps", solution.heatshield_speed_mps},
+        {"backshell_altitude_m", solution.backshell_altitude_m},
+    };
+}
 
 ScriptedLanding::ScriptedLanding(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
                                  const dictionary::Dictionary& dictionary, const std::optional<ClockCorrelation>& clock)
-    : entry_(scenario.entry_sclk),
+    : dictionary_(dictionary), entry_(scenario.entry_sclk),
       landing_(scenario, seed, case_number, event_reports(dictionary), clock ? *clock : clock_of(scenario, dictionary)),
       station_(landing_.light_time_s()),
       gateway_(dictionary, landing_.light_time_s(), solution_arguments(landing_.solution()), scenario.second_person,
                stations_of(scenario), landing_.correlation().scet_of(scenario.entry_sclk)),
-      script_(scenario.commands), dispersed_(landing_.dispersed()) {}
+      script_(scenario.commands), dispersed_(landing_.dispersed()), decommutator_(dictionary) {}
 
-const simulation::CycleReport& ScriptedLanding::step() {
+void ScriptedLanding::equip_station(const simulation::Scenario& scenario, std::uint64_t seed, std::uint64_t case_number,
+                                    const dictionary::Dictionary& dictionary) {
+    // When what leaves the vehicle at the entry that ground predicts is heard on Earth.
+    const Ert entry{landing_.correlation().scet_of(scenario.entry_sclk).microseconds +
+                    static_cast<std::int64_t>(landing_.light_time_s() * 1e6)};
+    station_.explain_by({predict_silences(scenario, dictionary), landing_.ert_now(), entry});
+    if (!scenario.radio.tones_from_samples.value_or(false)) return;
+    const auto predict_hz = predicted_doppler_hz(scenario, dictionary.mfsk);
+    landing_.listen_by({dictionary.mfsk, scenario.radio.x_band_c_n0_dbhz, predict_hz, seed, case_number});
+    station_.listen_by({dictionary.mfsk, predict_hz, entry});
+}
+
+const telemetry::Received& ScriptedLanding::step() {
     send_script();
-    const auto& landed = landing_.step();
-    const auto& report = station_.receive(landed, landing_.ert_now());
+    const auto& received = station_.receive(landing_.step().earth);
+    if (!received.links.empty() || cycles_ % cycles_between_silences == 0)
+        station_.explain_silences(recording_progress());
     for (const auto& pltu : station_.take_forward()) landing_.forward(pltu);
     ++cycles_;
     if (landing_.dispersed() && !std::exchange(dispersed_, true))
         gateway_.renew_solution(solution_arguments(landing_.solution()));
-    return report;
+    return received;
 }
 
-void ScriptedLanding::hear(const simulation::CycleReport& report) {
-    for (const auto& packet : report.packets)
-        gateway_.receive(packet.octets, packet.link == simulation::uhf_live_link, packet.ert, stages_);
+void ScriptedLanding::hear(const telemetry::Received& received) {
+    for (const auto& packet : received.packets) receive(packet);
     // Once a second is enough for windows of many seconds.
     if (cycles_ % 64 == 0) gateway_.pass(landing_.ert_now(), stages_);
     radiate();
+}
+
+void ScriptedLanding::receive(const telemetry::ReceivedPacket& packet) {
+    const bool live = packet.link == telemetry::uhf_live_link;
+    if (!live && !gateway_.awaits_answers()) return;
+    if (decommutator_.decode(packet.octets, decoded_)) return;
+    const auto* event = telemetry::event_of(dictionary_, decoded_);
+    gateway_.receive({decoded_, packet.octets, live, packet.ert, event,
+                      event != nullptr ? telemetry::event_text(dictionary_, *event, decoded_) : ""},
+                     stages_);
 }
 
 void ScriptedLanding::send_script() {
@@ -84,26 +132,23 @@ void ScriptedLanding::send_script() {
         if (landing_.sclk() < entry_ - next->send_before_entry_s) return;
         const auto command = std::move(*next);
         script_.erase(next);
-        v1::CommandRequest request;
-        request.set_command(command.command);
-        request.set_from_solution(command.from_solution);
-        for (const auto& [name, value] : command.arguments) {
-            auto& argument = *request.add_arguments();
-            argument.set_name(name);
-            argument.set_value(value);
-        }
+        commands::Request request;
+        request.command = command.command;
+        request.from_solution = command.from_solution;
+        for (const auto& [name, value] : command.arguments) request.arguments.push_back({name, value});
         // Who wrote the command into the scenario has armed and named it.
-        request.set_armed(true);
-        request.set_confirmation(command.command);
-        const auto reply = gateway_.submit(request, landing_.ert_now(), stages_, CommandGateway::Asker::script);
+        request.armed = true;
+        request.confirmation = command.command;
+        const auto reply =
+            gateway_.submit(request, landing_.ert_now(), stages_, commands::CommandGateway::Asker::script);
         radiate();
-        if (reply.accepted()) continue;
-        script_refusals_.push_back(reply.reason());
-        gateway_.note_refused(request, reply.reason(), landing_.ert_now(), stages_);
+        if (reply.accepted) continue;
+        script_refusals_.push_back(reply.reason);
+        gateway_.note_refused(request, reply.reason, landing_.ert_now(), stages_);
     }
 }
 
-v1::CommandReply ScriptedLanding::submit(const v1::CommandRequest& request) {
+commands::Reply ScriptedLanding::submit(const commands::Request& request) {
     auto reply = gateway_.submit(request, landing_.ert_now(), stages_);
     radiate();
     return reply;
@@ -126,7 +171,7 @@ std::string text_of_bug(const CheckFailed& bug) {
     return fmt::format("a check failed in the simulation: {} ({}:{})", bug.what(), bug.file(), bug.line());
 }
 
-std::vector<archive::StageRecord> ScriptedLanding::take_stages() {
+std::vector<commands::StageReport> ScriptedLanding::take_stages() {
     return std::exchange(stages_, {});
 }
 

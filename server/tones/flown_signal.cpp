@@ -27,12 +27,12 @@ FlownSignal fly_signal(simulation::Scenario scenario, std::uint64_t seed, std::u
     std::vector<double> time_s, doppler_hz, gain_db;
     bool set = false;
     while (!landing.landing().finished()) {
-        const simulation::CycleReport& report = landing.step();
-        landing.hear(report);
+        landing.hear(landing.step());
+        const simulation::CycleReport& report = landing.landing().report();
         for (const simulation::TruthEvent& event : report.events)
             add_outages(scenario.radio, event.name, event.e_s, flown);
-        for (const simulation::ReceivedTone& tone : report.symbols)
-            if (tone.sent) flown.tones.push_back({tone.sent_at - scenario.entry_sclk, tone.sent->value});
+        for (const simulation::SentSymbol& symbol : report.symbols)
+            flown.tones.push_back({symbol.at - scenario.entry_sclk, symbol.tone.value});
         for (const simulation::XBandField& field : report.x_band) {
             if (set || field.e_s < -from_before_entry_s) continue;
             set = !field.up && !time_s.empty();

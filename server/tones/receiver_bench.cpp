@@ -64,7 +64,7 @@ std::string counted(const ErrorCount& count) {
 
 struct SignalLanding {
     double flown_s = 0.0, real_time_factor = 0.0;
-    ToneScore tones;
+    ToneScore::Figures tones;
 };
 
 /// A landing as `aeolis rehearse` flies it, with its tones from samples, by the wall clock.

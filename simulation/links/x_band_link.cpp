@@ -28,40 +28,41 @@ bool XBandLink::can_lock(double c_n0_dbhz) {
     return c_n0_dbhz + carrier_power_db() >= carrier_lock_dbhz;
 }
 
-std::optional<ReceivedTone> XBandLink::cycle(std::optional<ToneId> tone, const Surroundings& at) {
+std::optional<XBandLink::Ended> XBandLink::cycle(std::optional<ToneId> tone, const Surroundings& at) {
     earth_up_ = at.gain && (radio_.earth_set_after_entry_s ? at.e_s < *radio_.earth_set_after_entry_s : at.earth_up);
     up_ = earth_up_ && can_lock(radio_.x_band_c_n0_dbhz + 10.0 * std::log10(*at.gain));
     reason_ = !at.gain ? "not switched on" : earth_up_ ? "carrier too weak" : "Earth set";
 
-    std::optional<ReceivedTone> ended;
+    std::optional<Ended> ended;
     if (symbol_ && symbol_->ticks == symbol_ticks) {
         ended = decide(false, at);
     } else if (symbol_ && (!earth_up_ || !tone || *tone != symbol_->tone)) {
         ended = decide(true, at);
     }
     if (ended) symbol_.reset();
-    if (tone && earth_up_ && !symbol_) symbol_ = Symbol{*tone, at.now, 0, 0.0};
+    if (tone && earth_up_ && !symbol_) symbol_ = Symbol{*tone, at.now};
     if (symbol_) {
         ++symbol_->ticks;
+        if (up_) ++symbol_->locked_ticks;
         symbol_->gain_sum += *at.gain;
     }
     return ended;
 }
 
-ReceivedTone XBandLink::decide(bool broken, const Surroundings& at) {
-    ReceivedTone received;
-    received.sent = symbol_->tone;
-    received.sent_at = symbol_->started;
+XBandLink::Ended XBandLink::decide(bool broken, const Surroundings& at) {
+    Ended ended{symbol_->tone, symbol_->started, {}};
+    if (symbol_->locked_ticks == 0 || radio_.tones_from_samples.value_or(false)) return ended;
+    auto& received = ended.heard.emplace();
     received.doppler_hz = at.doppler_hz;
     received.lock = up_ ? CarrierLock::locked : CarrierLock::searching;
-    if (broken || !up_ || radio_.tones_from_samples.value_or(false)) return received;
+    if (broken || !up_) return ended;
     const double c_n0_dbhz = radio_.x_band_c_n0_dbhz + 10.0 * std::log10(symbol_->gain_sum / symbol_->ticks);
     const ToneDecision decision = detect_tone(symbol_->tone.value, c_n0_dbhz + tone_power_db(), symbol_s, random_);
     received.best = decision.best;
     received.likelihood = decision.best[0].likelihood;
     received.c_n0_dbhz = decision.tone_c_n0_dbhz - tone_power_db();
     if (received.likelihood >= least_likelihood) received.tone = ToneId{decision.best[0].tone};
-    return received;
+    return ended;
 }
 
 }  // namespace aeolis::simulation

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "simulation/landing.hpp"
 #include "simulation/random.hpp"
 #include "simulation/scenario.hpp"
+#include "telemetry/port.hpp"
 
 #include <optional>
 
@@ -16,8 +16,9 @@ namespace aeolis::simulation {
 /// tone, both first sidebands together, −6.4 dB; the scenario's C/N0 is that at an antenna's best direction, and a
 /// symbol has the mean of its gain. The carrier is locked while Earth is up and the carrier reaches 15.8 dB-Hz, which a
 /// search over 4 s needs (CarrierSearch). Earth sets behind the terrain, or when the scenario says so. Erased: a
-/// decision of less than nine tenths likelihood (ours), no lock, a broken symbol, Earth setting meanwhile. Tones sent
-/// after Earth set are not heard of at all. Where tones come from samples, symbols are only told of, not decided.
+/// decision of less than nine tenths likelihood (chosen), a symbol that broke off or lost its lock. Of a symbol without
+/// lock throughout the receiver says nothing: it has not noticed it. Tones sent after Earth set do not count as sent.
+/// Where tones come from samples, symbols are only told of, not decided.
 class XBandLink {
   public:
     XBandLink(const Radio& radio, Random random) : radio_(radio), random_(random) {}
@@ -29,13 +30,19 @@ class XBandLink {
         bool earth_up = true;              ///< above the terrain
         std::optional<double> gain = 1.0;  ///< of the antenna towards Earth, a power ratio; none: none is selected
     };
-    /// One cycle; a symbol that ended with it. Its `start` and `end` are still to be filled in.
-    std::optional<ReceivedTone> cycle(std::optional<ToneId> tone, const Surroundings& at);
+    /// A symbol that has ended.
+    struct Ended {
+        ToneId tone;  ///< that was sent
+        Sclk at;
+        std::optional<telemetry::ReceivedTone> heard;  ///< `start` and `end` are still to be filled in; none: unnoticed
+    };
+    /// One cycle; a symbol that ended with it.
+    std::optional<Ended> cycle(std::optional<ToneId> tone, const Surroundings& at);
 
     struct Symbol {
         ToneId tone;
         Sclk started;
-        int ticks = 0;
+        int ticks = 0, locked_ticks = 0;
         double gain_sum = 0.0;  ///< over them
     };
     /// What it sends in the cycle that was last.
@@ -51,7 +58,7 @@ class XBandLink {
     static bool can_lock(double c_n0_dbhz);
 
   private:
-    ReceivedTone decide(bool broken, const Surroundings& at);
+    Ended decide(bool broken, const Surroundings& at);
 
     Radio radio_;
     Random random_;

@@ -71,6 +71,7 @@ struct CarrierFit::State {
 
 CarrierFit::CarrierFit(int length, double step_s) : state_(std::make_unique<State>(length, step_s)) {}
 CarrierFit::~CarrierFit() = default;
+CarrierFit::CarrierFit(const CarrierFit& other) : state_(std::make_unique<State>(*other.state_)) {}
 CarrierFit::CarrierFit(CarrierFit&&) noexcept = default;
 CarrierFit& CarrierFit::operator=(CarrierFit&&) noexcept = default;
 

@@ -30,6 +30,7 @@ class CarrierFit {
     /// Windows of `length` samples, `step_s` apart.
     CarrierFit(int length, double step_s);
     ~CarrierFit();
+    CarrierFit(const CarrierFit&);
     CarrierFit(CarrierFit&&) noexcept;
     CarrierFit& operator=(CarrierFit&&) noexcept;
 

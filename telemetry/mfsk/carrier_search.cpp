@@ -131,6 +131,7 @@ struct CarrierSearch::State {
 
 CarrierSearch::CarrierSearch(double rate_hz) : state_(std::make_unique<State>(rate_hz)) {}
 CarrierSearch::~CarrierSearch() = default;
+CarrierSearch::CarrierSearch(const CarrierSearch& other) : state_(std::make_unique<State>(*other.state_)) {}
 CarrierSearch::CarrierSearch(CarrierSearch&&) noexcept = default;
 CarrierSearch& CarrierSearch::operator=(CarrierSearch&&) noexcept = default;
 

@@ -38,6 +38,7 @@ class CarrierSearch {
 
     explicit CarrierSearch(double rate_hz);
     ~CarrierSearch();
+    CarrierSearch(const CarrierSearch&);
     CarrierSearch(CarrierSearch&&) noexcept;
     CarrierSearch& operator=(CarrierSearch&&) noexcept;
 

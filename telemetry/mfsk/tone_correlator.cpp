@@ -25,6 +25,7 @@ ToneCorrelator::ToneCorrelator(const MfskWaveform& waveform, double sample_rate_
         }
 }
 ToneCorrelator::~ToneCorrelator() = default;
+ToneCorrelator::ToneCorrelator(const ToneCorrelator& other) : state_(std::make_unique<State>(*other.state_)) {}
 ToneCorrelator::ToneCorrelator(ToneCorrelator&&) noexcept = default;
 
 void ToneCorrelator::correlate(std::span<const float> quadrature, double begin_s, ToneSums& sums) const {

@@ -19,6 +19,7 @@ class ToneCorrelator {
   public:
     ToneCorrelator(const MfskWaveform& waveform, double sample_rate_hz, int samples);
     ~ToneCorrelator();
+    ToneCorrelator(const ToneCorrelator&);
     ToneCorrelator(ToneCorrelator&&) noexcept;
 
     /// `begin_s`: of the subcarriers' time at the hop's beginning; sums of hops with their times may be added.

@@ -3,7 +3,7 @@
 
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
-#include "server/station/recording_receiver.hpp"
+#include "telemetry/station/recording_receiver.hpp"
 #include "tests/support/catch.hpp"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> recording_of(std::size_t packets) {
 struct Delivery {
     std::vector<std::uint8_t> recording = recording_of(6000);
     RecordingDelivery rover;
-    server::RecordingReceiver ground{0.0};
+    telemetry::RecordingReceiver ground{0.0};
     std::vector<std::vector<std::uint8_t>> files;
     std::mt19937 random{11};
     double loss = 0.0, now_s = 0.0;
@@ -126,14 +126,13 @@ TEST_CASE("PDUs that nobody of ours sent cost no file of the recording", "[file_
         cfdp::write(pdu, written);
         return written;
     };
-    const cfdp::Header first{.source = spacecraft_id, .sequence = 1, .destination = RecordingDelivery::ground_entity};
+    const cfdp::Header first{.source = spacecraft_id, .sequence = 1, .destination = ground_entity};
     const std::vector<std::vector<std::uint8_t>> pdus{
         forged(first, cfdp::FileData{0, octets}),
         forged(first, cfdp::Eof{.condition = cfdp::Condition::cancel_received}),
         forged(first, cfdp::Metadata{.file_octets = 5}),
         forged({.source = spacecraft_id, .sequence = 1, .destination = 99}, cfdp::FileData{0, octets}),
-        forged({.source = 5, .sequence = 1, .destination = RecordingDelivery::ground_entity},
-               cfdp::FileData{0, octets}),
+        forged({.source = 5, .sequence = 1, .destination = ground_entity}, cfdp::FileData{0, octets}),
     };
     for (const auto& pdu : pdus) {
         Delivery delivery;
@@ -167,11 +166,10 @@ TEST_CASE("octets from ground that are no answer change nothing", "[file_deliver
 }
 
 TEST_CASE("ground sets no memory aside for files longer, or more, than the rover makes", "[file_delivery][station]") {
-    server::RecordingReceiver ground{0.0};
+    telemetry::RecordingReceiver ground{0.0};
     const std::vector<std::uint8_t> octets(100, 1);
     const auto receive = [&](std::uint64_t sequence, const cfdp::Content& content) {
-        const cfdp::Pdu pdu{
-            {.source = spacecraft_id, .sequence = sequence, .destination = RecordingDelivery::ground_entity}, content};
+        const cfdp::Pdu pdu{{.source = spacecraft_id, .sequence = sequence, .destination = ground_entity}, content};
         std::vector<std::uint8_t> written(cfdp::octets_of(pdu));
         cfdp::write(pdu, written);
         ground.receive(written, Ert{0}, [](auto) { FAIL("no file is whole"); });
@@ -182,8 +180,8 @@ TEST_CASE("ground sets no memory aside for files longer, or more, than the rover
     CHECK(ground.refused() == 3);
     CHECK(ground.files_under_way() == 0);
     for (std::uint64_t file = 1; file <= 1000; ++file) receive(file, cfdp::FileData{0, octets});
-    CHECK(ground.files_under_way() == server::RecordingReceiver::files_under_way_max);
-    CHECK(ground.received_octets() == 100 * server::RecordingReceiver::files_under_way_max);
+    CHECK(ground.files_under_way() == telemetry::RecordingReceiver::files_under_way_max);
+    CHECK(ground.received_octets() == 100 * telemetry::RecordingReceiver::files_under_way_max);
 }
 
 }  // namespace flight_recording_delivery_test

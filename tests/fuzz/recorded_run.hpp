@@ -20,7 +20,7 @@ class RecordedRun {
         start.entry = Sclk{1010.0};
         for (const bool over : {true, false}) {
             if (!pipeline.begin(start)) std::abort();
-            must(pipeline.accept({simulation::uhf_live_link, Ert{5}, true, "nominal"}));
+            must(pipeline.accept({telemetry::uhf_live_link, Ert{5}, true, "nominal"}));
             for (std::uint16_t i = 0; i < 1300; ++i)
                 must(
                     pipeline.accept(live(navigation_packet(i, 1000.0 + i / 64.0, static_cast<float>(i), 6001.0F - i))));
@@ -28,7 +28,7 @@ class RecordedRun {
             must(pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))));
             must(pipeline.accept(live(fired_packet(0, 1002.0, 2))));
             must(pipeline.accept(live({1, 2, 3})));
-            simulation::ReceivedTone tone;
+            telemetry::ReceivedTone tone;
             tone.tone = ToneId{9};
             must(pipeline.accept(tone));
             archive::StageRecord stage;

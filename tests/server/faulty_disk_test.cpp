@@ -31,9 +31,9 @@ namespace {
 struct Flown {
     archive::RunStart start;
     struct Step {
-        std::vector<simulation::ReceivedPacket> packets;
-        std::vector<simulation::ReceivedTone> tones;
-        std::vector<simulation::LinkState> links;
+        std::vector<telemetry::ReceivedPacket> packets;
+        std::vector<telemetry::ReceivedTone> tones;
+        std::vector<telemetry::LinkState> links;
         std::vector<archive::StageRecord> stages;
     };
     std::vector<Step> steps;
@@ -261,7 +261,7 @@ class Life {
     }
 
   private:
-    static simulation::ReceivedPacket live_packet(std::uint16_t i) {
+    static telemetry::ReceivedPacket live_packet(std::uint16_t i) {
         return test::live(navigation_packet(i, 1000.0 + i / 64.0, static_cast<float>(i), 5000.0F));
     }
 
@@ -489,7 +489,7 @@ TEST_CASE("who waits for an answer while the disk refuses is told so, also when 
     const std::vector<std::uint8_t> octets(60'000, 0x55);  // no packet of ours: kept as it is
     for (int i = 0; i < 2'000 && !pipeline.blocked(); ++i) {
         server::Delivery delivery;
-        delivery.entries.emplace_back(simulation::ReceivedPacket{simulation::relay_link, Ert{i}, octets});
+        delivery.entries.emplace_back(telemetry::ReceivedPacket{telemetry::relay_link, Ert{i}, octets});
         REQUIRE(pipeline.deliver(std::move(delivery)));
         while (pipeline.figures().waiting > 8 && !pipeline.blocked())
             std::this_thread::sleep_for(std::chrono::milliseconds{1});

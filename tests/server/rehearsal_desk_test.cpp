@@ -75,7 +75,7 @@ TEST_CASE(
                        questions,
                        {[](const auto&) {}, [](const auto&) {}}};
     bool begun = false;
-    desk.start(test::shipped_scenario("nominal"), 1, 1.0, [&](const Result<v1::RunState>& state) {
+    desk.start({test::shipped_scenario("nominal"), 1, 1.0}, [&](const Result<v1::RunState>& state) {
         CHECK(state);
         begun = true;
     });

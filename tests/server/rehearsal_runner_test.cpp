@@ -86,7 +86,7 @@ TEST_CASE(
 
     scenario.radio.tones_from_samples = true;
     Rehearsal undisturbed{scenario, 1, 0, dictionary};
-    std::vector<simulation::ReceivedTone> expected;
+    std::vector<telemetry::ReceivedTone> expected;
     while (undisturbed.landing().sclk() < scenario.entry_sclk - 700.0)
         for (const auto& tone : undisturbed.step().tones) expected.push_back(tone);
 

@@ -30,7 +30,7 @@ class RunningServer {
     }
     explicit RunningServer(const simulation::Scenario& scenario, double pace) {
         open();
-        backend_->start(scenario, 1, pace);
+        backend_->start({scenario, 1, pace});
         start_thread();
     }
     ~RunningServer() { end(); }

@@ -4,7 +4,7 @@
 #include "common/bytes.hpp"
 #include "common/space_packet.hpp"
 #include "dictionaries/dictionary.hpp"
-#include "simulation/landing.hpp"
+#include "telemetry/station/received.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 #include <cstdint>
@@ -135,11 +135,11 @@ inline Octets mortar_packet(std::uint16_t count, double sclk_s, float speed_mps)
     return packet;
 }
 
-inline simulation::ReceivedPacket live(Octets octets, std::int64_t ert_us = 1'000'000) {
-    return {simulation::uhf_live_link, Ert{ert_us}, std::move(octets)};
+inline telemetry::ReceivedPacket live(Octets octets, std::int64_t ert_us = 1'000'000) {
+    return {telemetry::uhf_live_link, Ert{ert_us}, std::move(octets)};
 }
-inline simulation::ReceivedPacket recorded(Octets octets, std::int64_t ert_us = 900'000'000) {
-    return {simulation::relay_link, Ert{ert_us}, std::move(octets)};
+inline telemetry::ReceivedPacket recorded(Octets octets, std::int64_t ert_us = 900'000'000) {
+    return {telemetry::relay_link, Ert{ert_us}, std::move(octets)};
 }
 
 }  // namespace aeolis::test

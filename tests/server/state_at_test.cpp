@@ -46,12 +46,12 @@ TEST_CASE("the state at an instant is what had happened by then, on board and as
     pipeline::Pipeline pipeline{*archive, dictionary};
     REQUIRE(pipeline.begin(start()));
     const auto accept = [&](auto&& what) { REQUIRE(pipeline.accept(std::forward<decltype(what)>(what)).ok()); };
-    accept(simulation::LinkState{simulation::uhf_live_link, heard(1000.0), true, "nominal"});
+    accept(telemetry::LinkState{telemetry::uhf_live_link, heard(1000.0), true, "nominal"});
     accept(stage("queued", heard(1000.5)));
     accept(live(navigation_packet(0, 1001.0, 10.0F, 6000.0F)));
     accept(live(fired_packet(0, 1002.0, 2)));
-    accept(simulation::LinkState{simulation::uhf_live_link, heard(1003.0), false, "plasma blackout"});
-    accept(simulation::LinkState{simulation::x_band_link, heard(1003.2), false, "ground fault: no signal", true});
+    accept(telemetry::LinkState{telemetry::uhf_live_link, heard(1003.0), false, "plasma blackout"});
+    accept(telemetry::LinkState{telemetry::x_band_link, heard(1003.2), false, "ground fault: no signal", true});
     accept(stage("radiated", heard(1003.5)));
     accept(live(navigation_packet(1, 1004.0, 20.0F, 5000.0F)));
     REQUIRE(pipeline.commit().ok());

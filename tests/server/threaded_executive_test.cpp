@@ -36,9 +36,7 @@ struct CommandedLanding {
         landing.uplink(test::do_edl());
     }
     void step() {
-        const auto& report = landing.step();
-        for (const auto& tone : report.tones)
-            if (tone.sent) tones.push_back(tone.sent->value);
+        for (const auto& symbol : landing.step().symbols) tones.push_back(symbol.tone.value);
     }
     void fly(double for_s) {
         for (double flown_s = 0.0; flown_s < for_s; flown_s += seconds_per_tick) step();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "commands/encoder.hpp"
 #include "dictionaries/analysis/timeline_analysis.hpp"
-#include "server/gateway/timeline_check.hpp"
+#include "server/rehearsal/timeline_check.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 

@@ -42,7 +42,7 @@ struct Flown {
 
     void step(Landing& landing) {
         const CycleReport& report = landing.step();
-        for (const ReceivedOctets& piece : report.octets) {
+        for (const telemetry::ReceivedOctets& piece : report.earth.octets) {
             CHECK_FALSE(piece.ert > landing.ert_now());
             if (piece.link.recorded) relayed_octets += piece.octets.size();
             if (piece.link.recorded) continue;
@@ -53,7 +53,7 @@ struct Flown {
             }
         }
         for (const TruthEvent& event : report.events) events.insert(event.name);
-        for (const LinkState& link : report.links)
+        for (const telemetry::LinkState& link : report.earth.links)
             if (first_link_us == 0) first_link_us = link.ert.microseconds;
     }
 };
@@ -136,16 +136,19 @@ TEST_CASE("a landing that nobody commands ends as not commanded and brings no re
     CHECK_FALSE(landing.relaying());
 }
 
-TEST_CASE("when the computers go off Earth hears that their links are down, and why, a light time later",
+TEST_CASE("when the computers go off Earth hears that their links are down, not why, a light time later",
           "[simulation][links]") {
     auto scenario = tests::gale_scenario(60.0);
     scenario.timeout_after_entry_s = 60.0;  // nobody commands it
     scenario.radio.light_time_s = 5.0;
     Landing landing{scenario, 1};
-    std::map<std::string, LinkState> last;
+    std::map<std::string, LinkTruth> last;
+    std::map<std::string, telemetry::LinkState> told;
     std::optional<Ert> off;
     while (!landing.finished()) {
-        for (const LinkState& link : landing.step().links) last[link.link.name] = link;
+        const CycleReport& report = landing.step();
+        for (const LinkTruth& link : report.links) last[link.link.name] = link;
+        for (const telemetry::LinkState& link : report.earth.links) told[link.link.name] = link;
         if (landing.flown() && !off) off = landing.ert_now();
     }
     REQUIRE(off);
@@ -153,6 +156,8 @@ TEST_CASE("when the computers go off Earth hears that their links are down, and 
         INFO(name);
         REQUIRE(last.contains(name));
         CHECK_FALSE(last.at(name).up);
+        CHECK_FALSE(told.at(name).up);
+        CHECK(told.at(name).reason.empty());  // ground finds its own
         if (last.at(name).reason == "computer off")
             CHECK(last.at(name).ert.microseconds - off->microseconds == Approx(5.0e6).margin(2.0e5));
     }
@@ -166,27 +171,27 @@ TEST_CASE("while the station is out nothing of what reaches Earth reaches ground
     scenario.radio.light_time_s = 5.0;
     Landing whole{scenario, 1}, cut{scenario, 1};
     std::size_t octets = 0, octets_whole = 0;
-    std::vector<LinkState> told;
+    std::vector<LinkTruth> told;
     while (!cut.finished()) {
         const CycleReport& seen = whole.step();
         const bool begins = cut.sclk() == scenario.entry_sclk - 30.0;
         if (begins) cut.inject(StationOutage{0.0, 10.0});
         const CycleReport& report = cut.step();
         const double e_s = cut.sclk() - scenario.entry_sclk;  // Earth's clock at the cycle's end
-        CHECK(report.station_out == (e_s > -30.0 && e_s < -20.0));
+        CHECK(report.earth.station_out == (e_s > -30.0 && e_s < -20.0));
         CHECK(std::ranges::equal(report.recorded, seen.recorded));  // the vehicle knows nothing of it
-        octets_whole += seen.octets.size();
-        octets += report.octets.size();
-        if (report.station_out) CHECK(report.octets.empty());
+        octets_whole += seen.earth.octets.size();
+        octets += report.earth.octets.size();
+        if (report.earth.station_out) CHECK(report.earth.octets.empty());
         if (e_s >= -30.1 && e_s <= -19.9) told.insert(told.end(), report.links.begin(), report.links.end());
     }
     CHECK(octets <= octets_whole);
     REQUIRE(told.size() >= 2);
     CHECK(told.front().reason == "station out");
     CHECK_FALSE(told.front().up);
-    const auto up_again = std::ranges::count_if(told, [](const LinkState& link) { return link.up; });
-    CHECK(up_again == std::ranges::count(told, std::string{"station out"}, &LinkState::reason));
-    const auto x_band = std::ranges::find(told, simulation::x_band_link, &LinkState::link);
+    const auto up_again = std::ranges::count_if(told, [](const LinkTruth& link) { return link.up; });
+    CHECK(up_again == std::ranges::count(told, std::string{"station out"}, &LinkTruth::reason));
+    const auto x_band = std::ranges::find(told, telemetry::x_band_link, &LinkTruth::link);
     REQUIRE(x_band != told.end());
     CHECK(x_band->reason == "station out");
 }

@@ -2,7 +2,7 @@
 #include "commands/encoder.hpp"
 #include "common/space_packet.hpp"
 #include "flight/edl/solution.hpp"
-#include "server/gateway/command_gateway.hpp"
+#include "server/rehearsal/scripted_landing.hpp"
 #include "simulation/landing.hpp"
 #include "simulation/venues/gnc_alone.hpp"
 #include "simulation/venues/gnc_stand_in.hpp"

@@ -61,7 +61,8 @@ const std::map<std::string, std::vector<std::string>>& allowed() {
         {"dictionaries", {"common/", "dictionaries/"}},
         {"flight", {"common/", "dictionaries/", "flight/", "generated/"}},
         {"simulation",
-         {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "simulation/"}},
+         {"common/", "dictionaries/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "telemetry/port.hpp",
+          "simulation/"}},
         // The rover's radio runs flight's delivery of files.
         {"simulation/devices",
          {"common/", "flight/devices/", "flight/computer.hpp", "flight/load.hpp", "flight/file_delivery/",
@@ -126,7 +127,63 @@ const std::vector<Home>& homes() {
     return rules;
 }
 
+/// Those that may know the simulator, of what stands above it.
+const std::vector<std::string>& simulator_folders() {
+    static const std::vector<std::string> names{"server/rehearsal/", "server/campaign/", "server/shadow/",
+                                                "server/venue/",     "server/scenario/", "server/tones/",
+                                                "server/cli/",       "tests/",           "bench/"};
+    return names;
+}
+
+/// Chains of includes by which ground code reaches the simulator, a line each. What a folder that may know it includes
+/// in turn is its own affair.
+std::string ways_to_the_simulator(const std::vector<Include>& includes) {
+    std::map<std::string, std::vector<const Include*>> of_file;
+    for (const Include& include : includes)
+        if (!include.system) of_file[include.file].push_back(&include);
+    std::string ways;
+    for (const auto& [file, direct] : of_file) {
+        if (file.starts_with("simulation/") || starts_with_any(file, simulator_folders())) continue;
+        std::set<std::string> seen{file};
+        std::vector<std::pair<std::string, std::string>> open{{file, file}};  // and the way there
+        while (!open.empty()) {
+            const auto [at, way] = open.back();
+            open.pop_back();
+            if (at.starts_with("simulation/")) {
+                ways += way + "\n";
+                break;
+            }
+            if (starts_with_any(at, simulator_folders()) || !of_file.contains(at)) continue;
+            for (const Include* next : of_file.at(at))
+                if (seen.insert(next->target).second) open.emplace_back(next->target, way + " > " + next->target);
+        }
+    }
+    return ways;
+}
+
 }  // namespace
+
+TEST_CASE("ground code reaches no header of the simulator, by whatever it includes", "[structure][invariant8]") {
+    auto includes = all_includes();
+    CHECK(ways_to_the_simulator(includes) == "");
+    for (const Include& include : includes) {
+        if (!starts_with_any(include.file, {"telemetry/", "commands/", "server/pipeline/", "server/archive/"}))
+            continue;
+        INFO(where(include));  // nor a folder that does
+        CHECK_FALSE(starts_with_any(include.target, simulator_folders()));
+    }
+    for (const std::string ground :
+         {"telemetry", "commands", "server/pipeline", "server/archive", "server/api", "server/net"})
+        for (const std::string& file : files_under(ground, {".hpp", ".cpp"})) {
+            INFO(file);
+            CHECK(text_of(file).find("simulation::") == std::string::npos);
+        }
+    // One that is planted is found, also behind another header.
+    includes.push_back({"telemetry/port.hpp", 1, "simulation/links/uhf_link.hpp", false});
+    const auto ways = ways_to_the_simulator(includes);
+    CHECK_THAT(ways, Catch::Contains("telemetry/port.hpp > simulation/links/uhf_link.hpp\n"));
+    CHECK_THAT(ways, Catch::Contains("telemetry/station/received.hpp > telemetry/port.hpp > simulation/"));
+}
 
 TEST_CASE("a folder includes only what stands before it in the house", "[structure]") {
     std::string broken;

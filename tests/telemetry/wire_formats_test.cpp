@@ -3,7 +3,7 @@
 #include "common/proximity_frame.hpp"
 #include "common/space_packet.hpp"
 #include "flight/file_delivery/recording_delivery.hpp"
-#include "server/station/recording_receiver.hpp"
+#include "telemetry/station/recording_receiver.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
@@ -101,7 +101,7 @@ TEST_CASE("tshark reads the files in which the recording comes down, and what gr
     seal_tm_packet(std::span{recording}.first(1000), Apid{0x10}, 0, Sclk{5.0}, 1);
     seal_tm_packet(std::span{recording}.subspan(1000), Apid{0x10}, 1, Sclk{5.0}, 1);
     flight::RecordingDelivery rover;
-    server::RecordingReceiver ground{0.0};
+    telemetry::RecordingReceiver ground{0.0};
     std::vector<Octets> packets;
     const auto packet_of = [](std::span<const std::uint8_t> pltu) {
         const auto frame = read_pltu(pltu);

@@ -122,10 +122,10 @@ TEST_CASE("a packet that does not come is an alarm under its own name, stored, a
           "[alarms][staleness][archive]") {
     Ground ground;
     ground.begin();
-    REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{0}, true, "nominal"}).ok());
     ground.fly(0, 3, 100.0F);
-    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{6'000'000}}).ok());
-    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::EarthTime{Ert{6'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::EarthTime{Ert{8'000'000}}).ok());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(8) == "Navigation unacknowledged warning by ; ");
     CHECK(ground.published.back().staleness().packet() == "Navigation");
@@ -142,7 +142,7 @@ TEST_CASE("a link whose silence nothing explains is an alarm under its own name,
     ground.begin();
     const auto tell = [&](std::int64_t at_s, bool up, const char* reason, bool lost = false) {
         REQUIRE(ground.pipeline
-                    ->accept(simulation::LinkState{simulation::x_band_link, Ert{at_s * 1'000'000}, up, reason, lost})
+                    ->accept(telemetry::LinkState{telemetry::x_band_link, Ert{at_s * 1'000'000}, up, reason, lost})
                     .ok());
         REQUIRE(ground.pipeline->commit().ok());
     };
@@ -174,16 +174,15 @@ TEST_CASE("a link that is lost leaves its packets' alarms standing and names its
     const auto lose = [&](std::int64_t at_s, bool lost) {
         const std::string reason =
             lost ? "unexplained: nothing is predicted to silence it now" : "Earth set: predicted";
-        REQUIRE(
-            ground.pipeline
-                ->accept(simulation::LinkState{simulation::uhf_live_link, Ert{at_s * 1'000'000}, false, reason, lost})
-                .ok());
+        REQUIRE(ground.pipeline
+                    ->accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{at_s * 1'000'000}, false, reason, lost})
+                    .ok());
         REQUIRE(ground.pipeline->commit().ok());
     };
-    REQUIRE(ground.pipeline->accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{0}, true, "nominal"}).ok());
     ground.fly(0, 3, 100.0F);
     lose(3, true);
-    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::EarthTime{Ert{8'000'000}}).ok());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(8) == "uhf_live unacknowledged distress by ; Navigation unacknowledged warning by ; ");
     CHECK(ground.published.back().staleness().reason() ==
@@ -196,11 +195,13 @@ TEST_CASE("another mission's packets that cannot come are missed: its link does 
           "[alarms][staleness][downlink]") {
     Ground ground;
     ground.begin();
-    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{true, "connected", Ert{0}}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::LinkState{telemetry::downlink_link, Ert{0}, true, "connected"}).ok());
     ground.fly(0, 3, 100.0F);
-    REQUIRE(ground.pipeline->accept(pipeline::DownlinkState{false, "ground fault: connection refused", Ert{3'000'000}})
+    REQUIRE(ground.pipeline
+                ->accept(telemetry::LinkState{telemetry::downlink_link, Ert{3'000'000}, false,
+                                              "ground fault: connection refused", true})
                 .ok());
-    REQUIRE(ground.pipeline->accept(pipeline::EarthTime{Ert{8'000'000}}).ok());
+    REQUIRE(ground.pipeline->accept(telemetry::EarthTime{Ert{8'000'000}}).ok());
     REQUIRE(ground.pipeline->commit().ok());
     CHECK(ground.states(8) == "downlink unacknowledged distress by ; Navigation unacknowledged warning by ; ");
     CHECK(ground.published.back().staleness().reason() == "the link is lost: ground fault: connection refused");

@@ -41,7 +41,7 @@ struct Recorded {
                 if (i % 900 == 0) {
                     packet.back() ^= 1U;
                     REQUIRE(pipeline.accept(live(packet)).ok());
-                    REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, Ert{5}, false, "blackout"})
+                    REQUIRE(pipeline.accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{5}, false, "blackout"})
                                 .ok());
                 }
             }

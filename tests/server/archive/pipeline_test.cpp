@@ -50,14 +50,14 @@ struct Ground {
     }
     /// A bit of everything.
     void feed() {
-        REQUIRE(pipeline.accept({simulation::uhf_live_link, Ert{5}, true, "nominal"}).ok());
+        REQUIRE(pipeline.accept({telemetry::uhf_live_link, Ert{5}, true, "nominal"}).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(0, 1000.0, 9000.0F, 5900.0F))).ok());
         REQUIRE(pipeline.accept(live(navigation_packet(1, 1001.0, {}, 6100.0F))).ok());  // in alarm
         REQUIRE(pipeline.accept(live(status_packet(0, 1001.0, 2))).ok());
         REQUIRE(pipeline.accept(live(mortar_packet(0, 1002.0, 405.0F))).ok());
         REQUIRE(pipeline.accept(live(fired_packet(0, 1002.0, 2))).ok());
         REQUIRE(pipeline.accept(live({1, 2, 3})).ok());
-        simulation::ReceivedTone tone;
+        telemetry::ReceivedTone tone;
         tone.start = Ert{20'000'000};
         tone.end = Ert{30'000'000};
         tone.tone = ToneId{9};
@@ -114,7 +114,7 @@ TEST_CASE("a run keeps its clock, and its drift counts where ground dates what i
     auto start = drifting(1000.0);
     start.correlation.leap_seconds = 35;
     REQUIRE(ground.pipeline.begin(start).ok());
-    simulation::ReceivedTone tone;
+    telemetry::ReceivedTone tone;
     tone.start = Ert{20'000'000};
     tone.end = Ert{30'000'000};
     REQUIRE(ground.pipeline.accept(tone).ok());
@@ -348,7 +348,7 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
     auto archive = std::move(Archive::open(folder / "a.db")).value();
     Pipeline pipeline{archive, dictionary};
     REQUIRE(pipeline.begin({}).ok());
-    REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, Ert{0}, true, "nominal"}).ok());
+    REQUIRE(pipeline.accept(telemetry::LinkState{telemetry::uhf_live_link, Ert{0}, true, "nominal"}).ok());
     REQUIRE(pipeline.accept(live(status_packet(0, 1000.0, 2), 100'000)).ok());
     for (std::uint16_t i = 0; i < 3; ++i)
         REQUIRE(pipeline.accept(live(navigation_packet(i, 1000.5 + i, 1.0F, 2.0F), 500'000 + 1'000'000 * i)).ok());
@@ -359,7 +359,7 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
     seal_tm_packet(event, event_apid, 0, Sclk{1003.0}, dictionary_id);
     if (event_heard) REQUIRE(pipeline.accept(live(event, 3'000'000)).ok());
     REQUIRE(pipeline.accept(live(status_packet(1, 1002.0, 2), 3'500'000)).ok());  // told before the event, and late
-    REQUIRE(pipeline.accept(pipeline::EarthTime{Ert{12'000'000}}).ok());
+    REQUIRE(pipeline.accept(telemetry::EarthTime{Ert{12'000'000}}).ok());
     REQUIRE(pipeline.commit().ok());
     auto database = archive::sqlite::Database::open((folder / "a.db").string(), archive::sqlite::Mode::read_only);
     CHECK(database->integer_of("SELECT count(*) FROM staleness WHERE packet = 0").value() == (event_heard ? 0 : 1));
@@ -368,7 +368,7 @@ TEST_CASE("an event that tells the phase is believed at once: what the new phase
 TEST_CASE("tones are found by words and come in pages", "[pipeline][reader]") {
     Ground ground;
     for (int i = 0; i < 5; ++i) {
-        simulation::ReceivedTone tone;
+        telemetry::ReceivedTone tone;
         tone.start = Ert{(20 + 10 * i) * 1'000'000};
         tone.end = Ert{(30 + 10 * i) * 1'000'000};
         if (i != 2) tone.tone = ToneId{static_cast<std::uint8_t>(i % 2 == 0 ? 9 : 8)};
@@ -447,7 +447,7 @@ TEST_CASE("a tone's evidence is kept and read back: lock, the best five, the spe
 
 TEST_CASE("a tone that was drawn has no spectrum", "[pipeline][archive][R31]") {
     Ground ground;
-    simulation::ReceivedTone tone;
+    telemetry::ReceivedTone tone;
     tone.best = BestTones{};
     REQUIRE(ground.pipeline.accept(tone).ok());
     REQUIRE(ground.pipeline.commit().ok());

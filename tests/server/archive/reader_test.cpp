@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "dictionaries/timeline_plan.hpp"
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
-#include "server/archive/timeline_plan.hpp"
 #include "server/pipeline/pipeline.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
@@ -392,7 +392,7 @@ TEST_CASE("one bit that differs between live and recorded is found, with the oct
         return navigation_packet(i, 1000.0 + i, 10.0F * static_cast<float>(i), 3.0F);
     };
     for (std::uint16_t i = 0; i < 12; ++i) REQUIRE(pipeline.accept(live(packet(i))).ok());  // of 20 that were recorded
-    REQUIRE(pipeline.accept(simulation::ReceivedPacket{{"uhf_mro", false}, Ert{1}, packet(3)})
+    REQUIRE(pipeline.accept(telemetry::ReceivedPacket{{"uhf_mro", false}, Ert{1}, packet(3)})
                 .ok());  // the same over another orbiter
     REQUIRE(pipeline.commit().ok());
     auto reader = std::move(Reader::open(folder / "a.db", dictionary)).value();

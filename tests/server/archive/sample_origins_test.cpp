@@ -32,7 +32,7 @@ struct Landing {
         start.correlation = {Sclk{1000.0}, Scet{0}};
         REQUIRE(pipeline.begin(start).ok());
         link(true, 0, "nominal");
-        for (std::uint16_t i = 0; i < 20; ++i) take({simulation::uhf_live_link, heard(i), packet(i)});
+        for (std::uint16_t i = 0; i < 20; ++i) take({telemetry::uhf_live_link, heard(i), packet(i)});
         link(false, 20, "plasma blackout: predicted from E+19 s to E+36 s");
         link(true, 35, "nominal");
         for (std::uint16_t i = 35; i < 40; ++i) take({{"uhf_mro", false}, heard(i), packet(i)});
@@ -41,9 +41,9 @@ struct Landing {
     static Octets packet(std::uint16_t i) {
         return navigation_packet(i, 1000.0 + i, i == 12 ? std::nullopt : std::optional(10.0F * i), 3.0F);
     }
-    void take(simulation::ReceivedPacket received) { REQUIRE(pipeline.accept(received).ok()); }
+    void take(telemetry::ReceivedPacket received) { REQUIRE(pipeline.accept(received).ok()); }
     void link(bool up, std::int64_t e_s, const char* reason) {
-        REQUIRE(pipeline.accept(simulation::LinkState{simulation::uhf_live_link, heard(e_s), up, reason}).ok());
+        REQUIRE(pipeline.accept(telemetry::LinkState{telemetry::uhf_live_link, heard(e_s), up, reason}).ok());
     }
     v1::ChannelSeries series(archive::SclkRange range = {}, std::optional<archive::Source> source = {},
                              std::optional<std::size_t> points = {}) {

@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "commands/command_gateway.hpp"
+
+#include "commands/authorise.hpp"
+#include "commands/preconditions.hpp"
+#include "commands/read_back.hpp"
+#include "commands/timeline_change.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace aeolis::commands {
+namespace {
+
+constexpr const char* of_script =
+    "asked for by the scenario's script, ";  // the console tells people's commands from the script's by it
+constexpr const char* parameters_received =
+    "parameters_received";  // the vehicle says that it has some; that they are right is ground's to say
+
+/// None: as the link chooses.
+Result<std::optional<Fop::Service>> service_named(const std::string& name) {
+    using Service = Fop::Service;
+    if (name.empty()) return std::optional<Service>{};
+    if (name == "AD") return std::optional{Service::sequence_controlled};
+    if (name == "BD") return std::optional{Service::expedited};
+    return Error{fmt::format("unknown service '{}': AD, BD, or none for what suits", name)};
+}
+
+/// Whether the command comes to nothing by it. That it could not be verified does not undo it.
+bool undoes(const StageChange& change) {
+    return change.status == Status::failed && change.stage != Stage::verified;
+}
+
+constexpr std::size_t controller_name_max = 64;  // ours
+
+/// Of a person, as it was typed: without blanks around it, in small letters.
+std::string same_person(std::string_view name) {
+    const auto first = name.find_first_not_of(' ');
+    if (first == std::string_view::npos) return {};
+    std::string same{name.substr(first, name.find_last_not_of(' ') - first + 1)};
+    std::ranges::transform(same, same.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    return same;
+}
+
+}  // namespace
+
+CommandGateway::CommandGateway(const dictionary::Dictionary& dictionary, double light_time_s,
+                               std::vector<NamedValue> solution, std::vector<std::string> second_person,
+                               TrackingSchedule stations, std::optional<Scet> entry)
+    : dictionary_(dictionary), light_time_s_(light_time_s), clcw_(clcw_places(dictionary)), link_(light_time_s),
+      solution_(std::move(solution)), second_person_(std::move(second_person)), stations_(std::move(stations)),
+      deadlines_(dictionary, entry, light_time_s), heard_(dictionary.channels.size()) {}
+
+std::vector<CommandGateway::FieldPlace> CommandGateway::clcw_places(const dictionary::Dictionary& dictionary) {
+    std::vector<FieldPlace> places;
+    for (std::size_t packet = 0; packet < dictionary.packets.size(); ++packet)
+        for (const std::string_view name : {"clcw", "clcw_b"})
+            if (const auto field = dictionary::field_index(dictionary.packets[packet], name))
+                places.push_back({packet, *field});
+    return places;
+}
+
+Result<void> CommandGateway::takes(std::size_t more) const {
+    if (commands_ + more <= commands_max) return {};
+    return Error{commands_ == commands_max
+                     ? fmt::format("this run has had its {} commands", commands_max)
+                     : fmt::format("this run has had {} of its {} commands", commands_, commands_max)};
+}
+
+Result<CommandGateway::Prepared> CommandGateway::prepare(const Request& request, Ert now) const {
+    const auto* command = dictionary_.command(request.command);
+    if (command == nullptr)
+        return Error{fmt::format("unknown command '{}': the dictionary of {} has none of this name", request.command,
+                                 dictionary_.mission)};
+    if (auto room = takes(1); !room) return room.error();
+
+    std::vector<NamedValue> arguments = request.arguments;
+    if (request.from_solution) arguments = fill_from_solution(*command, arguments, solution_);
+    auto packet = encode(*command, arguments, count_);
+    if (!packet) return packet.error();
+    const auto wanted = service_named(request.service);
+    if (!wanted) return wanted.error();
+    std::optional<Ert> release_at;
+    if (!request.release_at.empty()) {
+        release_at = ert_from_day_of_year(request.release_at);
+        if (!release_at)
+            return Error{fmt::format("release_at: '{}' is no time as {}", request.release_at, day_of_year_text(now))};
+        if (*release_at < now)
+            return Error{fmt::format("release_at: {} is past, it is {}", request.release_at, day_of_year_text(now))};
+    }
+    const auto held = decode(*command, *packet);  // as encoded: defaults are in it
+    return Prepared{command, *packet,   arguments_text(held ? *held : arguments), preconditions(*command, now),
+                    *wanted, release_at};
+}
+
+std::vector<PreconditionState> CommandGateway::preconditions(const dictionary::Command& command, Ert now) const {
+    auto states = check(dictionary_, command, latest(now));
+    const auto* received = dictionary_.channel(parameters_received);
+    const bool wants_them = received != nullptr && std::ranges::any_of(command.preconditions, [&](const auto& each) {
+                                return each.channel == received->id;
+                            });
+    if (!wants_them) return states;
+    using State = PreconditionState::State;
+    for (const auto& [name, sent] : read_backs_) {
+        if (sent.empty()) continue;
+        const ReadBack& told = sent.back();
+        auto& state = states.emplace_back();
+        // Of the first that was sent flight itself says whether it has it. That it has a later one only the read-back
+        // tells, so while that can still come it is waited for.
+        const auto [holds, words] =
+            told.held == Status::ok        ? std::pair{State::holds, "read back"}
+            : told.held == Status::failed  ? std::pair{State::fails, "the vehicle reports other values"}
+            : told.held == Status::unknown ? std::pair{State::unknown, "not read back in its time"}
+            : told.renewed                 ? std::pair{State::fails, "sent anew and not read back yet, wait for it"}
+                                           : std::pair{State::unknown, "not read back yet"};
+        state.state = holds;
+        state.text = fmt::format("{} held as sent (command {}): {}", name, told.number, words);
+    }
+    return states;
+}
+
+Reply CommandGateway::submit(const Request& request, Ert now, std::vector<StageReport>& stages, Asker asker) {
+    if (!request.action.empty()) return act(request, now, stages);
+    Reply reply;
+    reply.request = request.request;
+    reply.dry_run = request.dry_run;
+    const auto refuse = [&](std::string reason) {
+        reply.reason = std::move(reason);
+        return reply;
+    };
+    auto prepared = prepare(request, now);
+    if (!prepared) return refuse(prepared.error().message);
+    tell(*prepared, now, reply);
+    const Ert leaves = prepared->release_at.value_or(now);
+    const bool settled = prepared->release_at || !request.hold;  // else nobody can say yet when it leaves
+    if (settled ? !stations_.sees(leaves) : stations_.over(now)) return refuse(stations_.refusal(leaves));
+    if (settled) tell_station(leaves, reply);
+    // What waits is looked at when it leaves: a condition that fails now may hold then.
+    const bool waits = request.hold || prepared->release_at;
+    const auto authorised = authorise(*prepared->command, {request.armed, request.confirmation},
+                                      waits ? std::span<const PreconditionState>{} : prepared->preconditions);
+    if (!authorised) return refuse(authorised.error().message);
+    const auto approval = needs_approval(request);
+    if (!approval) return refuse(approval.error().message);
+    reply.needs_approval = *approval;
+    if (request.dry_run)
+        reply.accepted = true;
+    else
+        queue(*prepared, request, asker, now, reply, stages);
+    return reply;
+}
+
+Result<bool> CommandGateway::needs_approval(const Request& request) const {
+    if (request.controller.size() > controller_name_max)
+        return Error{fmt::format("controller: a name of at most {} octets is wanted", controller_name_max)};
+    if (std::ranges::find(second_person_, request.command) == second_person_.end()) return false;
+    if (same_person(request.controller).empty())
+        return Error{request.command +
+                     " needs a second person: say who you are (controller), then another controller approves it"};
+    return true;
+}
+
+void CommandGateway::queue(const Prepared& prepared, const Request& request, Asker asker, Ert now, Reply& reply,
+                           std::vector<StageReport>& stages) {
+    // What ground does not know is no reason to refuse: flight holds the same conditions and decides by what it knows.
+    std::string not_known;
+    for (const auto& condition : prepared.preconditions)
+        if (condition.state == PreconditionState::State::unknown)
+            not_known += (not_known.empty() ? "; left to flight: " : ", ") + condition.text;
+    const auto* report = read_back_packet(dictionary_, *prepared.command);
+    auto& underway = underway_.emplace_back(Underway{
+        ++commands_, prepared.packet, prepared.arguments, request.controller, request.browser, "", request.priority,
+        prepared.wanted, report, CommandLifecycle{*prepared.command, count_, light_time_s_, report != nullptr}});
+    count_ = static_cast<std::uint16_t>((count_ + 1) % count_modulus);
+
+    changes_.clear();
+    auto& lifecycle = underway.lifecycle;
+    lifecycle.ground_stage(
+        Stage::queued, Status::ok,
+        fmt::format("{}accepted as command {}", asker == Asker::script ? of_script : "", underway.number), now,
+        changes_);
+    lifecycle.ground_stage(Stage::authorised, Status::ok,
+                           (is_hazardous(*prepared.command) ? "armed and confirmed by name" : "no arming needed") +
+                               (request.controller.empty() ? "" : ", by " + request.controller) + not_known,
+                           now, changes_);
+    append(underway, changes_, stages);
+    reply.accepted = true;
+    reply.command = underway.number;
+    const CommandQueue::Entry entry{underway.number,
+                                    request.priority,
+                                    prepared.release_at,
+                                    request.hold,
+                                    reply.needs_approval,
+                                    changes_offsets(prepared.command->name),
+                                    false};
+    queue_.add(entry);
+    if (request.hold || prepared.release_at || reply.needs_approval || queue_.leaves_after(entry))
+        tell_wait(underway, now, stages);
+    release_due(now, stages);
+}
+
+std::vector<Reply> CommandGateway::look(std::span<const Request> file, Ert now) {
+    std::vector<Reply> replies;
+    std::vector<StageReport> none;
+    const auto kept = read_backs_;
+    std::size_t more = 0;  // each needs its place
+    for (Request request : file) {
+        request.dry_run = true;
+        auto& reply = replies.emplace_back(submit(request, now, none));
+        if (!reply.accepted || !request.action.empty()) continue;
+        if (const auto room = takes(++more); !room) {
+            reply.accepted = false;
+            reply.reason = room.error().message;
+            continue;
+        }
+        const bool leaves = !request.hold && request.release_at.empty() && !reply.needs_approval;
+        if (!leaves || read_back_packet(dictionary_, *dictionary_.command(request.command)) == nullptr) continue;
+        auto& sent = read_backs_[request.command];  // for those behind it in the file
+        sent.push_back({commands_ + more, Status::pending, !sent.empty()});
+    }
+    read_backs_ = kept;
+    return replies;
+}
+
+void CommandGateway::note_refused(const Request& request, const std::string& reason, Ert now,
+                                  std::vector<StageReport>& stages) {
+    const auto* command = dictionary_.command(request.command);
+    if (command == nullptr) return;  // no script is begun with one
+    auto prepared = prepare(request, now);
+    Underway refused{++commands_, {}, "", "",      "",
+                     "",          0,  {}, nullptr, CommandLifecycle{*command, count_, light_time_s_, false}};
+    if (prepared) {
+        refused.packet = std::move(prepared->packet);
+        refused.arguments = std::move(prepared->arguments);
+    }
+    changes_.clear();
+    refused.lifecycle.ground_stage(Stage::queued, Status::failed, of_script + ("refused: " + reason), now, changes_);
+    append(refused, changes_, stages);
+}
+
+const CommandQueue::Entry* CommandGateway::waiting(std::uint64_t number) const {
+    const auto& all = queue_.waiting();
+    const auto entry = std::ranges::find(all, number, &CommandQueue::Entry::number);
+    return entry == all.end() ? nullptr : &*entry;
+}
+
+std::string CommandGateway::failing_now(const dictionary::Command& command, Ert now) const {
+    std::string failing;
+    for (const auto& condition : preconditions(command, now))
+        if (condition.state == PreconditionState::State::fails)
+            failing += (failing.empty() ? "" : "; ") + condition.text;
+    return failing;
+}
+
+std::string CommandGateway::perform(const Request& asked, const Underway* command, Ert now) {
+    const std::string& action = asked.action;
+    const auto number = asked.number;
+    const auto waits = [&](bool done) {
+        if (done) return std::string{};
+        const std::string stations = stations_.over(now) ? "; " + stations_.refusal(now) : "";
+        return fmt::format("command {} does not wait: it has left, was cancelled, could not leave, or there is none{}",
+                           number, stations);
+    };
+    if (action == "hold") return waits(queue_.hold(number));
+    const auto* entry = waiting(number);
+    if (entry != nullptr && (action == "release" || action == "approve") && stations_.over(now))
+        return fmt::format("command {} can no longer leave: {}", number, stations_.refusal(now));
+    if (action == "release" && entry != nullptr && entry->held) {
+        const Ert leaves = std::max(entry->release_at.value_or(now), now);
+        if (!stations_.sees(leaves)) return fmt::format("command {} stays held: {}", number, stations_.refusal(leaves));
+    }
+    if (action == "release") return waits(queue_.release(number));
+    if (action == "cancel") return waits(queue_.cancel(number));
+    if ((action == timeline_holds_action || action == timeline_refuted_action) && asked.request != undone_.size())
+        return fmt::format("command {} was analysed on a timeline that now is another", number);
+    if (action == timeline_holds_action) return waits(queue_.judged(number));
+    if (action == timeline_refuted_action) return waits(queue_.cancel(number));
+    if (action != "approve") return fmt::format("unknown action '{}': release, hold, cancel or approve", action);
+    if (command == nullptr || (entry == nullptr && stations_.over(now))) return waits(false);
+    if (const auto refusal = not_another_person(asked, *command); !refusal.empty()) return refusal;
+    return queue_.approve(number) ? std::string{} : fmt::format("command {} waits for no approval", number);
+}
+
+std::string CommandGateway::not_another_person(const Request& asked, const Underway& command) {
+    const std::string person = same_person(asked.controller);
+    if (person.empty() || asked.controller.size() > controller_name_max) return "controller: say who approves it";
+    if (person == same_person(command.controller))
+        return fmt::format("command {} was asked for by {}: another controller must approve it", command.number,
+                           command.controller);
+    // Names are only typed where there are no accounts.
+    if (asked.browser.empty() || asked.browser != command.browser) return {};
+    return fmt::format("command {} was asked for, as {}, from where it would now be approved: a second person approves "
+                       "it in a browser of their own",
+                       command.number, command.controller);
+}
+
+Reply CommandGateway::act(const Request& request, Ert now, std::vector<StageReport>& stages) {
+    Reply reply;
+    reply.request = request.request;
+    reply.dry_run = request.dry_run;
+    const std::string& action = request.action;
+    auto* command = underway(request.number);
+    const std::string refusal = request.dry_run ? "dry_run: what is done about a waiting command cannot be tried out"
+                                                : perform(request, command, now);
+    const std::string by = request.controller.empty() ? "a controller" : request.controller;
+    if (!refusal.empty()) {
+        reply.reason = refusal;
+    } else {
+        AEOLIS_CHECK(command != nullptr);  // what waits is under way
+        reply.accepted = true;
+        reply.command = command->number;
+        changes_.clear();
+        if (action == "cancel")
+            command->lifecycle.ground_stage(Stage::released, Status::failed, "cancelled by " + by, now, changes_);
+        else if (action == timeline_refuted_action)
+            command->lifecycle.ground_stage(Stage::released, Status::failed,
+                                            "what it was analysed with has changed: " + request.analysis, now,
+                                            changes_);
+        else if (action == timeline_holds_action)
+            command->timeline = request.analysis;
+        else if (action == "approve")
+            command->lifecycle.approved(fmt::format("approved by {}, as the second person", request.controller), now,
+                                        changes_);
+        append(*command, changes_, stages);
+        // What is due while no station sees the vehicle is told below, with the pass for which it waits.
+        if (stations_.sees(now) || !queue_.due(command->number, now)) tell_wait(*command, now, stages);
+        release_due(now, stages);
+        tell_leaving(*command, now, reply);
+    }
+    return reply;
+}
+
+CommandGateway::Underway* CommandGateway::underway(std::optional<std::uint64_t> number) {
+    const auto found = std::ranges::find_if(underway_, [&](const Underway& each) { return each.number == number; });
+    return found == underway_.end() ? nullptr : &*found;
+}
+
+void CommandGateway::append(const Underway& underway, const std::vector<StageChange>& changes,
+                            std::vector<StageReport>& stages) {
+    const auto* waits = waiting(underway.number);
+    bool undone = false;
+    for (const auto& change : changes) {
+        note_read_back(underway, change);
+        if (change.stage == Stage::executed && change.status == Status::ok)
+            if (const auto arguments = decode(underway.lifecycle.command(), underway.packet))
+                deadlines_.executed(underway.lifecycle.command(), *arguments);
+        undone = undone || undoes(change);
+        auto& stage = stages.emplace_back();
+        stage.command = underway.number;
+        stage.name = underway.lifecycle.command().name;
+        static_cast<StageChange&>(stage) = change;
+        stage.count = underway.lifecycle.count();
+        if (change.stage == Stage::queued) {
+            stage.arguments = underway.arguments;
+            stage.octets = underway.packet;
+        }
+        if (change.stage == Stage::released && change.status == Status::pending && waits != nullptr) {
+            stage.held = waits->held;
+            stage.needs_approval = waits->needs_approval;
+            if (waits->needs_approval) stage.asked_by = underway.controller;
+        }
+    }
+    if (undone && changes_offsets(underway.lifecycle.command().name) && undone_.insert(underway.number).second)
+        doubt_after(underway.number, changes.back().at, stages);
+}
+
+}  // namespace aeolis::commands

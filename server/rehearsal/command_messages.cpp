@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/rehearsal/command_messages.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <utility>
+
+namespace aeolis::server {
+
+commands::Request request_of(const v1::CommandRequest& message) {
+    commands::Request request;
+    request.request = message.request();
+    request.command = message.command();
+    for (const auto& argument : message.arguments()) request.arguments.push_back({argument.name(), argument.value()});
+    request.from_solution = message.from_solution();
+    request.armed = message.armed();
+    request.confirmation = message.confirmation();
+    request.service = message.service();
+    request.dry_run = message.dry_run();
+    request.release_at = message.release_at();
+    request.hold = message.hold();
+    request.priority = message.priority();
+    request.action = message.action();
+    request.number = message.number();
+    request.controller = message.controller();
+    request.browser = message.browser();
+    request.analysis = message.analysis();
+    return request;
+}
+
+v1::CommandReply message_of(const commands::Reply& reply) {
+    v1::CommandReply message;
+    message.set_request(reply.request);
+    message.set_command(reply.command);
+    message.set_accepted(reply.accepted);
+    message.set_dry_run(reply.dry_run);
+    message.set_reason(reply.reason);
+    message.set_octets(fmt::format("{:02x}", fmt::join(reply.octets, "")));
+    message.set_arguments(reply.arguments);
+    for (const auto& condition : reply.preconditions) {
+        auto& told = *message.add_preconditions();
+        told.set_text(condition.text);
+        told.set_state(commands::name_of(condition.state));
+    }
+    message.set_service(reply.service);
+    message.set_needs_approval(reply.needs_approval);
+    if (reply.leaves) message.set_leaves(day_of_year_text(*reply.leaves));
+    if (reply.arrives) message.set_arrives(day_of_year_text(*reply.arrives));
+    if (reply.effect_seen) message.set_effect_seen(day_of_year_text(*reply.effect_seen));
+    message.set_station(reply.station);
+    if (reply.station_until) message.set_station_until(day_of_year_text(*reply.station_until));
+    if (reply.deadline) {
+        message.set_latest_useful(day_of_year_text(reply.deadline->latest));
+        message.set_useful_before(reply.deadline->timepoint);
+    }
+    for (const auto& timepoint : reply.too_late_for) message.add_too_late_for(timepoint);
+    return message;
+}
+
+archive::StageRecord record_of(commands::StageReport stage) {
+    archive::StageRecord record;
+    record.command = stage.command;
+    record.name = std::move(stage.name);
+    record.stage = commands::name_of(stage.stage);
+    record.status = commands::name_of(stage.status);
+    record.evidence = std::move(stage.evidence);
+    record.at = stage.at;
+    record.arguments = std::move(stage.arguments);
+    record.count = stage.count;
+    record.octets = std::move(stage.octets);
+    record.held = stage.held;
+    record.needs_approval = stage.needs_approval;
+    record.asked_by = std::move(stage.asked_by);
+    return record;
+}
+
+}  // namespace aeolis::server

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/rehearsal/timeline_check.hpp"
+
+#include "commands/changed_timeline.hpp"
+#include "commands/timeline_change.hpp"
+#include "server/archive/items.hpp"
+
+#include <utility>
+
+namespace aeolis::server {
+namespace {
+
+commands::TimelineChanges changes_of(const v1::CommandList& list) {
+    std::vector<commands::TimelineCommand> all;
+    for (const auto& history : list.commands()) {
+        auto& command = all.emplace_back();
+        command.number = history.command();
+        command.name = history.name();
+        command.packet = archive::octets_of_hex(history.octets());
+        for (const auto& item : history.stages()) {
+            const auto& stage = item.command_stage();
+            // That it could not be verified does not undo it.
+            command.failed = command.failed || (stage.status() == "failed" && stage.stage() != "verified");
+            if (stage.stage() == "released")
+                command.left = stage.status() == "ok" ? std::optional{item.seq()} : std::nullopt;
+        }
+    }
+    return commands::changes_of(std::move(all));
+}
+
+}  // namespace
+
+bool changes_timeline(const v1::CommandRequest& request) {
+    return request.action().empty() && commands::changes_offsets(request.command());
+}
+
+Result<std::string> TimelineCheck::check(const v1::CommandList& before, std::span<const v1::CommandRequest> asked,
+                                         bool only_check, const Stop& stop) {
+    commands::ChangedTimeline timeline{dictionary_};
+    const auto changes = changes_of(before);
+    for (const auto* commands : {&changes.left, &changes.waiting})
+        for (const auto& command : *commands) timeline.change(command);
+    for (const auto& request : asked) {
+        const auto* const known = dictionary_.command(request.command());
+        if (known == nullptr || !changes_timeline(request)) continue;
+        std::vector<commands::NamedValue> given;
+        for (const auto& argument : request.arguments()) given.push_back({argument.name(), argument.value()});
+        const auto packet = commands::encode(*known, given, 0);
+        if (!packet) continue;                                     // the gateway refuses it, and says why
+        const auto arguments = commands::decode(*known, *packet);  // with defaults
+        if (!arguments) return arguments.error();
+        timeline.change(request.command(), *arguments);
+    }
+    return analysed(timeline.key(), timeline.dictionary(), only_check, stop);
+}
+
+TimelineCheck::Look TimelineCheck::look_again(const v1::CommandList& before, const Stop& stop) {
+    Look look;
+    commands::ChangedTimeline timeline{dictionary_};
+    const auto changes = changes_of(before);
+    look.undone = changes.undone;
+    for (const auto& command : changes.left) timeline.change(command);
+    for (const auto& command : changes.waiting) {
+        auto with = timeline;
+        with.change(command);
+        const auto says = analysed(with.key(), with.dictionary(), false, stop);
+        if (!says && says.error().internal) {
+            look.not_known = says.error().message;
+            return look;
+        }
+        look.known.push_back({command.number, !says, says ? *says : says.error().message});
+        if (says) timeline = std::move(with);
+    }
+    return look;
+}
+
+Result<std::string> TimelineCheck::analysed(const std::string& key, const dictionary::Dictionary& changed,
+                                            bool only_check, const Stop& stop) {
+    const auto known = [&]() -> std::optional<Result<std::string>> {
+        const std::scoped_lock lock{mutex_};
+        const auto found = answers_.find(key);
+        return found == answers_.end() ? std::nullopt : std::optional{found->second};
+    };
+    if (const auto answer = known()) return *answer;
+    const bool under_way = [&] {
+        const std::scoped_lock lock{mutex_};
+        return analysed_now_ == key;
+    }();
+    const std::unique_lock turn{analysing_, only_check && !under_way ? std::chrono::milliseconds{0} : turn_max};
+    if (!turn.owns_lock())
+        return Error{.message = "the timeline is analysed for another change: send again in a moment",
+                     .internal = true};
+    if (const auto answer = known()) return *answer;
+    {
+        const std::scoped_lock lock{mutex_};
+        analysed_now_ = key;
+    }
+    const auto analysis = dictionary::analyse_bounds(changed, stop);
+    if (analysis.stopped)
+        return Error{.message = "the analysis of the changed timeline did not end in its time, so that nobody knows "
+                                "whether its constraints hold: "
+                                "send it again, or change less at once",
+                     .internal = true};
+    const auto answer = commands::verdict_on(changed, analysis);
+    const std::scoped_lock lock{mutex_};
+    if (answers_.size() >= answers_max) answers_.clear();
+    answers_.emplace(key, answer);
+    return answer;
+}
+
+}  // namespace aeolis::server

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/ids.hpp"
+#include "common/mfsk_waveform.hpp"
+#include "common/time.hpp"
+#include "common/time_table.hpp"
+#include "simulation/links/x_band_sampler.hpp"
+#include "telemetry/port.hpp"
+
+#include <cstdint>
+#include <optional>
+
+namespace aeolis::simulation {
+
+/// X-band as it reaches Earth over a cycle: carrier, and what modulates it. For an antenna to make samples of.
+struct XBandField {
+    Ert ert;                     ///< of the cycle's start
+    double e_s = 0.0;            ///< when it left the vehicle, from the scenario's entry
+    double doppler_hz = 0.0;     ///< one way, at the cycle's start
+    bool up = false;             ///< else Earth has set, or no antenna is selected: nothing but noise
+    double gain_db = 0.0;        ///< of the antenna towards Earth, against its best direction
+    std::optional<ToneId> tone;  ///< none: the carrier alone
+    double tone_age_s = 0.0;     ///< since the symbol began
+};
+
+/// The antenna on Earth and its front end: samples of what arrives, noise and all, with ground's predict removed.
+///
+/// In       X-band fields, one a cycle without a gap        Out   a cycle's samples, telemetry::x_band_rate_hz
+/// A value; copies go on alike.
+class XBandFrontEnd {
+  public:
+    /// `predict_hz` by seconds from the scenario's entry.
+    XBandFrontEnd(const MfskWaveform& waveform, double total_c_n0_dbhz, TimeTable predict_hz, std::uint64_t seed,
+                  std::uint64_t case_number);
+
+    telemetry::XBandSamples sample(const XBandField& field);
+
+  private:
+    double total_c_n0_dbhz_;
+    TimeTable predict_hz_;
+    XBandSampler sampler_;
+    std::optional<double> last_doppler_hz_;
+};
+
+}  // namespace aeolis::simulation

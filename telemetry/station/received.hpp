@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "telemetry/port.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace aeolis::telemetry {
+
+/// A space packet as it reached Earth.
+struct ReceivedPacket {
+    Link link;
+    Ert ert;
+    std::vector<std::uint8_t> octets;
+};
+
+/// Time goes on at the station: what does not come is told by nothing else.
+struct EarthTime {
+    Ert now;
+};
+
+/// What a station makes of a Downlink.
+struct Received {
+    std::vector<ReceivedPacket> packets;
+    std::vector<ReceivedTone> tones;
+    std::vector<LinkState> links;
+
+    void clear() {
+        packets.clear();
+        tones.clear();
+        links.clear();
+    }
+};
+
+}  // namespace aeolis::telemetry

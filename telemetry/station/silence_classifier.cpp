@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/station/silence_classifier.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <utility>
+
+namespace aeolis::telemetry {
+namespace {
+
+/// "E+45 s"
+std::string after_entry(double e_s) {
+    return fmt::format("E{}{:.0f} s", std::round(e_s) < 0.0 ? "−" : "+", std::abs(std::round(e_s)));
+}
+
+bool holds(const PredictedSilences::Window& window, double e_s) {
+    return e_s >= window.from_s - SilenceClassifier::margin_s && e_s <= window.to_s + SilenceClassifier::margin_s;
+}
+
+}  // namespace
+
+const char* name_of(SilenceClass silence) {
+    static constexpr std::array names{"light time",         "switched off",       "plasma blackout",
+                                      "antenna hand-over",  "no orbiter in view", "orbiter records",
+                                      "Earth set",          "carrier too weak",   "delivered",
+                                      "recording complete", "ground fault",       "unexplained"};
+    static_assert(names.size() == static_cast<std::size_t>(SilenceClass::unexplained) + 1);
+    return names[static_cast<std::size_t>(silence)];
+}
+
+bool is_lost(SilenceClass silence) {
+    return silence == SilenceClass::ground_fault || silence == SilenceClass::unexplained;
+}
+
+std::string words_of(SilenceClass silence, const std::string& sentence) {
+    return sentence.empty() ? name_of(silence) : fmt::format("{}: {}", name_of(silence), sentence);
+}
+
+SilenceClassifier::SilenceClassifier(PredictedSilences predicted, Ert start_ert, Ert entry_ert)
+    : predicted_(std::move(predicted)), start_ert_(start_ert), entry_ert_(entry_ert) {}
+
+double SilenceClassifier::e_s(Ert ert) const {
+    return static_cast<double>(ert.microseconds - entry_ert_.microseconds) * 1e-6;
+}
+
+std::vector<LinkState> SilenceClassifier::tell(const std::vector<LinkState>& changes, Ert now, const Station& station) {
+    std::vector<LinkState> all;
+    if (!std::exchange(begun_, true) && predicted_.light_time_s > 0.0) {
+        const Ert first{start_ert_.microseconds + static_cast<std::int64_t>(predicted_.light_time_s * 1e6)};
+        for (const Link& link : {uhf_live_link, x_band_link})
+            all.push_back(told(silent_.emplace_back(Silence{link, false, {}}),
+                               {SilenceClass::light_time,
+                                "what leaves the vehicle at the start is here at " + day_of_year_text(first)},
+                               start_ert_, station));
+    }
+    for (const LinkState& change : changes) {
+        const auto known = std::ranges::find(silent_, change.link, &Silence::link);
+        if (change.up) {
+            if (known != silent_.end()) silent_.erase(known);
+            all.push_back(change);
+            continue;
+        }
+        const bool told_of = known != silent_.end();
+        Silence& silence = told_of ? *known : silent_.emplace_back(Silence{change.link, !station.fault.empty(), {}});
+        const Explanation why = explain(silence, e_s(change.ert), station);
+        if (!told_of || silence.told != why.silence) all.push_back(told(silence, why, change.ert, station));
+    }
+    for (Silence& silence : silent_) {
+        const Explanation why = explain(silence, e_s(now), station);
+        const bool begins =
+            silence.told == SilenceClass::light_time &&
+            now.microseconds - start_ert_.microseconds < static_cast<std::int64_t>(predicted_.light_time_s * 1e6);
+        if (why.silence != silence.told && !begins) all.push_back(told(silence, why, now, station));
+    }
+    return all;
+}
+
+LinkState SilenceClassifier::told(Silence& silence, const Explanation& why, Ert ert, const Station& station) const {
+    silence.told = why.silence;
+    std::string sentence = why.sentence;
+    if (why.silence == SilenceClass::unexplained) {
+        const auto last =
+            std::ranges::find(station.heard, silence.link.name, [](const auto& heard) { return heard.first; });
+        if (last != station.heard.end())
+            sentence += fmt::format("; its last octet left at {}", after_entry(e_s(last->second)));
+    }
+    return {silence.link, ert, false, words_of(why.silence, sentence), is_lost(why.silence)};
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain(const Silence& silence, double e_s,
+                                                          const Station& station) const {
+    auto why = explain_by_link(silence.link, e_s, station);
+    // An orbiter whose delivery breaks off with the station has not delivered.
+    const bool predicted =
+        why.silence != SilenceClass::unexplained && !(why.silence == SilenceClass::delivered && silence.cut);
+    if (!predicted && !station.fault.empty()) return {SilenceClass::ground_fault, station.fault};
+    return why;
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain_by_link(const Link& link, double e_s,
+                                                                  const Station& station) const {
+    if (link == x_band_link) return explain_x_band(e_s);
+    if (link == relay_link) return explain_relay(e_s, station);
+    if (link == uhf_live_link) return explain_uhf(e_s);
+    return {SilenceClass::delivered, "nothing more comes until the orbiter's next pass"};
+}
+
+/// None: one that hands on at once is in view.
+std::optional<SilenceClassifier::Explanation> SilenceClassifier::explain_by_passes(double e_s) const {
+    if (predicted_.passes.empty()) return {};
+    const PredictedSilences::OrbiterPass *recording = nullptr, *next = nullptr;
+    for (const PredictedSilences::OrbiterPass& pass : predicted_.passes) {
+        const bool in_view = e_s >= pass.rise_s + pass_margin_s && e_s < pass.set_s - pass_margin_s;
+        if (in_view && !pass.stored) return {};
+        if (in_view) recording = &pass;
+        if (pass.rise_s > e_s && !pass.stored && (next == nullptr || pass.rise_s < next->rise_s)) next = &pass;
+    }
+    if (recording != nullptr)
+        return Explanation{SilenceClass::orbiter_records,
+                           fmt::format("{} delivers from {}", recording->orbiter, after_entry(recording->delivery_s))};
+    if (next != nullptr)
+        return Explanation{SilenceClass::no_orbiter,
+                           fmt::format("{} rises at {}", next->orbiter, after_entry(next->rise_s))};
+    return Explanation{SilenceClass::no_orbiter, "no further pass is planned"};
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain_uhf(double e_s) const {
+    const auto& blackout = predicted_.blackout;
+    const auto hand_over_s = predicted_.hand_over_s, stop_s = predicted_.uhf_stop_s;
+    if (stop_s && e_s >= *stop_s - margin_s) return {SilenceClass::switched_off, "planned at " + after_entry(*stop_s)};
+    if (const auto why = explain_by_passes(e_s)) return *why;
+    if (blackout && holds(*blackout, e_s))
+        return {SilenceClass::blackout,
+                fmt::format("predicted from {} to {}", after_entry(blackout->from_s), after_entry(blackout->to_s))};
+    if (hand_over_s && holds({*hand_over_s, *hand_over_s}, e_s))
+        return {SilenceClass::hand_over, "planned at " + after_entry(*hand_over_s)};
+    return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain_relay(double e_s, const Station& station) const {
+    if (station.recording_progress >= 1.0) return {SilenceClass::recording_complete, {}};
+    if (const auto why = explain_by_passes(e_s)) return *why;
+    return {SilenceClass::unexplained, "the recording is not complete"};
+}
+
+SilenceClassifier::Explanation SilenceClassifier::explain_x_band(double e_s) const {
+    if (predicted_.earth_set_s && e_s >= *predicted_.earth_set_s - margin_s)
+        return {SilenceClass::earth_set, "predicted at " + after_entry(*predicted_.earth_set_s)};
+    if (predicted_.carrier_weak)
+        return {SilenceClass::weak_carrier, "the link's budget has it below what a lock needs"};
+    return {SilenceClass::unexplained, "nothing is predicted to silence it now"};
+}
+
+}  // namespace aeolis::telemetry

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "telemetry/station/tone_station.hpp"
+
+#include "common/check.hpp"
+
+#include <cmath>
+
+namespace aeolis::telemetry {
+namespace {
+
+constexpr std::size_t push_samples = 16384;
+
+std::int64_t microseconds(double seconds) {
+    return static_cast<std::int64_t>(std::llround(seconds * 1.0e6));
+}
+
+}  // namespace
+
+void ToneStation::receive(const Downlink& downlink, Received& out) {
+    for (const XBandSamples& piece : downlink.x_band) {
+        if (!receiver_) {
+            const double start_s = static_cast<double>(piece.ert.microseconds - entry_.microseconds) * 1.0e-6;
+            auto made = ToneReceiver::make(waveform_, x_band_rate_hz, predict_hz_, start_s);
+            AEOLIS_CHECK(made.ok());
+            receiver_.emplace(std::move(*made));
+        }
+        samples_.insert(samples_.end(), piece.samples.begin(), piece.samples.end());
+    }
+    if (!receiver_ || ended_) return;
+    ended_ = downlink.x_band.empty();  // there are no more
+    if (ended_ || samples_.size() >= push_samples) push(out);
+    const auto& status = receiver_->status();
+    const bool carrier = !ended_ && !downlink.station_out && status.lock != CarrierLock::searching;
+    if (carrier || up_ || ended_ || status.without_s >= first_search_s) tell_link(carrier, downlink.now, out);
+}
+
+void ToneStation::push(Received& out) {
+    receiver_->push(samples_);
+    samples_.clear();
+    if (ended_) receiver_->finish();
+    for (const ToneReception& reception : receiver_->take()) out.tones.push_back(told(reception));
+}
+
+void ToneStation::tell_link(bool up, Ert now, Received& out) {
+    if (up_ == up) return;
+    up_ = up;
+    out.links.push_back({x_band_link, now, up, up ? "nominal" : ""});
+}
+
+ReceivedTone ToneStation::told(const ToneReception& reception) const {
+    ReceivedTone tone;
+    tone.start = {entry_.microseconds + microseconds(reception.start_s)};
+    tone.end = {tone.start.microseconds + microseconds(waveform_.symbol_s)};
+    if (reception.tone) tone.tone = ToneId{*reception.tone};
+    tone.likelihood = reception.evidence.best[0].likelihood;
+    tone.best = reception.evidence.best;
+    tone.spectrum = reception.evidence.spectrum;
+    tone.c_n0_dbhz = reception.total_c_n0_dbhz;
+    tone.doppler_hz = reception.doppler_hz;
+    tone.lock = reception.lock;
+    return tone;
+}
+
+}  // namespace aeolis::telemetry

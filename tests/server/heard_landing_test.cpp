@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole landings as ground hears them: tones by its own receiver, silences by its own reasons.
+#include "server/rehearsal/rehearsal.hpp"
+
+#include "tests/server/running_server.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shipped_dictionary.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace aeolis;
+using namespace aeolis::server;
+
+namespace {
+
+/// The class that ground should find for what the simulation says.
+std::string expected(const std::string& truth) {
+    static const std::map<std::string, std::string> classes{{"plasma blackout", "plasma blackout"},
+                                                            {"antenna hand-over", "antenna hand-over"},
+                                                            {"not switched on", "switched off"},
+                                                            {"computer off", "switched off"},
+                                                            {"Earth set", "Earth set"},
+                                                            {"no orbiter in view", "no orbiter in view"},
+                                                            {"recording complete", "recording complete"},
+                                                            {"delivered", "delivered"},
+                                                            {"by mro, which delivers later", "orbiter records"}};
+    const auto found = classes.find(truth);
+    return found == classes.end() ? "unexplained" : found->second;
+}
+
+std::string class_of(const std::string& reason) {
+    return reason.substr(0, reason.find(':'));
+}
+
+struct Told {
+    std::string link;
+    std::int64_t ert_us;
+    bool up;
+    std::string reason;
+    bool operator==(const Told&) const = default;
+};
+std::vector<Told> changes(const std::vector<telemetry::LinkState>& links) {
+    std::vector<Told> all;
+    for (const auto& link : links)
+        all.push_back({link.link.name, link.ert.microseconds, link.up, link.up ? link.reason : class_of(link.reason)});
+    return all;
+}
+
+/// Flies it and compares what ground tells with the simulation's reasons.
+void check_silences(const char* name, std::uint64_t seed) {
+    CAPTURE(name, seed);
+    const auto scenario = test::shipped_scenario(name);
+    Rehearsal rehearsal{scenario, seed, 0, tests::shipped_dictionary()};
+    std::vector<Told> found, truth;
+    const auto add = [](std::vector<Told>& to, std::vector<Told> what) {
+        to.insert(to.end(), what.begin(), what.end());
+    };
+    while (!rehearsal.finished()) {
+        add(found, changes(rehearsal.step().links));
+        for (const auto& link : rehearsal.landing().report().links)
+            truth.push_back(
+                {link.link.name, link.ert.microseconds, link.up, link.up ? link.reason : expected(link.reason)});
+    }
+    CHECK(found.size() >= 6);
+    std::string all_found, all_truth;
+    for (const auto& each : found) all_found += each.link + (each.up ? " up " : " down ") + each.reason + "\n";
+    for (const auto& each : truth) all_truth += each.link + (each.up ? " up " : " down ") + each.reason + "\n";
+    REQUIRE(all_found == all_truth);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        CAPTURE(found[i].link, found[i].ert_us, found[i].reason, truth[i].reason);
+        CHECK((found[i].link == truth[i].link && found[i].up == truth[i].up && found[i].reason == truth[i].reason));
+        CHECK(std::abs(found[i].ert_us - truth[i].ert_us) <=
+              1'000'000);  // a silence that becomes another is looked at each second
+    }
+}
+
+}  // namespace
+
+TEST_CASE("over landings that differ ground names each silence as the simulation has it, without being told",
+          "[station][silence]") {
+    check_silences("nominal_auto", 1);
+    check_silences("relay_passes", 3);
+    check_silences("od137", 1);
+}
+
+TEST_CASE("over more landings, with a reset and with other seeds, ground names each silence as the simulation has it",
+          "[.long][station][silence]") {
+    check_silences("second_chance", 2);
+    for (const std::uint64_t seed : {7U, 8U, 9U}) check_silences("nominal_auto", seed);
+    for (const std::uint64_t seed : {1U, 2U}) check_silences("relay_passes", seed);
+}
+
+TEST_CASE("a transmitter that fails where nothing is predicted is an unexplained silence", "[station][silence]") {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    auto& fault = scenario.device_faults.emplace_back();
+    fault.device = flight::Device::uhf;
+    fault.unit = flight::Unit::a;
+    fault.kind = simulation::DeviceFault::Kind::dropout;
+    fault.begin_before_entry_s = 300.0;
+    fault.duration_s = 100.0;
+    Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
+    std::vector<std::string> told;
+    while (!rehearsal.finished() && rehearsal.clocks().e_s() < -150.0)
+        for (const auto& link : rehearsal.step().links)
+            if (!link.up) told.push_back(link.link.name + (link.lost ? " lost: " : ": ") + link.reason);
+    REQUIRE(told.size() == 1);
+    CHECK_THAT(told[0],
+               Catch::Contains(
+                   "uhf_live lost: unexplained: nothing is predicted to silence it now; its last octet left at E−30"));
+}
+
+TEST_CASE("a station's outage takes what came live meanwhile and nothing else: links are lost for a ground fault, the "
+          "recording comes whole",
+          "[station][silence][faults]") {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    Rehearsal whole{scenario, 1, 0, tests::shipped_dictionary()};
+    scenario.station_outages = {{200.0, 30.0}};
+    Rehearsal cut{scenario, 1, 0, tests::shipped_dictionary()};
+    std::size_t live = 0, live_whole = 0;
+    const auto live_of = [](const telemetry::Received& report) {
+        return static_cast<std::size_t>(
+            std::ranges::count_if(report.packets, [](const auto& packet) { return !packet.link.recorded; }));
+    };
+    while (!whole.finished()) live_whole += live_of(whole.step());
+    std::map<std::string, std::string> lost;
+    while (!cut.finished()) {
+        const auto& report = cut.step();
+        live += live_of(report);
+        for (const auto& link : report.links)
+            if (link.lost) lost[link.link.name] += link.reason + "; ";
+    }
+    const std::string fault = "ground fault: nothing comes from the station; ";
+    CHECK(lost == std::map<std::string, std::string>{{"uhf_live", fault}, {"x_band", fault}});
+    CHECK(live < live_whole);
+    CHECK(cut.recording_progress() == 1.0);
+    CHECK(cut.digest() == whole.digest());
+}
+
+TEST_CASE("a cold start at 5 dB-Hz leaves nothing of X-band but its silence, by samples as by the model",
+          "[tones][station][R53]") {
+    for (const bool samples : {true, false}) {
+        CAPTURE(samples);
+        auto scenario = test::shipped_scenario("nominal_auto");
+        scenario.start_before_entry_s = 900.0;
+        scenario.commands[0].send_before_entry_s = 895.0;
+        scenario.commands[1].send_before_entry_s = 885.0;
+        scenario.radio.tones_from_samples = samples;
+        scenario.radio.x_band_c_n0_dbhz = 5.0;
+        Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
+        std::string told;
+        while (rehearsal.clocks().e_s() < -750.0) {
+            const auto& received = rehearsal.step();
+            CHECK(received.tones.empty());
+            for (const auto& link : received.links)
+                if (link.link == telemetry::x_band_link) told += (link.up ? "up " : "down ") + link.reason + "\n";
+        }
+        CHECK(told == "down carrier too weak: the link's budget has it below what a lock needs\n");
+        const auto tones = rehearsal.tones();
+        CHECK(tones.sent > 5);
+        CHECK(tones.missed == tones.sent);
+    }
+}
+
+TEST_CASE(
+    "a landing's tones are decoded from its waveform, none wrong, and what UHF brought through bursts of errors is in "
+    "the recording, bit for bit",
+    "[tones][station][R31]") {
+    auto scenario = test::shipped_scenario("nominal_auto");
+    scenario.radio.tones_from_samples = true;
+    scenario.radio.uhf_loss_fraction = 0.05;
+    Rehearsal rehearsal{scenario, 1, 0, tests::shipped_dictionary()};
+    std::set<std::string> outages;
+    while (!rehearsal.finished())
+        for (const auto& link : rehearsal.step().links)
+            if (!link.up) outages.insert(link.link.name + ": " + link.reason);
+    CHECK(rehearsal.outcome() == "touchdown");
+    CHECK(rehearsal.recording_progress() == 1.0);
+    const auto silent = [&](const std::string& beginning) {
+        return std::ranges::any_of(outages, [&](const auto& words) { return words.starts_with(beginning); });
+    };
+    CHECK(silent("uhf_live: plasma blackout: predicted"));
+    CHECK(silent("x_band: Earth set: predicted"));
+    CHECK(rehearsal.run_start(0.0).tone_model == "signal");
+    const auto tones = rehearsal.tones();
+    CHECK(tones.sent > 30);
+    CHECK(tones.wrong == 0);
+    CHECK(tones.missed <= 2);  // Earth sets in one, and the parachute may cost one
+    const auto proof = rehearsal.proof();
+    CHECK(proof.holds());
+    CHECK(proof.realtime > 5000);
+    CHECK(rehearsal.station().links().at(0).pltus.counters().missing_frames > 10);
+    CHECK(rehearsal.station().links().at(0).pltus.counters().bad_crc > 10);
+
+    scenario.radio.tones_from_samples.reset();  // nobody chooses: drawn
+    Rehearsal drawn{scenario, 1, 0, tests::shipped_dictionary()};
+    while (!drawn.finished()) drawn.step();
+    CHECK(drawn.run_start(0.0).tone_model == "statistical");
+    CHECK(drawn.digest() == rehearsal.digest());  // what is recorded on board does not depend on who listens
+}
