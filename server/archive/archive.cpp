@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t log_octets = 16'384'000;
 
 Result<void> set_up_writer(sqlite::Database& database) {
-    const auto page = database.integer_of("PRAGMA page_size");  // archives of before schema 7 have smaller ones
+    const auto page = database.integer_of("PRAGMA page_size");
     if (!page) return page.error();
     return database.execute(("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA cache_size = -16000; PRAGMA "
                              "wal_autocheckpoint = " +
@@ -264,7 +264,6 @@ Result<RunId> Archive::State::add_run(const RunStart& start, const dictionary::D
         .bind(3, start.correlation.rate)
         .bind(4, std::int64_t{start.correlation.leap_seconds});
     if (auto done = clock->run(); !done) return done.error();
-    // A row an anchor, predicted or not: so a run that has none is known to be of an older schema.
     auto anchor = database.prepare("INSERT INTO run_anchors VALUES (?,?,?,?)");
     if (!anchor) return anchor.error();
     for (std::size_t i = 0; i < dictionary.anchors.size(); ++i) {

@@ -13,7 +13,7 @@
 namespace aeolis::archive {
 
 inline constexpr std::int32_t application_id = 0x41454F4C;  ///< "AEOL": what file(1) and we know the file by
-inline constexpr std::int32_t schema_version = 8;           ///< PRAGMA user_version
+inline constexpr std::int32_t schema_version = 1;           ///< PRAGMA user_version
 
 /// The writer of an archive: one SQLite file, many runs, rows only ever added (docs/archive.md).
 ///
@@ -25,8 +25,8 @@ inline constexpr std::int32_t schema_version = 8;           ///< PRAGMA user_ver
 /// Threads  one owner. Readers (reader.hpp) have their own connections.
 class Archive {
   public:
-    /// Opens, or makes, the file. Refuses in one line what is not an Aeolis archive, is of a newer schema, or has a
-    /// writer already. Runs that were cut off are marked interrupted.
+    /// Opens, or makes, the file. Refuses in one line what is not an Aeolis archive, is of another schema, or has
+    /// a writer already. Runs that were cut off are marked interrupted.
     static Result<Archive> open(const std::filesystem::path& file);
 
     Archive(Archive&&) noexcept;

@@ -30,8 +30,6 @@ std::string kept_text(const google::protobuf::Message& request) {
 KeptRequest kept_request(const std::string& text) {
     if (v1::CommandRequest command; read_text(text, command)) return command;
     if (v1::Intervention intervention; read_text(text, intervention)) return intervention;
-    v1::Intervention bare;
-    if (read_text(text, *bare.mutable_fault())) return bare;
     return {};
 }
 

@@ -11,8 +11,7 @@ namespace aeolis::archive {
 
 std::string kept_text(const google::protobuf::Message& request);
 
-/// None: it is neither of the two. A fault of an archive of before, which stands there bare, is an intervention like
-/// all others.
+/// None: it is neither of the two.
 using KeptRequest = std::variant<std::monostate, v1::CommandRequest, v1::Intervention>;
 KeptRequest kept_request(const std::string& text);
 

@@ -129,10 +129,9 @@ Result<std::vector<AuditEntry>> Reader::audit(std::uint64_t after, std::size_t l
 
 namespace {
 
-/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns. Without a row in
-/// run_clocks it is of schema 5 or before: those clocks had no drift.
+/// From correlation_sclk, correlation_scet_us, rate, leap_seconds, version in these columns.
 ClockCorrelation clock_of(const sqlite::Statement& row, int column) {
-    return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.is_null(column + 2) ? 1.0 : row.real(column + 2),
+    return {Sclk{row.real(column)}, Scet{row.integer(column + 1)}, row.real(column + 2),
             static_cast<std::int32_t>(row.integer(column + 3)), static_cast<std::uint32_t>(row.integer(column + 4))};
 }
 
@@ -174,7 +173,7 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     if (!snapshot) return snapshot.error();
     static constexpr char run_sql[] =
         "SELECT state, scenario_text, started, seed, dictionary, correlation_sclk, correlation_scet_us, rate,"
-        " leap_seconds, version FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?";
+        " leap_seconds, version FROM runs JOIN run_clocks USING (run) WHERE run = ?";
     auto rows = state_->query(run_sql);
     if (!rows) return rows.error();
     auto& row = **rows;
@@ -190,7 +189,6 @@ Result<CutOffRun> Reader::cut_off(RunId run) {
     cut.started = row.text(2);
     cut.seed = static_cast<std::uint64_t>(row.integer(3));
     cut.clock = clock_of(row, 5);
-    cut.clock_kept = !row.is_null(7);
     if (auto same = state_->same_dictionary({run, false, static_cast<std::uint16_t>(row.integer(4)), {}}); !same)
         return same.error();
     auto last = state_->last_seq(run);
@@ -217,7 +215,7 @@ constexpr char runs_sql[] =
     "SELECT r.run, scenario, title, venue, seed, state, outcome, pace, started, last_seq, entry_sclk, start_sclk,"
     " light_time_s, tone_model, digest, coalesce(progress, 0), correlation_sclk, correlation_scet_us, rate, "
     "leap_seconds, version"
-    " FROM runs r LEFT JOIN recordings c ON c.run = r.run LEFT JOIN run_clocks k ON k.run = r.run"
+    " FROM runs r LEFT JOIN recordings c ON c.run = r.run JOIN run_clocks k ON k.run = r.run"
     " WHERE ?1 IS NULL OR r.run = ?1 ORDER BY r.run DESC";
 constexpr char solution_sql[] = "SELECT name, value FROM run_solution WHERE run = ? ORDER BY position";
 }  // namespace

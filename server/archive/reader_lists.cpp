@@ -318,24 +318,14 @@ Result<void> Reader::State::add_predicted_anchors(RunId run, v1::TimepointList& 
     if (!rows) return rows.error();
     auto& row = **rows;
     row.bind(1, std::int64_t{run.value});
-    bool kept = false;
     for (;;) {
         auto found = row.step();
         if (!found) return found.error();
-        if (!*found) break;
-        kept = true;
+        if (!*found) return {};
         const auto anchor = row.integer(0);
         if (anchor < list.anchors_size() && !row.is_null(1))
             list.mutable_anchors(static_cast<int>(anchor))->set_predicted_e_s(row.real(1));
     }
-    if (kept) return {};
-    for (std::size_t i = 0; i < dictionary.predicted_anchor_e_s.size(); ++i)
-        if (const auto& predicted = dictionary.predicted_anchor_e_s[i])
-            list.mutable_anchors(static_cast<int>(i))->set_predicted_e_s(*predicted);
-    if (list.anchors_size() > 0)
-        list.set_prediction_note("the archive has not kept what was predicted when this run began: it is predicted by "
-                                 "today's predicted_anchors.csv");
-    return {};
 }
 
 Result<v1::TimepointList> Reader::timepoints(RunId run) {

@@ -67,7 +67,6 @@ void add_predictions(const dictionary::Dictionary& dictionary, const v1::Timepoi
     for (const auto& anchor : timeline.anchors())
         design_e_s.push_back(anchor.has_predicted_e_s() ? std::optional{anchor.predicted_e_s()} : std::nullopt);
     const auto predicted = predicted_from_entry_s(changed ? *changed : dictionary, design_e_s, heard_e_s);
-    report.set_prediction_note(timeline.prediction_note());
     for (std::size_t i = 0; i < predicted.size(); ++i)
         if (predicted[i]) report.mutable_timepoints(static_cast<int>(i))->set_predicted_e_s(*predicted[i]);
 }
@@ -195,8 +194,8 @@ Result<v1::AsFlownReport> Reader::as_flown(RunId run) {
 }
 
 Result<std::vector<v1::Silence>> Reader::State::silences(RunId run) {
-    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * coalesce(rate, 1.0) + "
-                       "light_time_s) * 1e6 FROM runs LEFT JOIN run_clocks USING (run) WHERE run = ?");
+    auto times = query("SELECT correlation_scet_us + ((entry_sclk - correlation_sclk) * rate + "
+                       "light_time_s) * 1e6 FROM runs JOIN run_clocks USING (run) WHERE run = ?");
     if (!times) return times.error();
     (*times)->bind(1, std::int64_t{run.value});
     auto found = (*times)->step();

@@ -81,8 +81,7 @@ struct Reader::State {
     Result<Sequence> last_seq(RunId run);
     Result<std::vector<RequestRecord>> requests(RunId run);  ///< as they were taken
     Result<v1::RunState> run_state(const sqlite::Statement& row);
-    /// When the design had each anchor, as kept with the run; of a run of schema 6 or before by today's sheet, with a
-    /// note.
+    /// When the design had each anchor when the run began.
     Result<void> add_predicted_anchors(RunId run, v1::TimepointList& list);
     Result<v1::Item> explanation_item(const sqlite::Statement& row);
     Result<v1::Item> tone_item(const sqlite::Statement& row);

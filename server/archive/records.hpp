@@ -252,7 +252,6 @@ struct CutOffRun {
     std::string scenario_text, started;
     std::uint64_t seed = 0;
     ClockCorrelation clock;               ///< by which it was flown, whatever the dictionary's sheet says by now
-    bool clock_kept = false;              ///< false: of schema 5 or before, whose clocks had no drift
     Sequence last_seq = 0;                ///< durable, and perhaps published
     std::vector<RequestRecord> requests;  ///< as they were taken
     std::vector<Sequence> annotations;    ///< items that people made: they do not come again by flying

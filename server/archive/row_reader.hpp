@@ -22,7 +22,7 @@ EventRecord event(const sqlite::Statement& row);
 /// Without its best tones, which have rows of their own.
 inline constexpr char tone_rows[] =
     "SELECT t.key, start_us, end_us, t.tone, name, meaning, likelihood, runner_up, runner_up_likelihood, c_n0_dbhz,"
-    " doppler_hz, locked, model, sclk, coalesce(lock, ''), spectrum FROM tones t LEFT JOIN tone_evidence e ON e.key = "
+    " doppler_hz, locked, model, sclk, lock, spectrum FROM tones t JOIN tone_evidence e ON e.key = "
     "t.key"
     " WHERE t.key BETWEEN ?1 AND ?2 ORDER BY t.key LIMIT ?3";
 ToneRecord tone(const sqlite::Statement& row);

@@ -12,7 +12,7 @@ namespace aeolis::archive {
 namespace {
 
 constexpr char columns_sql[] =
-    "SELECT s.segment, s.position, s.samples, s.packed, s.sclk, v.value FROM segments s LEFT JOIN segment_columns v"
+    "SELECT s.segment, s.position, s.samples, s.sclk, v.value FROM segments s LEFT JOIN segment_columns v"
     " ON v.key = s.segment * 65536 + ?6 WHERE s.run = ?1 AND s.packet = ?2 AND s.source = ?3"
     " AND s.position BETWEEN ?4 AND ?5 ORDER BY s.position";
 constexpr char nodes_sql[] =
@@ -37,14 +37,11 @@ Error damaged(const Reader::State& reader, const std::string& what, const std::s
             " (aeolis archive verify names all that is)"};
 }
 
-/// A column of `samples` doubles: packed, or as archives of schema 3 have it.
+/// A packed column of `samples` doubles.
 Result<void> read_column(Reader::State& reader, const sqlite::Statement& row, int column, std::vector<double>& into) {
     const auto octets = row.octets(column);
     into.resize(static_cast<std::size_t>(row.integer(2)));
-    if (row.integer(3) != 0) return reader.codec.unpack(octets, into);
-    if (octets.size() != into.size() * sizeof(double)) return Error{"it holds another number of samples"};
-    std::memcpy(into.data(), octets.data(), octets.size());
-    return {};
+    return reader.codec.unpack(octets, into);
 }
 
 /// Samples first … last - 1 of a series, those that are defined and in the range, to the end of `into`.
@@ -66,10 +63,10 @@ Result<void> read_samples(Reader::State& reader, const SealedSeries& series, con
         };
         if (row.integer(2) < 1 || row.integer(2) > static_cast<std::int64_t>(segment_samples))
             return wrong("its number of samples", std::to_string(row.integer(2)));
-        if (auto done = read_column(reader, row, 4, reader.segment_sclk_s); !done)
+        if (auto done = read_column(reader, row, 3, reader.segment_sclk_s); !done)
             return wrong("its times", done.error().message);
-        if (row.is_null(5)) return wrong("channel " + std::to_string(coverage.channel.value), "it is missing");
-        if (auto done = read_column(reader, row, 5, reader.segment_values); !done)
+        if (row.is_null(4)) return wrong("channel " + std::to_string(coverage.channel.value), "it is missing");
+        if (auto done = read_column(reader, row, 4, reader.segment_values); !done)
             return wrong("channel " + std::to_string(coverage.channel.value), done.error().message);
         const std::uint64_t base = static_cast<std::uint64_t>(row.integer(1)) * segment_samples;
         const auto from = static_cast<std::size_t>(std::max(first, base) - base);

@@ -8,10 +8,8 @@
 
 namespace aeolis::archive {
 
-/// Makes tables, indices and views of schema_version in an empty database, or checks that it is one of ours. A later
-/// version only ever adds tables, columns, indices and views to an earlier one: an older file gets them when it is
-/// opened for writing, and is read as if it had them, empty. Fails with "FILE is not an Aeolis archive", or "… was
-/// written by a newer Aeolis …".
+/// Makes the tables, indices and views of schema_version in an empty database, or checks that they are there. Fails
+/// with "FILE is not an Aeolis archive" or "FILE has archive schema N, this program has M: …".
 Result<void> prepare_for_writing(sqlite::Database& database);
 Result<void> check_for_reading(sqlite::Database& database);
 

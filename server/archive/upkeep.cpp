@@ -13,16 +13,13 @@ namespace aeolis::archive {
 
 namespace {
 
-/// Every number that an item of the run has. An archive that is only read has the tables of its own schema.
-std::string item_keys_sql(const std::string& schema, bool since_five) {
+/// Every number that an item of the run has.
+std::string item_keys_sql(const std::string& schema) {
     std::string sql = "SELECT key FROM " + schema + "units WHERE key BETWEEN ?1 AND ?2 UNION ALL SELECT key + 1 FROM " +
                       schema + "units WHERE key BETWEEN ?1 AND ?2 AND sampled = 1";
-    for (const char* table :
-         {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes", "alarms"})
+    for (const char* table : {"events", "tones", "command_stages", "timepoint_firings", "explanations", "link_changes",
+                              "alarms", "staleness", "alarm_actions", "notes"})
         sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
-    if (since_five)
-        for (const char* table : {"staleness", "alarm_actions", "notes"})
-            sql += " UNION ALL SELECT key FROM " + schema + table + " WHERE key BETWEEN ?1 AND ?2";
     return sql;
 }
 
@@ -43,7 +40,7 @@ Result<void> make_durable(const std::filesystem::path& file) {
 Result<Maintenance> Maintenance::open(const std::filesystem::path& file) {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored)) return Error{file.string() + ": there is no such file"};
-    // The writer's own way in: it refuses what is not ours, brings the schema up to date and marks what was cut off.
+    // The writer's own way in: it refuses what is not ours, and marks what was cut off.
     if (auto opened = Archive::open(file); !opened) return opened.error();
     auto lock = WriterLock::take(file);
     if (!lock) return lock.error();
@@ -149,12 +146,9 @@ Result<std::vector<std::string>> integrity_faults(sqlite::Database& database) {
 
 Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, RunId run, const std::string& schema,
                                                  std::size_t most) {
-    auto notes = database.integer_of(("SELECT count(*) FROM " + schema + "sqlite_schema WHERE name = 'notes'").c_str());
-    if (!notes) return notes.error();
-    const bool since_five = *notes != 0;
     const std::string sql =
         "SELECT before, key FROM (SELECT lag(key, 1, ?1) OVER (ORDER BY key) AS before, key FROM (" +
-        item_keys_sql(schema, since_five) + ")) WHERE key <> before + 1 LIMIT ?3";
+        item_keys_sql(schema) + ")) WHERE key <> before + 1 LIMIT ?3";
     auto rows = database.prepare(sql.c_str());
     if (!rows) return rows.error();
     rows->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, static_cast<std::int64_t>(most));
@@ -172,8 +166,8 @@ Result<std::vector<std::string>> sequence_faults(sqlite::Database& database, Run
                              std::to_string(before + 1) +
                              (next == before + 2 ? "" : " to " + std::to_string(next - 1)));
     }
-    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema, since_five) +
-                                  ")) FROM " + schema + "runs WHERE run = ?3 AND last_seq IS NOT NULL")
+    auto last = database.prepare(("SELECT last_seq, (SELECT max(key) FROM (" + item_keys_sql(schema) + ")) FROM " +
+                                  schema + "runs WHERE run = ?3 AND last_seq IS NOT NULL")
                                      .c_str());
     if (!last) return last.error();
     last->bind(1, item_key(run, 0)).bind(2, item_key(run, sequence_max)).bind(3, std::int64_t{run.value});

@@ -31,7 +31,6 @@ void print_timepoints(const v1::AsFlownReport& report) {
                    from_entry(row.has_recorded_e_s(), row.recorded_e_s()),
                    row.has_margin_s() ? fmt::format("{:.1f} s", row.margin_s()) : "-", row.verdict());
     fmt::print("Predicted: at entry interface, by the timeline's rule over the anchors that ground had then.\n");
-    if (!report.prediction_note().empty()) fmt::print("Note: {}.\n", report.prediction_note());
     fmt::print("Margin: later than the previous timepoint and the minimum offset from it.\n");
 }
 

@@ -22,8 +22,6 @@ namespace {
 
 constexpr std::size_t batch_units = 4096;   ///< ours: some MB in hand
 constexpr std::size_t faults_a_table = 20;  ///< ours: more nobody reads
-constexpr int first_schema_with_packed_segments = 4;
-constexpr int first_schema_with_audit = 5;
 
 struct RunToDerive {
     RunId run;
@@ -244,18 +242,10 @@ class Comparison {
 
 Result<void> compare(sqlite::Database& database, const RunToDerive& run, const dictionary::Dictionary& dictionary,
                      Verification& found) {
-    auto plain = database.integer_of(
-        ("SELECT count(*) FROM archive.segments WHERE packed = 0 AND run = " + std::to_string(run.run.value)).c_str());
-    if (!plain) return plain.error();
-    if (*plain > 0)
-        found.notes.push_back(
-            "run " + std::to_string(run.run.value) + ": its " + std::to_string(*plain) +
-            " segments are those of schema 3 and were not compared; aeolis archive rebuild packs them");
     Comparison comparison(database, run, dictionary, found.faults);
     for (const archive::RunTable& table : archive::run_tables) {
         const std::string_view name = table.name;
-        const bool of_segments = name == "segments" || name == "segment_columns" || name.starts_with("pyramid");
-        if (!table.derived || (of_segments && *plain > 0)) continue;
+        if (!table.derived) continue;
         const std::string key = name == "segments"     ? "segment"
                                 : name == "recordings" ? "run"
                                 : name == "pyramid"    ? "block"
@@ -266,7 +256,6 @@ Result<void> compare(sqlite::Database& database, const RunToDerive& run, const d
                                                                : "";
         if (auto done = comparison.rows(table, key, packed); !done) return done;
     }
-    if (*plain > 0) return {};
     if (auto done = comparison.packed(
             "segments", "SELECT a.segment, b.samples, a.sclk, b.sclk FROM archive.segments a JOIN main.segments b"
                         " USING (segment) WHERE a.run = ?1 AND a.sclk <> b.sclk");
@@ -290,26 +279,20 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
                             const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,
                             const std::filesystem::path& scratch_folder, const GoesOn& goes_on) {
     Verification found;
-    int schema = 0;
     {
         auto database = sqlite::Database::open(file.string(), sqlite::Mode::read_only);
         if (!database) return database.error();
         if (auto ours = archive::check_for_reading(*database); !ours) return ours.error();
-        auto version = database->integer_of("PRAGMA user_version");
-        if (!version) return version.error();
-        schema = static_cast<int>(*version);
         auto faults = archive::integrity_faults(*database);
         if (!faults) return faults.error();
         for (auto& fault : *faults) found.faults.push_back("the file: " + std::move(fault));
         if (!found.faults.empty()) return found;  // what the rest would find is no news
-        if (schema >= first_schema_with_audit) {
-            auto audit = archive::check_audit(*database);
-            if (!audit) return audit.error();
-            found.faults = std::move(audit->faults);
-            if (audit->entries > 0)
-                found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " +
-                                      audit->last_hash);
-        }
+        auto audit = archive::check_audit(*database);
+        if (!audit) return audit.error();
+        found.faults = std::move(audit->faults);
+        if (audit->entries > 0)
+            found.notes.push_back("audit: " + std::to_string(audit->entries) + " entries, the last with hash " +
+                                  audit->last_hash);
     }
     auto scratch = Scratch::open(scratch_folder / ("aeolis-verify-" + std::to_string(::getpid()) + ".db"), file);
     if (!scratch) return scratch.error();
@@ -318,15 +301,11 @@ Result<Verification> verify(const std::filesystem::path& file, std::optional<Run
     if (!transaction) return transaction.error();
     auto runs = runs_of(database, only);
     if (!runs) return runs.error();
-    if (schema < first_schema_with_packed_segments)
-        found.notes.push_back(file.string() + " has schema " + std::to_string(schema) +
-                              ": its derived rows were not compared; aeolis archive rebuild brings it up to date");
     for (const RunToDerive& run : *runs) {
         ++found.runs;
         auto gaps = archive::sequence_faults(database, run.run, "archive.", faults_a_table);
         if (!gaps) return gaps.error();
         found.faults.insert(found.faults.end(), gaps->begin(), gaps->end());
-        if (schema < first_schema_with_packed_segments) continue;
         if (run.dictionary != dictionary.id) {
             found.notes.push_back(other_words(run, dictionary) + ": its derived rows were not compared");
             continue;

@@ -48,9 +48,8 @@ struct Rebuilt {
     bool stopped = false;           ///< before all of them were looked at
 };
 
-/// Makes the derived rows of each run again and puts them in place of the old ones, a run a transaction; segments of
-/// schema 3 are packed by that. A run whose items would get other numbers is left as it is. Needs room beside the
-/// archive for the derived rows of one run.
+/// Makes the derived rows of each run again and puts them in place of the old ones, a run a transaction. A run
+/// whose items would get other numbers is left as it is. Needs room beside the archive for the derived rows of one run.
 /// @param by  when, who and from where, of an entry in the audit for each run; what was done is added here
 Result<Rebuilt> rebuild(const std::filesystem::path& archive, std::optional<archive::RunId> run,
                         const dictionary::Dictionary& dictionary, const telemetry::OtherMission* other,

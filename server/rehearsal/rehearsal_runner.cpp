@@ -193,10 +193,6 @@ Result<void> RehearsalRunner::catch_up(Rehearsal& rehearsal) {
     run_id_ = cut_->run;
     start_.started = cut_->started;
     spdlog::info("run {} is flown again up to item {}", run_id_.value, cut_->last_seq);
-    if (!cut_->clock_kept)
-        spdlog::info(
-            "run {} has no clock of its own in the archive: it is of before clocks drifted, and goes on without drift",
-            run_id_.value);
     if (auto resumed = pipeline_.resume(*cut_, start_); !resumed) return resumed;
     const auto given_up = [&](const std::string& why) {
         pipeline_.abandon();

@@ -2,7 +2,6 @@
 #include "server/archive/reader.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
-#include "tests/server/schema_three.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -333,24 +332,6 @@ TEST_CASE("plain words find events, explanations, commands and notes, whatever s
     archive::ExplanationQuery why;
     why.text = "mortar";
     CHECK(reader.explanations(first_run, why)->explanations_size() == 0);
-    ground.search_holds();
-}
-
-TEST_CASE("an archive of before gets its index of words when it is opened for writing", "[search][archive]") {
-    Ground ground;
-    ground.begin();
-    REQUIRE(ground.pipeline->accept(live(mortar_packet(0, 1003.0, 405.0F), 3'000'000)).ok());
-    REQUIRE(ground.pipeline->finish({"touchdown", "", "", ""}).ok());
-    ground.pipeline.reset();
-    ground.archive.reset();
-    make_schema_three(ground.file);
-    CHECK(ground.reader().notes(first_run, {"", 0, 10})->notes_size() == 0);
-    CHECK(ground.reader().alarm_states(first_run, {})->alarms_size() == 0);
-    CHECK(pipeline::verify(ground.file, {}, ground.dictionary, nullptr, ground.folder / "")->faults.empty());
-    ground.open();
-    archive::EventQuery mortar;
-    mortar.text = "mortar";
-    CHECK(ground.reader().events(first_run, mortar)->events_size() == 1);
     ground.search_holds();
 }
 

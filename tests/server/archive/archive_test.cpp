@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/archive/archive.hpp"
+#include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
@@ -81,18 +82,24 @@ TEST_CASE("what is not an archive is refused by name and left as it was", "[arch
         CHECK(opened.error().message == file.string() + " is not an Aeolis archive");
         CHECK(ask(file, "SELECT count(*) FROM sqlite_schema") == 1);
     }
-    SECTION("a newer schema") {
-        const auto file = folder / "newer.db";
+    SECTION("another schema") {
+        const auto file = folder / "other_schema.db";
         {
             REQUIRE(Archive::open(file).ok());
         }
         {
-            auto newer = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
-            REQUIRE(newer->execute("PRAGMA user_version = 999").ok());
+            auto other = sqlite::Database::open(file.string(), sqlite::Mode::read_write_create);
+            REQUIRE(other->execute("PRAGMA user_version = 8").ok());
         }
+        const std::string line = file.string() + " has archive schema 8, this program has 1: open it with the Aeolis "
+                                                 "that wrote it, or name another file";
         const auto opened = Archive::open(file);
         REQUIRE_FALSE(opened.ok());
-        CHECK(opened.error().message.find("newer Aeolis") != std::string::npos);
+        CHECK(opened.error().message == line);
+        const auto read = Reader::open(file, test::small_dictionary());
+        REQUIRE_FALSE(read.ok());
+        CHECK(read.error().message == line);
+        CHECK(ask(file, "PRAGMA user_version") == 8);
     }
     SECTION("a mark without tables") {
         const auto file = folder / "marked.db";

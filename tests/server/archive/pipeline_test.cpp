@@ -2,7 +2,6 @@
 #include "server/archive/reader.hpp"
 #include "server/archive/sqlite.hpp"
 #include "server/pipeline/pipeline.hpp"
-#include "tests/server/schema_three.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -159,13 +158,6 @@ TEST_CASE("the clocks of runs and what commands waited for are told in plain SQL
           "drifting 7 0.25 2000-001T12:00:00.000 2000-001T12:20:50.000 ");
     CHECK(row_of("SELECT run, command, asked_by, needs_approval, at FROM command_wait_log") ==
           "2 3 Ann 1 2000-001T12:01:00.000 ");
-    // Of a run of before its clock was kept: it had no drift.
-    auto writable =
-        std::move(archive::sqlite::Database::open(ground.file.string(), archive::sqlite::Mode::read_write_create))
-            .value();
-    REQUIRE(writable.execute("DELETE FROM run_clocks").ok());
-    CHECK(row_of("SELECT scenario, version, drift, scet, entry_scet FROM clock_log WHERE run = 2") ==
-          "drifting  0.0 2000-001T12:00:00.000 2000-001T12:16:40.000 ");
 }
 
 TEST_CASE("the history of a command says in fields that it is held or needs approval, and no longer once it has left",
@@ -453,39 +445,6 @@ TEST_CASE("a tone that was drawn has no spectrum", "[pipeline][archive][R31]") {
     REQUIRE(ground.pipeline.commit().ok());
     CHECK_FALSE(ground.items().front().tone().has_spectrum());
     CHECK_FALSE(ground.reader().tones(ground.run(), {})->tones(0).tone().has_spectrum());
-}
-
-TEST_CASE("an archive of the first schema is read as it is, and is brought up to date when it is opened for writing",
-          "[pipeline][archive]") {
-    Ground ground;
-    ground.feed();
-    REQUIRE(ground.pipeline.commit().ok());
-    const archive::RunId run = ground.run();
-    ground.pipeline.abandon();
-    {
-        const auto closed = std::move(ground.archive);
-    }
-    const auto database = [&](archive::sqlite::Mode mode) {
-        return std::move(archive::sqlite::Database::open(ground.file.string(), mode)).value();
-    };
-    test::make_schema_three(ground.file);
-    REQUIRE(database(archive::sqlite::Mode::read_write_create)
-                .execute("DROP VIEW tone_evidence_log; DROP TABLE tone_evidence; DROP TABLE tone_likelihoods; DROP "
-                         "TABLE link_totals;"
-                         "PRAGMA user_version = 1")
-                .ok());
-
-    const auto old = ground.reader().tones(run, {});
-    REQUIRE(old.ok());
-    CHECK(old->tones(0).tone().tone() == 9);
-    CHECK(old->tones(0).tone().lock().empty());
-    CHECK(old->tones(0).tone().best_size() == 0);
-    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("PRAGMA user_version") == 1);
-
-    REQUIRE(Archive::open(ground.file).ok());
-    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("PRAGMA user_version") == archive::schema_version);
-    CHECK(*database(archive::sqlite::Mode::read_only).integer_of("SELECT count(*) FROM tone_evidence_log") == 0);
-    CHECK(ground.reader().tones(run, {})->tones(0).tone().tone() == 9);
 }
 
 TEST_CASE("commits come by time or by number, never empty", "[pipeline]") {

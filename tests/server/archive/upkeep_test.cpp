@@ -5,7 +5,6 @@
 #include "server/archive/upkeep.hpp"
 #include "server/pipeline/derivation.hpp"
 #include "server/pipeline/pipeline.hpp"
-#include "tests/server/schema_three.hpp"
 #include "tests/server/small_mission.hpp"
 #include "tests/support/catch.hpp"
 
@@ -187,6 +186,7 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
           std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21",
                                    "run 1: no item has the number 32"});
 }
+<<<<<<< HEAD:tests/server/archive/upkeep_test.cpp
 
 TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a rebuild", "[archive][rebuild]") {
     TemporaryFolder folder;
@@ -232,3 +232,5 @@ TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a 
 }
 
 }  // namespace archive_upkeep_test
+=======
+>>>>>>> 4f486a7:tests/server/upkeep_test.cpp

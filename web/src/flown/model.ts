@@ -47,7 +47,7 @@ export function summaryOf(report: AsFlownReport): string {
   const fired = count((row) => row.recordedES !== undefined || row.realtimeES !== undefined);
   return (
     `${fired} of ${all} timepoints fired: ${count((row) => row.realtimeES !== undefined)} told by UHF, ${count((row) => row.toneES !== undefined)} by tones, ` +
-    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.${report.predictionNote && ` Note: ${report.predictionNote}.`}`
+    `${count((row) => row.recordedES !== undefined)} in the recording. ${report.tonesDecoded} tones were decoded, ${report.tonesErased} were lost.`
   );
 }
 
