@@ -9,7 +9,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
-namespace server_command_gateway_test {
+namespace commands_command_gateway_test {
 
 using namespace aeolis;
 using namespace aeolis::commands;
@@ -923,4 +923,4 @@ TEST_CASE("of a command that waits it is said in fields what for, not in words a
     CHECK_FALSE(station.latest("released")->held);
 }
 
-}  // namespace server_command_gateway_test
+}  // namespace commands_command_gateway_test

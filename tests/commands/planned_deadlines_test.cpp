@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace server_planned_deadlines_test {
+namespace commands_planned_deadlines_test {
 
 using namespace aeolis;
 using commands::PlannedDeadlines;
@@ -105,4 +105,4 @@ TEST_CASE("a deadline is that of the plan as flight has changed it by command", 
     CHECK(after->latest.microseconds - before->latest.microseconds == 5'000'000);
 }
 
-}  // namespace server_planned_deadlines_test
+}  // namespace commands_planned_deadlines_test

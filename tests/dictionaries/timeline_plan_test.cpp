@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace archive_timeline_plan_test {
+namespace dictionaries_timeline_plan_test {
 
 using namespace aeolis;
 
@@ -77,4 +77,4 @@ TEST_CASE("it is the design that is given which predicts, not the one of the dic
     CHECK(predicted[row_of(dictionary, "parachute_deploy")] == 260.0);
 }
 
-}  // namespace archive_timeline_plan_test
+}  // namespace dictionaries_timeline_plan_test

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+namespace server_heard_landing_test {
+
 using namespace aeolis;
 using namespace aeolis::server;
 
@@ -202,3 +204,5 @@ TEST_CASE(
     CHECK(drawn.run_start(0.0).tone_model == "statistical");
     CHECK(drawn.digest() == rehearsal.digest());  // what is recorded on board does not depend on who listens
 }
+
+}  // namespace server_heard_landing_test

@@ -3,8 +3,8 @@
 #include "server/access/this_user.hpp"
 #include "server/api/json.hpp"
 #include "server/archive/items.hpp"
-#include "tests/server/audited.hpp"
 #include "tests/server/archive/faulty_disk.hpp"
+#include "tests/server/audited.hpp"
 #include "tests/server/running_server.hpp"
 #include "tests/server/web_client.hpp"
 

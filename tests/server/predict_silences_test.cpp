@@ -5,7 +5,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/shipped_dictionary.hpp"
 
-namespace server_predicted_silences_test {
+namespace server_predict_silences_test {
 
 using namespace aeolis;
 using namespace aeolis::server;
@@ -36,4 +36,4 @@ TEST_CASE("what the scenario says of Earth set and of the link's budget is what 
     CHECK(predicted.carrier_weak);
 }
 
-}  // namespace server_predicted_silences_test
+}  // namespace server_predict_silences_test

@@ -4,6 +4,8 @@
 
 #include <regex>
 
+namespace structure_documents_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -51,3 +53,5 @@ TEST_CASE("the files and folders that the front pages and the glossary name exis
     INFO(missing);
     CHECK(missing.empty());
 }
+
+}  // namespace structure_documents_test

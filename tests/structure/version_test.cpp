@@ -4,6 +4,8 @@
 
 #include <regex>
 
+namespace structure_version_test {
+
 using namespace aeolis::structure;
 
 namespace {
@@ -30,3 +32,5 @@ TEST_CASE("the version of the build is also that of the API, the console, its lo
     CHECK(first_group("CHANGELOG.md", R"(\n## (\S+))") == version);
     CHECK(first_group("docs/operations.md", R"(aeolis_([0-9.]+)_amd64\.deb)") == version);
 }
+
+}  // namespace structure_version_test

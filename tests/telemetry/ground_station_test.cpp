@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace server_ground_station_test {
+namespace telemetry_ground_station_test {
 
 using namespace aeolis;
 using namespace aeolis::telemetry;
@@ -139,4 +139,4 @@ TEST_CASE("a damaged length holds the next frame back half a second on a link th
     CHECK(bring(3450, rest) == 1);  // no pause as long as that cuts a frame
 }
 
-}  // namespace server_ground_station_test
+}  // namespace telemetry_ground_station_test

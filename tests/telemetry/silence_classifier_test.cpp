@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+namespace telemetry_silence_classifier_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -149,3 +151,5 @@ TEST_CASE("before anything can have come the silence is the light time's", "[sta
     REQUIRE(late.size() == 2);
     CHECK(class_of(late[0].reason) == "unexplained");
 }
+
+}  // namespace telemetry_silence_classifier_test

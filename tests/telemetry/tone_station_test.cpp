@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+namespace telemetry_tone_station_test {
+
 using namespace aeolis;
 using namespace aeolis::telemetry;
 
@@ -122,3 +124,5 @@ TEST_CASE("when the transmitter goes off what waits is decided at once", "[tones
     CHECK(sky.received.tones.front().tone == ToneId{42});
     CHECK_FALSE(sky.received.links.back().up);
 }
+
+}  // namespace telemetry_tone_station_test

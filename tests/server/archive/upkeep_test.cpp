@@ -186,51 +186,5 @@ TEST_CASE("numbers that no item has, or two have, are named", "[archive][verify]
           std::vector<std::string>{"run 1: no item has the numbers 11 to 12", "run 1: two items have the number 21",
                                    "run 1: no item has the number 32"});
 }
-<<<<<<< HEAD:tests/server/archive/upkeep_test.cpp
-
-TEST_CASE("an archive of schema 3 is read as it is, written on, and packed by a rebuild", "[archive][rebuild]") {
-    TemporaryFolder folder;
-    const auto dictionary = small_dictionary();
-    const auto file = folder / "a.db";
-    record(file, dictionary, 2);
-    const auto answer = [&] {
-        auto reader = Reader::open(file, dictionary);
-        REQUIRE(reader.ok());
-        auto exact = reader->series(RunId{2}, {{"altitude_m", "speed_mps"}, {3.0, 30.0}, {}});
-        auto thinned = reader->series(RunId{2}, {{"altitude_m"}, {}, 100});
-        REQUIRE(exact.ok());
-        REQUIRE(thinned.ok());
-        CHECK(thinned->channels(0).samples() == 2500);
-        return exact->SerializeAsString();
-    };
-    const auto packed = answer();
-    make_schema_three(file);
-    CHECK(ask(file, "PRAGMA user_version") == 3);
-    CHECK(answer() == packed);
-    CHECK(pipeline::verify(file, {}, dictionary, nullptr, folder / "")->notes.size() == 1);
-    CHECK(ask(file, "PRAGMA user_version") == 3);  // it was only read
-
-    record(file, dictionary, 1);  // opened for writing
-    CHECK(ask(file, "PRAGMA user_version") == schema_version);
-    CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 6);
-    CHECK(ask(file, "SELECT max(position) FROM segments WHERE run = 2") == 2);
-    CHECK(answer() == packed);
-    const auto found = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
-    CHECK(found->faults.empty());
-    CHECK(found->notes.size() == 2);
-
-    const auto before = ask(file, "SELECT count(*) FROM audit");
-    CHECK(pipeline::rebuild(file, {}, dictionary, nullptr, {})->runs.size() == 3);
-    CHECK(ask(file, "SELECT count(*) FROM audit WHERE action = 'rebuild' AND detail LIKE 'run _'") == 3);
-    CHECK(ask(file, "SELECT count(*) FROM audit") == before + 3);
-    CHECK(ask(file, "SELECT sum(packed = 0) FROM segments") == 0);
-    CHECK(answer() == packed);
-    const auto after = pipeline::verify(file, {}, dictionary, nullptr, folder / "");
-    CHECK(after->faults.empty());
-    REQUIRE(after->notes.size() == 1);  // nothing but that the rebuilds are in the audit
-    CHECK_THAT(after->notes[0], Catch::StartsWith("audit: "));
-}
 
 }  // namespace archive_upkeep_test
-=======
->>>>>>> 4f486a7:tests/server/upkeep_test.cpp
