@@ -55,7 +55,7 @@ TEST_CASE("static analysis, sanitizers and the memory checker are part of the ch
     CHECK(some_line("CMakePresets.json", {"-fsanitize=thread"}));
     CHECK(some_line("test", {"build_target", "dev"}));
     CHECK(some_line("test", {"build_target", "tsan", "cpp threads tsan '[threads]'"}));
-    CHECK(some_line("test", {"$long && threads"}));
+    CHECK(some_line("test", {"stage", "threads"}));
     CHECK(files_under("docs/reviews", {".md"}).size() >= 2);  // one beside the README
 }
 
