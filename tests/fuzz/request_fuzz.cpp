@@ -2,6 +2,7 @@
 // JSON as a client may send it: a CommandRequest to a landing's command path, a StartRehearsal up to its first cycles.
 // The first octet chooses. It is refused in words, or it can be done.
 #include "server/api/json.hpp"
+#include "server/rehearsal/command_messages.hpp"
 #include "server/rehearsal/rehearsal.hpp"
 #include "server/scenario/scenario_library.hpp"
 #include "server/scenario/scenario_text.hpp"
@@ -39,7 +40,7 @@ void command(std::string_view json) {
     v1::CommandRequest request;
     if (const auto parsed = from_json(json, request); !parsed) return must(!parsed.error().message.empty());
     if (requests++ % requests_a_landing == 0) landing.emplace(library().scenario("nominal").value(), 1, 0, mission());
-    const auto reply = landing->submit(request);
+    const auto reply = message_of(landing->submit(request_of(request)));
     must(reply.request() == request.request() && reply.accepted() == reply.reason().empty());
     must(!reply.accepted() || request.dry_run() || !request.action().empty() || reply.command() != 0);
     (void)to_json(reply);
