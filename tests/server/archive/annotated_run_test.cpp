@@ -340,7 +340,8 @@ TEST_CASE("a formula gives exact values at its first channel's times, and thinne
     Ground ground;
     ground.begin();
     for (std::uint16_t i = 0; i < 1000; ++i) {
-        const auto altitude_m = i == 500 ? std::nullopt : std::optional(static_cast<float>(1000 - i));
+        std::optional<float> altitude_m;
+        if (i != 500) altitude_m = static_cast<float>(1000 - i);
         REQUIRE(
             ground.pipeline->accept(live(navigation_packet(i, 1000.0 + i / 64.0, altitude_m, static_cast<float>(i)), i))
                 .ok());

@@ -41,8 +41,8 @@ struct Recorded {
         REQUIRE(pipeline.begin(start).ok());
         for (std::size_t i = 0; i < samples; ++i) {
             const auto sclk_s = 1000.0 + static_cast<double>(i) / 64.0;
-            const std::optional<float> value =
-                i % 10 == 9 ? std::nullopt : std::optional(static_cast<float>(altitude_at(i)));
+            std::optional<float> value;
+            if (i % 10 != 9) value = static_cast<float>(altitude_at(i));
             REQUIRE(pipeline.accept(live(navigation_packet(static_cast<std::uint16_t>(i), sclk_s, value, 3.0F))).ok());
             if (i % 64 == 0)
                 REQUIRE(pipeline.accept(live(status_packet(static_cast<std::uint16_t>(i / 64), sclk_s, 2))).ok());
