@@ -18,13 +18,12 @@ namespace aeolis::commands {
 /// In       packets, each with a tag; CLCWs as Earth receives them; Earth's clock
 /// Out      CLTUs to radiate; for each tag, once, what is known of its frame
 /// Service  sequence controlled (AD) while the vehicle is heard and both count alike: a frame that is lost is sent
-/// again. Else expedited (BD): a
-///          frame must not wait for one that nobody can say is missing. Whoever sends may ask for either
+///          again. Else expedited (BD): a frame must not wait for one that nobody can say is missing. Whoever sends may
+///          ask for either
 /// Faults   a frame that no report confirms is sent again after both light times and `report_s`, `transmissions_max`
-/// times at
-///          most, then reported as never acknowledged. When the vehicle has locked the channel, as it does after a
-///          restart of its computer, or counts otherwise, it is told the sequence anew; what was on its way then is
-///          reported, never assumed
+///          times at most, then reported as never acknowledged. When the vehicle has locked the channel, as it does
+///          after a restart of its computer, or counts otherwise, it is told the sequence anew; what was on its way
+///          then is reported, never assumed
 class CommandLink {
   public:
     static constexpr double report_s = 25.0;          ///< ours: reports come every 10 s, and may wait for the link

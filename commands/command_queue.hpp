@@ -12,8 +12,7 @@ namespace aeolis::commands {
 /// Commands that may be sent and have not left: they wait for their time, for a controller, or for a second one.
 ///
 /// Order    of those that are due, the larger priority first; of equals by their number, as they were asked for. Those
-/// that are
-///          `in_order` among themselves by their number alone: each was judged by what those before it do
+///          that are `in_order` among themselves by their number alone: each was judged by what those before it do
 /// Memory   a line a command; whoever adds them bounds their number
 class CommandQueue {
   public:

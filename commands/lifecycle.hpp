@@ -45,12 +45,10 @@ struct Answer {
 /// In       notices of ground's own stages; answers; read-backs; time passing (Earth's clock)
 /// Out      changes, appended to `out`
 /// Rules    a stage is ok only by evidence. `received` is observed when the vehicle reports the frame (CLCW), else
-/// inferred from
-///          an answer, and says so.
-///          Silence until the window (of the dictionary, from radiation) plus light time both ways is `unknown`, with
-///          words: the answer may be lost, or come later with the recording; it then still counts. A refusal, or a
-///          read-back that differs, is `failed`. Ok never changes again, but for `released` of what is taken back
-///          before it was radiated; failed only when a later read-back is equal.
+///          inferred from an answer, and says so. Silence until the window (of the dictionary, from radiation) plus
+///          light time both ways is `unknown`, with words: the answer may be lost, or come later with the recording; it
+///          then still counts. A refusal, or a read-back that differs, is `failed`. Ok never changes again, but for
+///          `released` of what is taken back before it was radiated; failed only when a later read-back is equal.
 /// Memory   a kilooctet
 class CommandLifecycle {
   public:

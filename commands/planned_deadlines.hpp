@@ -15,10 +15,11 @@ namespace aeolis::commands {
 /// Until when a command is of use: what is planned by the clock, and the light time before it.
 ///
 /// In       the dictionary's timeline; the entry that was predicted when the run began      Out   Earth's clock, names
-/// of timepoints Rule     a command that changes an offset must be there before what it moves, which where its time is
-/// decided in flight is as
-///          predicted (predicted_anchors.csv); any other before the next that is planned. An offset that flight has
-///          changed counts as it is then; a later navigation solution, which moves entry by seconds at most, does not
+///          of timepoints
+/// Rule     a command that changes an offset must be there before what it moves, which where its time is decided in
+///          flight is as predicted (predicted_anchors.csv); any other before the next that is planned. An offset that
+///          flight has changed counts as it is then; a later navigation solution, which moves entry by seconds at most,
+///          does not
 class PlannedDeadlines {
   public:
     struct Deadline {

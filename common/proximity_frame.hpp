@@ -14,9 +14,8 @@ namespace aeolis {
 /// [ccsds-211.2-b-3]
 ///
 ///   header 40 bits: version 2 (10) | expedited 1 | supervisory 1 | construction 2 | spacecraft 10 | physical channel 1
-///   |
-///                   port 3 | source or destination 1 | octets of the frame less one 11 | frame sequence 8
-///   PLTU: FAF320 | frame | CRC-32 over the frame only
+///   | port 3 | source or destination 1 | octets of the frame less one 11 | frame sequence 8 PLTU: FAF320 | frame |
+///   CRC-32 over the frame only
 inline constexpr std::size_t proximity_header_octets = 5;
 inline constexpr std::size_t proximity_data_octets_max = 2043;
 inline constexpr std::size_t proximity_frame_octets_max = proximity_header_octets + proximity_data_octets_max;

@@ -20,8 +20,7 @@ std::vector<std::optional<double>> planned_from_entry_s(const Dictionary& dictio
 ///
 /// @param design_e_s  by anchor: when it comes in the design, as the sheet had it when the run began
 /// @param heard_e_s  by timepoint: when it fired, as far as ground had heard of it; what has fired stands as it was
-/// predicted
-///                   before its own anchor was heard of
+///   predicted before its own anchor was heard of
 std::vector<std::optional<double>> predicted_from_entry_s(const Dictionary& dictionary,
                                                           const std::vector<std::optional<double>>& design_e_s,
                                                           const std::vector<std::optional<double>>& heard_e_s);

@@ -44,12 +44,10 @@ std::uint64_t received_octets(const Reception& reception);
 /// Receives one file by CFDP class 2. [ccsds-727.0-b-5]
 ///
 /// In       PDUs of one transaction, in any order and number; ask() at the beginning of a pass, or when what was asked
-/// for
-///          has not come in the time that it takes
+///          for has not come in the time that it takes
 /// Out      octets to write, never twice; PDUs to send back
 /// Memory   a range for each piece that stands alone, `ranges_max` of them; what would need more is dropped and asked
-/// for
-///          again
+///          for again
 /// Faults   what does not belong to the transaction or contradicts what is known is counted and changes nothing
 class CfdpReceiver {
   public:

@@ -47,15 +47,13 @@ struct StalenessChange {
 /// In       packets, links and phase of EDL as they reach Earth, and the time on Earth, in that order
 /// Out      changes, appended to `out`
 /// Rule     A packet is expected at its rate (DefaultRateInStream) thinned by the rows of telemetry_plan.csv that hold
-/// in
-///          every plan, once it has come at all. It is stale when nothing of it came for `stale_intervals` of that, and
-///          `stale_least_s`, while a link was up or lost and the phase as it is for as long. Of a link that loses much
-///          it takes more: as many intervals as losses like those before its last packet explain by `stale_chance`.
-///          While all links are down nothing is expected: silence is then the link's, which says why. One that is lost
-///          cannot say why: what was stale stays so, and the rest becomes it.
+///          in every plan, once it has come at all. It is stale when nothing of it came for `stale_intervals` of that,
+///          and `stale_least_s`, while a link was up or lost and the phase as it is for as long. Of a link that loses
+///          much it takes more: as many intervals as losses like those before its last packet explain by
+///          `stale_chance`. While all links are down nothing is expected: silence is then the link's, which says why.
+///          One that is lost cannot say why: what was stale stays so, and the rest becomes it.
 /// Losses   of all packets, each time one comes again that was not stale: one came of as many as were due since the
-/// last.
-///          Both numbers fade with `stale_memory_s`
+///          last. Both numbers fade with `stale_memory_s`
 /// Memory   a row for each packet with a rate
 class StalenessMonitor {
   public:

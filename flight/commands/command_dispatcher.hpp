@@ -15,8 +15,7 @@ namespace aeolis::flight {
 ///
 /// In      UplinkReceived (any octets), CommandOutcome from the owner, Resume when Second Chance takes over
 /// Out     the command as a message; COMMAND_ACCEPTED and COMMAND_EXECUTED, or COMMAND_REFUSED with the reason;
-/// UplinkStatus,
-///         by which ground learns what to send again
+///         UplinkStatus, by which ground learns what to send again
 /// Faults  whatever cannot be read is refused with its reason; nothing is acted on before it is read whole. R3, R23
 ///         After a restart of the computer nothing in sequence is taken until ground unlocks the channel: it sees that
 ///         by the status. So no command is carried out twice because its frame was sent again

@@ -11,8 +11,7 @@ namespace aeolis::flight {
 ///
 /// In      frames whose CRC is right                          Out   a verdict each; the CLCW at any time
 /// Rule    A frames in sequence only, none twice; B frames always; a sequence far from the expected one locks the
-/// channel
-///         until ground unlocks it
+///         channel until ground unlocks it
 /// Memory  this object. What is accepted is handed on at once, so that the wait flag is never raised
 /// Faults  a frame of another spacecraft or channel, or a control command that is none, is refused and changes nothing
 class Farm {

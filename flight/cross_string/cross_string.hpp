@@ -18,14 +18,12 @@ inline constexpr double state_age_max_s = 0.9;
 /// In      StatePart from edl (prime) or from the line (Second Chance), StoredStatePart, ClockTick,
 ///         EnableSecondChanceCommand, SelectPrimeCommand, EdlFinished
 /// Out     prime: the state on the line each cycle, and kept for a restart when it has changed; after a restart the
-/// kept
-///         state to edl, and Resume. Second Chance: the same when it takes over; the units that prime addresses, to
-///         units; SecondChanceStatus; CommandOutcome
+///         kept state to edl, and Resume. Second Chance: the same when it takes over; the units that prime addresses,
+///         to units; SecondChanceStatus; CommandOutcome
 /// Rule    it takes over when ground has enabled it, prime's line has been silent for 0.25 s, prime's last state is
-/// less
-///         than 0.9 s old, and says that EDL had begun, pre-EDL was over and touchdown was still to come. What comes on
-///         the line counts as life, readable or not: in doubt it does nothing. Touchdown turns it off for good. R1,
-///         R33, R34
+///         less than 0.9 s old, and says that EDL had begun, pre-EDL was over and touchdown was still to come. What
+///         comes on the line counts as life, readable or not: in doubt it does nothing. Touchdown turns it off for
+///         good. R1, R33, R34
 class CrossString {
   public:
     explicit CrossString(const Load& load) : load_role_(load.role) {}

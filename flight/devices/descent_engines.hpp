@@ -11,8 +11,7 @@ namespace aeolis::flight {
 ///
 /// In      RunEngines, PayOutBridle, EngineReply and BridleReply (interrupts), Tick, UnitsSelected
 /// Out     engine commands at its tick; EngineReply and BridleReply on to Edl; ActionReply when the engines start to
-/// run,
-///         and when the bridle is payed out; Confirm
+///         run, and when the bridle is payed out; Confirm
 /// Faults  engines that do not run and a bridle that stops answer nobody: the timeline's time-out does
 class DescentEngines {
   public:

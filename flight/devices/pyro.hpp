@@ -11,8 +11,7 @@ namespace aeolis::flight {
 /// In      FirePyro, PyroReply (interrupt), Tick, UnitsSelected
 /// Out     pyros to fire, at its tick; ActionReply to Edl once the controller says that the pyro fired; Confirm
 /// Faults  a pyro that the controller did not fire (PYRO_NOT_FIRED) answers nobody: the timeline's time-out does. A
-/// reply
-///         that was not due, or from the other unit, is reported (REPLY_UNEXPECTED) and goes no further
+///         reply that was not due, or from the other unit, is reported (REPLY_UNEXPECTED) and goes no further
 class PyroManager {
   public:
     explicit PyroManager(const Load&) {}

@@ -10,11 +10,9 @@ namespace aeolis::flight {
 /// changes over by itself, and from "do edl" on the choice stands: EDL has no time to switch. R2, R5
 ///
 /// In      SelectUnitsCommand; EdlBegun and StandBy from Edl; ClockTick; UnitsSelected (as prime held them, for a
-/// computer that
-///         takes over)
+///         computer that takes over)
 /// Out     UnitsSelected to every device manager, and to Edl, which tells the other computer; CommandOutcome; channels
-/// of
-///         the choice, each 10 s and when it changes, but none from a computer that only follows or stands by
+///         of the choice, each 10 s and when it changes, but none from a computer that only follows or stands by
 /// Faults  a selection after "do edl" is refused (wrong_phase): nothing is changed
 class UnitSelector {
   public:

@@ -17,8 +17,7 @@ namespace aeolis::flight {
 ///
 /// In      Record (any module), ImuReadings, PhaseChanged, NvmStatus, ToneStatus, UplinkStatus, ClockTick (64 Hz)
 /// Out     packets to NVM, in order; PLTUs with some of them to the UHF transmitter, within its rate; CommStatus at 1
-/// Hz; data
-///         products
+///         Hz; data products
 /// Memory  192 packets wait for the link; see RealtimeQueue for what gives way. Never the recording, never the cycle
 /// Faults  the queue for the link full: said once an episode (UHF_QUEUE_FULL), counted by priority in CommStatus
 ///         NVM nearly full: said once (NVM_FULL, and by tone); the last 64 KiB are kept for what goes first

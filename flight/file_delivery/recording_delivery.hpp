@@ -19,9 +19,8 @@ namespace aeolis::flight {
 /// Files   whole packets, `file_octets` and what completes the last; the last file when the recording is closed
 /// Memory  this object: `open_max` transactions; the next file waits until one of them has ended
 /// Faults  what cannot be read, or is for another file, changes nothing. Made anew after a restart it begins with the
-/// first
-///         file again: ground takes no octet twice, and says of each file that it has it. A file that ground could not
-///         take is sent once more from its beginning
+///         first file again: ground takes no octet twice, and says of each file that it has it. A file that ground
+///         could not take is sent once more from its beginning
 class RecordingDelivery {
   public:
     static constexpr std::uint32_t file_octets = 262144;  ///< ours: 1 s at 2 Mb/s

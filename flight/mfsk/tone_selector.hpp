@@ -13,9 +13,9 @@ namespace aeolis::flight {
 /// Chooses the tone that the X-band transmitter sends.
 ///
 /// In      ToneRequest, StandBy, ClockTick (64 Hz)           Out   the transmitter's tone; ToneSelected; Explanation;
-/// ToneStatus Memory  64 outstanding requests; when full the least important is dropped and reported
-/// (MFSK_REQUESTS_FULL) Rule    the most important request first, of equals the newest; a request older than its tone's
-/// age limit is
+///         ToneStatus
+/// Memory  64 outstanding requests; when full the least important is dropped and reported (MFSK_REQUESTS_FULL)
+/// Rule    the most important request first, of equals the newest; a request older than its tone's age limit is
 ///         dropped, and so is one that a newer event has overtaken (tones.csv: supersedes). R31
 /// Each drop and each choice between several is explained by the values that led to it: age and limit, the tone that
 /// overtook it, or its priority against the other's when there is no more room. R38

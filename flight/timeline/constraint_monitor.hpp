@@ -44,12 +44,14 @@ static_assert(constraint_count <= constraint_rows_max, "constraints.csv has more
 ///
 /// In      do edl, the anchors, the firings, as the timeline has them after a pass
 /// Out     for each row that does not hold SUB_CONSTRAINT_VIOLATED and an Explanation; SUB_CONSTRAINTS_JUDGED at the
-/// end Rule    a row is judged when its `to` comes, and again when that moves (an anchor set anew); when `from` was not
+///         end
+/// Rule    a row is judged when its `to` comes, and again when that moves (an anchor set anew); when `from` was not
 ///         known by then, as soon as it is. A row whose `from` or `to` never comes is never judged
 /// Rate    each cycle; at most four reports a cycle, so that the outbox always has room for what EDL itself must send
 /// Reset   what a computer saw before a restart or a hand-over is not handed on: rows that reach back over it are not
-/// judged Memory  fixed; the rows are read where the autocoder put them Faults  with 64 reports waiting the next are
-/// dropped; each report tells how many violations there were in all
+///         judged
+/// Memory  fixed; the rows are read where the autocoder put them
+/// Faults  with 64 reports waiting the next are dropped; each report tells how many violations there were in all
 class ConstraintMonitor {
   public:
     explicit ConstraintMonitor(std::span<const ConstraintSpec> rows);

@@ -37,9 +37,8 @@ using Firings = FixedVector<Firing, firings_per_cycle_max + 1>;
 /// In       the clock, replies, changed offsets, anchors that GNC sets "now"
 /// Out      actions through ActionContext; Firing for each timepoint that completed
 /// Memory   fixed; the rows are read where the autocoder put them
-/// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`.
-/// Actions may be repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still
-/// awaited.
+/// Before the first timepoint stands the acceptance of "do edl" (R16): nothing happens before `begin`. Actions may be
+/// repeated: after a restart in pre-EDL, and when Second Chance finds one whose reply prime still awaited.
 class Timeline {
   public:
     /// `essential_only`: Second Chance, where the other rows' actions are no operation. R33

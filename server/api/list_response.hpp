@@ -22,9 +22,8 @@ struct Rows {
 ///
 /// json   the list
 /// csv    a header, then a line a row by RFC 4180, with a column a field in the schema's order, by its path:
-/// "event.name". What a row
-///        does not have is empty. Octets are hexadecimal; of a repeated field one cell has all, with blanks between,
-///        messages as JSON. Beside each SCLK stands SCET, where it is known by which clock
+///        "event.name". What a row does not have is empty. Octets are hexadecimal; of a repeated field one cell has
+///        all, with blanks between, messages as JSON. Beside each SCLK stands SCET, where it is known by which clock
 /// jsonl  a line a row, each as in the list
 inline constexpr std::array<std::string_view, 3> list_formats{"json", "csv", "jsonl"};
 

@@ -18,9 +18,8 @@ namespace aeolis::server {
 ///
 /// In       samples in order of SCLK, those of one instant in one piece     Out   text: head(), append()…, finish()
 /// Aligned  to a channel: its times; to a step: multiples of it by SCLK, each with news since the one before, so that a
-/// silence
-///          makes no lines. Of each channel the newest value up to the line's time; none yet: nothing (CSV), null
-///          (JSON)
+///          silence makes no lines. Of each channel the newest value up to the line's time; none yet: nothing (CSV),
+///          null (JSON)
 /// Memory   a value a channel
 class SampleText {
   public:

@@ -12,8 +12,7 @@ namespace aeolis::server {
 /// change, what had fired, the newest tone. None: now.
 ///
 /// Cut      what has a time on board by that, up to `at`; what has one on Earth by what is seen of `at` there. Items of
-/// the
-///          recording count at their own time: what was known then is the live items' part (source, duplicate)
+///          the recording count at their own time: what was known then is the live items' part (source, duplicate)
 /// Memory   an item a name
 Result<v1::StateAt> state_at(archive::Reader& reader, archive::RunId run, const dictionary::Dictionary& dictionary,
                              std::optional<Sclk> at);

@@ -20,8 +20,7 @@ namespace aeolis::server::campaign {
 /// looked at.
 ///
 /// Thread   any but the network's: each call reads files. What flies has threads of its own that run only where nobody
-/// else
-///          wants the processor, and one beside them keeps
+///          else wants the processor, and one beside them keeps
 /// Memory   a landing a thread; a look at a campaign keeps its touchdowns that were asked for, no more
 /// Faults   a disk that does not take the results ends the campaign, with that as its fault; what is kept stays
 class CampaignDesk {

@@ -18,13 +18,14 @@ namespace aeolis::server {
 /// Follows another mission in its own thread: receives octets, finds packets, hands them to the archive as one run.
 ///
 /// In       octets of a TCP connection or of datagrams            Out   deliveries to the pipeline; the run's state on
-/// change TCP      connects, and again after every end, first after `retry_first`, then twice as long each time up to
-/// `retry_max` UDP      bare packets: each datagram holds whole ones; frames: datagrams are pieces of one stream Faults
-/// octets that are no packet are counted and skipped; where bare packets cannot be found any more, the connection is
-///          made anew. Each change is logged and is an item of the run.
+///          change
+/// TCP      connects, and again after every end, first after `retry_first`, then twice as long each time up to
+///          `retry_max`
+/// UDP      bare packets: each datagram holds whole ones; frames: datagrams are pieces of one stream
+/// Faults   octets that are no packet are counted and skipped; where bare packets cannot be found any more, the
+///          connection is made anew. Each change is logged and is an item of the run.
 /// Memory   a piece of `piece_octets`, a frame, the beginning of a stream whose frames must be recognised; a slow disk
-/// holds
-///          the thread, and TCP then the sender. Datagrams that come meanwhile may be lost, as UDP loses them
+///          holds the thread, and TCP then the sender. Datagrams that come meanwhile may be lost, as UDP loses them
 class DownlinkFollower {
   public:
     static constexpr std::size_t piece_octets = 65536;                          ///< no datagram is longer

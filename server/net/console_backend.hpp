@@ -17,7 +17,7 @@ namespace aeolis::server {
 /// All of `aeolis serve`: archive, pipeline, rehearsals, queries, stream and web server, put together.
 ///
 /// Threads  docs/decisions/0006-threads-and-stream.md: network (run()), pipeline, three queries, one a rehearsal; a
-/// campaign's own
+///          campaign's own
 class ConsoleBackend {
   public:
     struct Settings {

@@ -38,9 +38,12 @@ inline void append_frame(std::string& frames, std::string_view message, bool bin
 ///
 /// In       frames of data by send(); whole control frames by async_write_some()
 /// Rule     what the kernel does not take at once is kept and goes first; meanwhile busy() is true and send() is not
-/// for calling Order    frames leave in the order in which they were given Fault    a socket that fails is closed: who
-/// reads from it is told Copies are handles of the same stream. Thread   the network thread Memory   the rest of one
-/// send(), and the few control frames that a WebSocket has under way
+///          for calling
+/// Order    frames leave in the order in which they were given
+/// Fault    a socket that fails is closed: who reads from it is told
+/// Copies are handles of the same stream.
+/// Thread   the network thread
+/// Memory   the rest of one send(), and the few control frames that a WebSocket has under way
 template <typename Next>
 class FrameStream {
   public:

@@ -13,10 +13,11 @@ namespace aeolis::server {
 ///
 /// In       http://HOST[:PORT] or https://HOST[:PORT]      Out   status and body
 /// TLS      the server's certificate must be of that name and signed by one of `authorities`, or of the system's where
-/// that is empty Token    over https, or to this machine itself: over http others on the way could read it Faults
-/// whatever keeps the request away from the server, in words: it has not got it. What comes between the request and its
-///          answer is told in the answer, for the server may have done what was asked. An answer of any status is an
-///          answer
+///          that is empty
+/// Token    over https, or to this machine itself: over http others on the way could read it
+/// Faults   whatever keeps the request away from the server, in words: it has not got it. What comes between the
+///          request and its answer is told in the answer, for the server may have done what was asked. An answer of any
+///          status is an answer
 /// Blocks the caller, `patience` at most for each of connecting, making it safe and sending, `answer_patience` for the
 /// answer; a
 ///          name is looked up by the system, by whose limits it is.

@@ -13,8 +13,7 @@ namespace aeolis::server {
 ///
 /// In       items in the order of their numbers, and what time it is     Out   when each is due
 /// Rule     the first is due when it is asked for. One that bears no time on Earth has that of the one before it; one
-/// that reached
-///          Earth before the one before it waits no longer than that
+///          that reached Earth before the one before it waits no longer than that
 class ReplayPace {
   public:
     using Clock = std::chrono::steady_clock;

@@ -15,16 +15,14 @@ namespace aeolis::server {
 /// One client of the stream: what it asked for and how far it has been served. Knows no socket.
 ///
 /// In       the client's messages                        Out   next_message(), when the connection can write
-/// Rule     items go out in order, each once. What the hub still holds comes from there; older items from the
-///          archive, page by page. So a client that is slow, or came late, reads the archive and catches up. Who
-///          follows whichever run goes on gets all of one, and how it ended, before the next
+/// Rule     items go out in order, each once. What the hub still holds comes from there; older items from the archive,
+///          page by page. So a client that is slow, or came late, reads the archive and catches up. Who follows
+///          whichever run goes on gets all of one, and how it ended, before the next
 /// Pace     a run that is over goes out as fast as the archive is read, or, where the subscription has a pace, as it
-/// reached Earth: an
-///          item each when it is due, in a batch each replay_interval at most. Who replays follows nothing else: no
-///          run's state, no clocks
+///          reached Earth: an item each when it is due, in a batch each replay_interval at most. Who replays follows
+///          nothing else: no run's state, no clocks
 /// Faults   what the archive does not give is said once, and asked for again with every check() until it comes;
-/// meanwhile no clocks
-///          go out either: a console that gets nothing must not look as if it were live
+///          meanwhile no clocks go out either: a console that gets nothing must not look as if it were live
 /// Thread   the network thread only
 /// Memory   replies_max short replies and one page of the archive
 /// Load     one question at a time is with the archive, whatever the client asks for meanwhile

@@ -7,13 +7,13 @@
 
 namespace aeolis::server {
 
-/// When ground expects to hear nothing of a landing, by the plan and the delivery, with none of the errors: whoever
-/// flies the landing knows the same of it. Some milliseconds.
+/// Predicts when ground hears nothing of a landing, from the plan and the delivery, without the landing's errors.
 ///
-/// Blackout  the scenario's nominal entry state flies under the reference's bank; plasma is where the radio's own
-/// bounds are Earth     sets over the target for a vehicle that descends evenly under its parachute Times     of
-/// timepoints by the timeline's rule over predicted_anchors.csv Left out  reversals, wind, what the vehicle does after
-/// the backshell
+/// Blackout  the scenario's nominal entry flies under the reference's bank; plasma is within the radio's own bounds
+/// Earth     sets over the target, for a vehicle that descends evenly under its parachute
+/// Times     of timepoints by the timeline's rule over predicted_anchors.csv
+/// Left out  reversals, wind, and what the vehicle does after the backshell
+/// Cost      some milliseconds
 telemetry::PredictedSilences predict_silences(const simulation::Scenario& scenario,
                                               const dictionary::Dictionary& dictionary);
 

@@ -32,12 +32,10 @@ class Rehearsal;
 /// Pace     1 … 1000 × real time, 0: as fast as it goes. When the machine or the disk cannot keep up, the run is
 ///          slower, nothing is skipped, and `attained_pace` says so.
 /// Tones    where the scenario leaves it open they are decoded from a waveform up to a pace of signal_pace_max, else
-/// drawn
-///          from the symbol error: the pace asked for at the start decides, for the whole run, so that none is lost or
-///          doubled when the pace changes (decision 0019)
+///          drawn from the symbol error: the pace asked for at the start decides, for the whole run, so that none is
+///          lost or doubled when the pace changes (decision 0019)
 /// Cut off  a run that a crash ended is flown again with the same seed, clock and requests at the same cycles, as fast
-/// as it
-///          goes; each item is held against the archive, and after the last that is stored the run goes on as if
+///          as it goes; each item is held against the archive, and after the last that is stored the run goes on as if
 ///          nothing had been. When one is not what it was, the run stays interrupted and on_begun gets the error
 ///          (decision 0021)
 /// Faults   a run that cannot be begun in the archive is not flown: on_begun gets the error

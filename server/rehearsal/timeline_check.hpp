@@ -22,12 +22,12 @@ bool changes_timeline(const v1::CommandRequest& request);
 /// analyse` on the timeline as it then stands. R19
 ///
 /// In       the commands of the run so far, whose changes stand unless a stage of them failed, in the order in which
-/// they left
-///          and then of those that wait; those that are asked for
+///          they left and then of those that wait; those that are asked for
 /// Out      what the analysis says; an Error names the first constraint that would no longer hold; an internal one says
-/// why nobody knows Cost     a second of one processor for the mission's timeline: not for the network's or the
-/// rehearsal's thread. One analysis at a
-///          time, which ends when `stop` says so. The newest answers are kept, for a dry run is asked again and again
+///          why nobody knows
+/// Cost     a second of one processor for the mission's timeline: not for the network's or the rehearsal's thread. One
+///          analysis at a time, which ends when `stop` says so. The newest answers are kept, for a dry run is asked
+///          again and again
 /// Threads  any
 class TimelineCheck {
   public:

@@ -26,7 +26,7 @@ namespace aeolis::server {
 ///          running, reports the overrun and skips that cycle; take_ticks_skipped() says how many, SCLK goes on
 /// Memory   made with it: an outbox and a painted stack of 256 KiB a task; mailboxes are the computer's
 /// Faults   a task whose check fails: cycle() throws it once all tasks are idle; what lies in mailboxes goes with the
-/// state that failed
+///          state that failed
 class ThreadedExecutive final : public flight::CycleRunner {
   public:
     enum class Clock { virtual_time, real_time };

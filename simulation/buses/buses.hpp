@@ -20,8 +20,8 @@ namespace aeolis::simulation {
 /// Timing   the commands of cycle n go out with the first frame after it: at 64 Hz with tick n + 1, at 8 Hz with the
 ///          next multiple of 1/8 s. A reply is fetched by the first frame in which the device has it ready
 /// Cyclic   on-times, throttles and pay-out go out in every 64 Hz frame, and radar and engines are read in it.
-/// Thrusters
-///          that hear nothing close at once; engines keep their last throttles for 2 s and then go safe. [facts]
+///          Thrusters that hear nothing close at once; engines keep their last throttles for 2 s and then go safe.
+///          [facts]
 class Buses {
   public:
     Buses(const Scenario& scenario, std::uint64_t seed, std::uint64_t case_number);

@@ -14,7 +14,8 @@ namespace aeolis::simulation {
 ///
 /// Memory   ours: it holds 64 KiB that wait; what finds no room is lost, and counted
 /// Plasma   from below the scenario's altitude or speed of its start, whichever comes first after entry, to its end
-/// speed Left out: antenna patterns
+///          speed
+/// Left out: antenna patterns
 class UhfLink {
   public:
     /// What the link sees of the vehicle in a cycle.

@@ -25,7 +25,8 @@ struct XBandPath {
 /// The samples (x_band_sampler.hpp) of a path and tones that are known from the start.
 ///
 /// In      tones in the order of their starts, each a symbol long and none before the last has ended; between them
-/// carrier Out     samples, as many as asked for at a time; the same whatever the portions
+///         carrier
+/// Out     samples, as many as asked for at a time; the same whatever the portions
 class XBandChannel {
   public:
     XBandChannel(const MfskWaveform& waveform, XBandPath path, std::vector<SentTone> tones, std::uint64_t seed,

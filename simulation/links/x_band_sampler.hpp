@@ -15,7 +15,8 @@ namespace aeolis::simulation {
 /// of power 1 a sample (N0 = 1/rate).
 ///
 /// In      stretches, in each of which Doppler is linear and gain constant        Out   their samples, in portions of
-/// any size Memory  one modulated tone's table; nothing grows
+///         any size
+/// Memory  one modulated tone's table; nothing grows
 class XBandSampler {
   public:
     XBandSampler(const MfskWaveform& waveform, double rate_hz, std::uint64_t seed, std::uint64_t case_number);

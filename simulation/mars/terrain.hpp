@@ -12,7 +12,7 @@ namespace aeolis::simulation {
 /// out.
 ///
 /// Frame M        Valid within 30 km of the target: there a tilted plane and a tilted sphere are alike to the slope's
-/// percent
+///                percent
 class Terrain {
   public:
     /// `random` draws the case's own height and rise.

@@ -8,7 +8,7 @@
 //   ṗ = v    v̇ = F/m + gravity − 2 Ω×v − Ω×(Ω×p)    q̇_MB = ½ (q_MB ω − Ω q_MB)    I ω̇ = T − ω × Iω
 //
 // Frames   p, v, F in M, relative to rotating Mars; ω (relative to inertial space), T and I in B, about the centre of
-// mass
+//          mass
 namespace aeolis::simulation {
 
 struct RigidBody {

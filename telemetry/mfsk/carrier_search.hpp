@@ -25,12 +25,10 @@ struct CarrierFound {
 ///
 /// In      complex samples at a fixed rate; the whole of its band is searched
 /// Out     a carrier for a window of 1 s over ±1200 Hz/s in lines of 50 Hz/s; each time four of those found none, also
-/// for
-///         the window of all 4 s, over ±300 Hz/s in lines of 12.5: its effort grows with the wait
+///         for the window of all 4 s, over ±300 Hz/s in lines of 12.5: its effort grows with the wait
 /// Memory  the powers of 4 s
 /// Faults  the threshold is a union bound: Pfa of a window ≤ false_alarm in white noise of any power. Without power
-/// nothing is
-///         found.
+///         nothing is found.
 /// Source: [richards-radar] for the non-coherent sum and its distribution; lengths and grid ours.
 class CarrierSearch {
   public:

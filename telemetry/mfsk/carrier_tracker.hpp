@@ -44,10 +44,10 @@ struct HopLayout {
 ///
 /// In      hops of samples, one after the other     Out   each hop once, in order, up to half a window later
 /// Effort  a narrow look at 0.6 s; where that finds nothing a wide one; windows of 1.4, 2.6 and 5.1 s when the carrier
-/// is weak Memory  the longest window Faults  after 1.5 s, or three quarters of a window, without a carrier (20 s when
-/// it has long been too weak to be found
-///         anew) it is lost: the hops in
-///         memory come out as not found
+///         is weak
+/// Memory  the longest window
+/// Faults  after 1.5 s, or three quarters of a window, without a carrier (20 s when it has long been too weak to be
+///         found anew) it is lost: the hops in memory come out as not found
 class CarrierTracker {
   public:
     explicit CarrierTracker(const HopLayout& layout, double carrier_fraction);

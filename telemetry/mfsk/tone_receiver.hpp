@@ -40,7 +40,7 @@ struct ReceiverStatus {
 /// Out     a reception a symbol, 1 to 20 s after the symbol's end, by take()
 /// Memory  4 s of samples while it searches, 5 s while it tracks, a few symbols of sums
 /// Faults  silence, noise and what is no number give no reception; a pulse far above the rest is blanked; a carrier
-/// lost is searched for again
+///         lost is searched for again
 class ToneReceiver {
   public:
     static constexpr double rate_least_hz = 3000.0, rate_greatest_hz = 1.0e6;  ///< ours

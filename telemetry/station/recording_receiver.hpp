@@ -18,12 +18,10 @@ namespace aeolis::telemetry {
 /// In       PDUs as they come, over any orbiter, in any order; Earth's clock; whether a bent pipe is up
 /// Out      each file, once, when all of it is here and its checksum holds; PLTUs for the rover
 /// Rule     what is missing is asked for when the end of a file is announced, and again each time that an answer is
-/// overdue:
-///          both light times and 30 s (ours). Without a bent pipe once, until something has come again
+///          overdue: both light times and 30 s (ours). Without a bent pipe once, until something has come again
 /// Memory   at most `files_under_way_max` files of `file_octets_max` that are not whole; of whole ones some octets
 /// Faults   what is no PDU, or is of no file of this vehicle, is counted. A file that failed is forgotten, and received
-/// anew:
-///          the rover sends again what was not delivered. When too many are under way the one longest silent is
+///          anew: the rover sends again what was not delivered. When too many are under way the one longest silent is
 ///          forgotten
 class RecordingReceiver {
   public:

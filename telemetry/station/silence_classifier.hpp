@@ -36,12 +36,12 @@ std::string words_of(SilenceClass silence, const std::string& sentence);
 /// Says why a link brings nothing, by what ground knows: predictions, light time, which link it is, its last octet.
 /// That a receiver has lost or found a link is what the port brings.
 ///
-/// In       changes of links as they reach Earth (name, up or down), time on Earth        Out   the same changes, with
-/// ground's reason and whether the link is lost Rate     any; a silence is looked at again with each call: when what
-/// explained it is over, it becomes another one Margin   a prediction counts for `margin_s` on both sides: dispersed
-/// landings come so much earlier or later Rules    in this order: the plan's switching, passes, blackout, hand-over;
-/// X-band: Earth set, link budget; the recording: complete, passes.
-///          Nothing of it: the fault that the station has, or unexplained
+/// In       changes of links as they reach Earth (name, up or down), time on Earth
+/// Out      the same changes, with ground's reason and whether the link is lost
+/// Rate     any; a silence is judged anew with each call: when its explanation is over, it gets another
+/// Margin   a prediction counts for `margin_s` on both sides, as dispersed landings come so much earlier or later
+/// Rules    in this order: the plan's switching, passes, blackout, hand-over; X-band: Earth set, link budget; the
+///          recording: complete, passes. Where none holds: the fault that the station has, or unexplained
 /// Memory   a row a link
 /// A value, as the landing is.
 class SilenceClassifier {
@@ -62,7 +62,7 @@ class SilenceClassifier {
         std::string fault{};  ///< of the station, or the line from it; empty: none that anyone knows of
     };
     /// @return what to tell of links now: `changes` with ground's reasons, and silences that became others. Empty:
-    /// nothing.
+    ///   nothing.
     std::vector<LinkState> tell(const std::vector<LinkState>& changes, Ert now, const Station& station);
 
   private:

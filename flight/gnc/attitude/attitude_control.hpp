@@ -9,13 +9,11 @@
 //
 //   T = I · clamp((ω_wanted − ω) / τ) + ω × Iω,   nothing while |ω_wanted − ω| is within its deadband
 //
-//   detumble     ω_wanted = 0, brought down gently
-//   entry_bank   in vacuum: the rotation to the trim attitude at the wanted bank, about its own axis, by the phase
-//   plane;
-//                in the air, which holds the vehicle at its own trim angle: the bank error about the velocity by the
-//                phase plane, and the damping of what turns it across
-//   suspended    ω_wanted = 0 beyond a wide deadband: only what swings is damped
-//   thrust       the shortest turn that lays −z of B along the wanted thrust, no roll
+//   detumble     ω_wanted = 0, brought down gently entry_bank   in vacuum: the rotation to the trim attitude at the
+//   wanted bank, about its own axis, by the phase plane; in the air, which holds the vehicle at its own trim angle: the
+//   bank error about the velocity by the phase plane, and the damping of what turns it across suspended    ω_wanted = 0
+//   beyond a wide deadband: only what swings is damped thrust       the shortest turn that lays −z of B along the
+//   wanted thrust, no roll
 //
 // Frame    B for rates and torque; M for positions, velocity and the thrust's direction
 // Rate     64 Hz            Memory   none: every cycle by itself

@@ -13,7 +13,7 @@
 //
 // In       θ [rad] still to turn, signed                    Out   rate [rad/s], towards θ
 // Source   [wie-1998] (switching curve of a double integrator); the reserve of three tenths and the shape at its end
-// are ours
+//          are ours
 namespace aeolis::flight::gnc {
 
 struct TurnLimits {

@@ -13,8 +13,7 @@
 //
 // Frame    B          In   torque T [N m], mean over the cycle        Out   on-times [s] within one cycle of 1/64 s
 // Limits   what four full thrusters cannot give is cut in proportion, so that the axis stays. What is too short for a
-// valve is
-//          owed to the mount and given once there is enough: small torques become rare pulses
+//          valve is owed to the mount and given once there is enough: small torques become rare pulses
 // Source   [wie-1998] (pseudo-inverse selection); the mounts are flight/devices/effectors.hpp's
 namespace aeolis::flight::gnc {
 

@@ -13,9 +13,9 @@
 //
 // In       crossrange of the target, positive to the right; V            Out   sign of bank, number of reversals
 // Source   [apollo-entry-guidance] for a deadband that shrinks with velocity and is halved at saturation. Its numbers
-// are ours, read
-//          off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned from there to its
-//          times); the second came only at 10 km, and the least time is what was between the first and it
+//          are ours, read off [od137]: it began its first reversal at 4 km of crossrange, its third at 2.4 km (tuned
+//          from there to its times); the second came only at 10 km, and the least time is what was between the first
+//          and it
 namespace aeolis::flight::gnc {
 
 /// Half width of the deadband [m] at a velocity.

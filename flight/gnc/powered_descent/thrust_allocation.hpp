@@ -7,9 +7,9 @@
 
 // From a wanted acceleration to a direction of thrust and the throttles of eight engines, or of four.
 //
-//   T = m |a|, direction a/|a| kept within 60° of up;  throttle = T / (n · T_max), within what an engine can give
-//   the torque is spread as T_i = T/n + (E⁺ [torque; 0])_i, E the engines' torques and their sum: of least Σ ΔT²,
-//   without changing the total; where an engine would leave its range it is the total that gives way
+//   T = m |a|, direction a/|a| kept within 60° of up;  throttle = T / (n · T_max), within what an engine can give the
+//   torque is spread as T_i = T/n + (E⁺ [torque; 0])_i, E the engines' torques and their sum: of least Σ ΔT², without
+//   changing the total; where an engine would leave its range it is the total that gives way
 //
 // Frame    a: specific force wanted, in M [m/s²]          Units   N, kg
 // Source   [facts] Vehicle: each engine 400 … 3060 N used; the tilt limit is ours

@@ -5,12 +5,10 @@
 
 // The vertical part of powered descent: which descent rate belongs to which altitude, and what acceleration keeps it.
 //
-//   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left
-//   constant rate    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error
-//   constant decel.  v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now:
-//   constant but
-//                    for what the radar still corrects
-//   command          a_up = a_ref + k (v − v_ref)
+//   approach         v_ref(h)² = 32² + 2 a (h − h_end), a fixed at the start from what altitude is left constant rate
+//    32 m/s until h = h_sky_crane + (32² − 0.75²) / (2 · 4.26): takes up the radar's altitude error constant decel.
+//   v_ref(t) = v_start − ∫ a, down to 0.75 m/s, a such as to end at h_sky_crane from the altitude now: constant but for
+//   what the radar still corrects command          a_up = a_ref + k (v − v_ref)
 //
 // Frame    h [m] of the descent stage above ground, v [m/s] and a [m/s²]: v positive down, a positive up
 // Source   [facts] Timeline (32 and 0.75 m/s; net 3.19 and 4.26 m/s²; heights); gain k ours
