@@ -34,10 +34,10 @@ v1::CampaignReport report(std::uint16_t port, const std::string& campaign) {
     return message_of<v1::CampaignReport>(web_request(port, "GET", "/api/v1/campaigns/" + campaign));
 }
 
-/// Waits until it is so, at most five minutes: what flies has what others leave of the processors.
+/// Waits until it is so, at most twenty minutes: what flies has only what others leave of the processors.
 template <typename So>
 bool comes(So so) {
-    for (int i = 0; i < 6'000; ++i) {
+    for (int i = 0; i < 24'000; ++i) {
         if (so()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds{50});
     }
