@@ -341,7 +341,7 @@ void Landing::State::receive_tone(std::optional<ToneId> sent, std::int64_t cycle
         if (auto heard = ended->heard) {
             heard->start = symbol.start;
             heard->end = symbol.end;
-            tones.send(symbol.end.microseconds, std::move(*heard));
+            tones.send(symbol.end.microseconds, *heard);
         }
     }
     tell(x_band_told, x_band.up(), x_band.reason(), cycle_start_us);
@@ -497,8 +497,8 @@ const CycleReport& Landing::step() {
     s.octets.arrive(now_us, [&](std::int64_t, telemetry::ReceivedOctets&& o) {
         if (!out) earth.octets.push_back(std::move(o));
     });
-    s.tones.arrive(now_us, [&](std::int64_t, telemetry::ReceivedTone&& t) {
-        if (!out) earth.tones.push_back(std::move(t));
+    s.tones.arrive(now_us, [&](std::int64_t, const telemetry::ReceivedTone& t) {
+        if (!out) earth.tones.push_back(t);
     });
     s.symbols.arrive(now_us, [&](std::int64_t, const SentSymbol& symbol) { s.report.symbols.push_back(symbol); });
     s.fields.arrive(now_us, [&](std::int64_t, XBandField f) {

@@ -147,13 +147,13 @@ void ModelTypes::read_order(pugi::xml_node coding, Coding& into) {
         parts_.report.fault(coding,
                             "byte order " + in_quotes(order) + " is not supported: most significant first is taken");
     // 1.0 and 1.1 list the octets, each with its significance.
-    std::vector<int> significances;
+    std::vector<int> octet_order;
     for (const pugi::xml_node each : coding.child("ByteOrderList").children("Byte"))
-        significances.push_back(each.attribute("byteSignificance").as_int());
-    if (significances.size() < 2) return;
-    if (std::ranges::is_sorted(significances))
+        octet_order.push_back(each.attribute("byteSignificance").as_int());
+    if (octet_order.size() < 2) return;
+    if (std::ranges::is_sorted(octet_order))
         into.least_significant_octet_first = true;
-    else if (!std::ranges::is_sorted(significances, std::ranges::greater{}))
+    else if (!std::ranges::is_sorted(octet_order, std::ranges::greater{}))
         parts_.report.fault(coding, "octets in mixed order are not supported: most significant first is taken");
 }
 
